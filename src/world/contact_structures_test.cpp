@@ -20,7 +20,7 @@ Held count_held(World& world) {
   for (const Contact& contact : store.contacts) {
     for (const Manifold& manifold : manifolds_of(store, contact)) {
       if (manifold.total_friction == Vec3{} && manifold.points[0].total_impulse == 0.0f) continue;
-      ++(manifold.age >= kRigidContactAge ? count.held : count.sprung);
+      ++(manifold.load_age >= kRigidContactAge ? count.held : count.sprung);
     }
   }
   return count;

@@ -64,7 +64,7 @@ BodyImpulse explosion_impulse_on(const RigidWorld& w, std::uint32_t body, const 
     const ShapeAt at = shape_at(w, id.index);
     const double scale = shadow_scale(at, def.center);
     for_each_patch(*at.shape, {0, 1, 0}, double(kUnbounded), [&](const SurfacePatch& patch) {
-      const DVec3 place = at.origin + rotate(at.turn, patch.place);
+      const DVec3 place = at.origin + rotate(at.turn, patch.position);
       const DVec3 from = place - def.center;
       const double distance = length(from);
       if (!(distance > 0.0)) return;

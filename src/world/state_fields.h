@@ -118,14 +118,14 @@ void for_each_field(T& r, F&& f) {
 template <Is<ContactPointState> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.from_a, f), f(r.separation), for_each_field(r.from_b, f), f(r.normal_impulse), f(r.total_impulse);
-  f(r.approach_speed), f(r.feature), f(r.held);
+  f(r.approach_speed), f(r.feature), f(r.mean_impulse);
 }
 template <Is<Manifold> T, class F>
 void for_each_field(T& r, F&& f) {
-  for_each_field(r.normal, f), f(r.count), f(r.age);
+  for_each_field(r.normal, f), f(r.count), f(r.load_age);
   for (auto& point : r.points) for_each_field(point, f);
   for_each_field(r.friction_impulse, f), f(r.twist_impulse), for_each_field(r.rolling_impulse, f), f(r.triangle);
-  for_each_field(r.total_friction, f), f(r.sliding), for_each_field(r.seen_normal, f);
+  for_each_field(r.total_friction, f), f(r.sliding), for_each_field(r.anchor_normal, f);
   for (auto& anchor : r.anchors) for_each_field(anchor.position, f), f(anchor.separation);
 }
 template <Is<JointRecord> T, class F>

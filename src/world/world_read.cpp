@@ -176,7 +176,7 @@ std::size_t World::contacts(std::span<ContactPoint> out) const {
   return count;
 }
 
-std::size_t World::persisting(std::span<ContactPersist> out) const {
+std::size_t World::persisting(std::span<ContactPair> out) const {
   const FloatMode mode;
   const RigidWorld& w = state_->rigid;
   std::size_t count = 0;

@@ -5,7 +5,7 @@
 
 #include "geometry/query/cast_surface.h"
 #include "geometry/manifold/manifold.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 
 #include <functional>
 #include <type_traits>
@@ -110,10 +110,10 @@ struct Oracle {
   Answers near(const ShapePlace& place, double reach, const QueryFilter& f) const {
     const Shape shape = make_shape(place.shape);
     return all(f, [&](const Target& t, Answers& out) {
-      Nearest nearest;
-      const PlacedShape placed{&shape, t.to_local(place.pose.position),
+      ClosestPoints nearest;
+      const PosedShape placed{&shape, t.to_local(place.pose.position),
                                conjugate(t.turn()) * normalized(to_double(place.pose.orientation))};
-      if (find_nearest(t.shape, placed, reach, nearest))
+      if (find_closest_points(t.shape, placed, reach, nearest))
         out.push_back({t.id.index, number(nearest.triangle), nearest.distance});
     });
   }

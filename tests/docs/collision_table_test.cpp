@@ -7,7 +7,7 @@
 #include "geometry/shape/height_field.h"
 #include "geometry/manifold/manifold_convex.h"
 #include "geometry/shape/mesh.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 
 #include <gyre/bounds.h>
 
@@ -116,8 +116,8 @@ std::string kind_table() {
     tell(cast_shape(it.shape, {&ball, {0.1, 3, 0.1}, {}, {0, -4, 0}}, 1.0, false, hit));
     const bool convex = is_convex(it.shape.kind);
     tell(convex && cast_shape(ball, {&it.shape, {0.1, 3, 0.1}, {}, {0, -4, 0}}, 1.0, false, hit));
-    Nearest nearest;
-    tell(find_nearest(it.shape, {&ball, {0.1, 3, 0.1}, {}}, 10.0, nearest) && nearest.distance > 1.0);
+    ClosestPoints nearest;
+    tell(find_closest_points(it.shape, {&ball, {0.1, 3, 0.1}, {}}, 10.0, nearest) && nearest.distance > 1.0);
     PairCache cache;
     LocalManifold found[kMaxMeshManifolds];
     tell(collide_shapes(it.shape, ball, {{0.1f, 0.2f, 0.1f}, {}}, 0.0f, cache, found) > 0);

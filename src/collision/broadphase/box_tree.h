@@ -78,13 +78,13 @@ class BoxTree {
   template <class Visit>
   float for_each_along(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
     if (size_ == 0) return max_fraction;
-    static_assert(kMaxLevels * kWidth <= LineWalk::kRoom);
-    LineWalk walk(cast_test.line(), root_, max_fraction);
+    static_assert(kMaxLevels * kWidth <= RayTraversal::kRoom);
+    RayTraversal walk(cast_test.line(), root_, max_fraction);
     while (walk_line_(nodes_.data(), walk)) {
-      walk.reach = visit(walk.leaf, walk.reach);
-      if (walk.reach < 0.0f) break;
+      walk.max_fraction = visit(walk.leaf, walk.reach);
+      if (walk.max_fraction < 0.0f) break;
     }
-    return walk.reach;
+    return walk.max_fraction;
   }
 
   // The box of an item that is in the tree.
@@ -143,7 +143,7 @@ class BoxTree {
   const char* find_fault(std::uint32_t node, std::size_t& items) const;
 
   WalkBoxes walk_boxes_ = select_box_walk();
-  WalkLine<BoxTreeNode> walk_line_ = select_box_line_walk();
+  RayTraversalKernel<BoxTreeNode> walk_line_ = select_box_ray_traversal();
   Array<Node> nodes_;
   Array<std::uint32_t> free_;
   Array<std::uint32_t> slots_;  // by item: kWidth * node + lane, or kNowhere

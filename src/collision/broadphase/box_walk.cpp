@@ -8,7 +8,7 @@ namespace gyre {
 
 #if defined(__x86_64__)
 extern const WalkBoxes kWalkBoxes_avx2;
-extern const WalkLine<BoxTreeNode> kWalkBoxLine_avx2;
+extern const RayTraversalKernel<BoxTreeNode> kBoxRayTraversal_avx2;
 #endif
 
 WalkBoxes select_box_walk() {
@@ -18,11 +18,11 @@ WalkBoxes select_box_walk() {
   return walk_boxes<4>;
 }
 
-WalkLine<BoxTreeNode> select_box_line_walk() {
+RayTraversalKernel<BoxTreeNode> select_box_ray_traversal() {
 #if defined(__x86_64__)
-  if (max_lanes() >= 8) return kWalkBoxLine_avx2;
+  if (max_lanes() >= 8) return kBoxRayTraversal_avx2;
 #endif
-  return walk_line<4, BoxTreeNode>;
+  return next_ray_leaf<4, BoxTreeNode>;
 }
 
 }  // namespace gyre

@@ -1,12 +1,12 @@
 // The traversals of a wide tree of boxes: the overlap test, in which the search for pairs spends most of its time, and
-// that of casts (geometry/tree/line_walk.h).
+// that of casts (geometry/tree/ray_traversal.h).
 //
 // In: nodes with eight boxes each. Out: items, a few at a time; the caller handles them and calls again. The traversals
 // are kernels: eight lanes test a node with a third fewer instructions.
 #pragma once
 
 #include "collision/broadphase/box_lanes.h"
-#include "geometry/tree/line_walk.h"
+#include "geometry/tree/ray_traversal.h"
 
 #include <cstdint>
 
@@ -47,6 +47,6 @@ using WalkBoxes = void (*)(const BoxTreeNode* nodes, BoxWalk& walk);
 
 // The kernels that this machine runs best.
 WalkBoxes select_box_walk();
-WalkLine<BoxTreeNode> select_box_line_walk();
+RayTraversalKernel<BoxTreeNode> select_box_ray_traversal();
 
 }  // namespace gyre

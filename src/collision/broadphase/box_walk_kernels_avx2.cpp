@@ -7,7 +7,7 @@ namespace gyre {
 extern const WalkBoxes kWalkBoxes_avx2;
 const WalkBoxes kWalkBoxes_avx2 = walk_boxes<8>;
 
-extern const WalkLine<BoxTreeNode> kWalkBoxLine_avx2;
-const WalkLine<BoxTreeNode> kWalkBoxLine_avx2 = walk_line<8, BoxTreeNode>;
+extern const RayTraversalKernel<BoxTreeNode> kBoxRayTraversal_avx2;
+const RayTraversalKernel<BoxTreeNode> kBoxRayTraversal_avx2 = next_ray_leaf<8, BoxTreeNode>;
 
 }  // namespace gyre

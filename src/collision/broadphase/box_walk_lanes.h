@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/broadphase/box_walk.h"
-#include "geometry/tree/line_walk_lanes.h"
+#include "geometry/tree/ray_traversal_lanes.h"
 #include "math/pack_lanes.h"
 
 #include <cstddef>

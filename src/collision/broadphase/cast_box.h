@@ -8,7 +8,7 @@
 #pragma once
 
 #include "collision/broadphase/box_lanes.h"
-#include "geometry/tree/line_walk.h"
+#include "geometry/tree/ray_traversal.h"
 
 #include <gyre/math.h>
 
@@ -66,7 +66,7 @@ class CastTest {
 
   float translation(int axis) const { return translation_[axis]; }
   // The same for traversals of trees.
-  const BoxLine& line() const { return line_; }
+  const BoxRay& line() const { return line_; }
 
   // The bounds of the moving box from t = range.enter to range.leave, rounded outward.
   Aabb box_of(const CastRange& range) const {
@@ -147,7 +147,7 @@ class CastTest {
     return to_bits(inside & (from <= to * Half(1.00001f)));
   }
 
-  BoxLine line_;
+  BoxRay line_;
   float origin_[3], translation_[3], inverse_[3], extent_[3];
   bool still_[3];
 };

@@ -25,7 +25,7 @@ void prepare_bits(Bitset& bits, std::size_t count) {
 struct UpdateList {
   // Not cleared: only used entries are read.
   union {
-    ContactPair pairs[kContactBlock];
+    PairInput pairs[kContactBlock];
   };
   std::uint32_t slots[kContactBlock];
   std::uint64_t with_manifolds = 0;  // bits, by number in the block
@@ -126,7 +126,7 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint64_t activ
       continue;
     }
     const int index = list.add(contact.manifold_count != 0);
-    ContactPair& pair = list.pairs[index];
+    PairInput& pair = list.pairs[index];
     pair.contact = &contact;
     pair.manifolds = &store.manifolds[contact.first_manifold];
     pair.shape_a = &shape_a;
@@ -162,7 +162,7 @@ class MeshesAhead {
     if ((left_ >> index & 1) == 0) return;
     left_ &= ~(std::uint64_t{1} << index);
     if (left_ == 0) return;
-    const ContactPair& next = list_.pairs[std::countr_zero(left_)];
+    const PairInput& next = list_.pairs[std::countr_zero(left_)];
     const Shape& a = next.shape_a->shape;
     const Shape& mesh = a.kind == ShapeKind::mesh ? a : next.shape_b->shape;
     if (mesh.kind == ShapeKind::mesh)
@@ -187,7 +187,7 @@ void update_contact_block(ContactStore& store, int begin, const CollideInput& in
     input.recycle_contacts(list.pairs, list.last_begin, kContactBlock, input.recycle, recycled);
   MeshesAhead meshes(store, list, recycled);
   list.for_each([&](int i) {
-    const ContactPair& pair = list.pairs[i];
+    const PairInput& pair = list.pairs[i];
     meshes.prefetch_next(i);
     Contact& contact = *pair.contact;
     const std::uint64_t own = std::uint64_t{1} << i;

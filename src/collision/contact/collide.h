@@ -71,9 +71,9 @@ inline CollisionBody make_collision_body(const ColliderBody& body, float seconds
 }
 
 // A kernel of contact_recycle.h.
-struct ContactPair;
+struct PairInput;
 struct Recycled;
-using RecycleContacts = void (*)(const ContactPair* pairs, int begin, int end, bool allow_recycling,
+using RecycleContacts = void (*)(const PairInput* pairs, int begin, int end, bool allow_recycling,
                                  Recycled& recycled);
 
 // The centre of mass in the body frame and the bounding radius, loaded as four floats.

@@ -93,13 +93,13 @@ TEST(Collide, CarriesImpulsesByFeature) {
   before.rolling_impulse = {0.25f, 0, 0.5f};
   before.total_friction = {9, 9, 9};
   before.sliding = 1;
-  before.age = 0.75f;
+  before.load_age = 0.75f;
   const Manifold old = before;
   scene.bodies[cube].pose.position.x += 0.02;
   scene.step();
   const Manifold now = scene.manifold(ground, cube);
   ASSERT_EQ(now.count, 4);
-  EXPECT_EQ(now.age, 0.75f);
+  EXPECT_EQ(now.load_age, 0.75f);
   for (int i = 0; i < 4; ++i) {
     int same = -1;
     for (int k = 0; k < 4; ++k) {
@@ -107,7 +107,7 @@ TEST(Collide, CarriesImpulsesByFeature) {
     }
     ASSERT_GE(same, 0);
     EXPECT_EQ(now.points[i].normal_impulse, old.points[same].normal_impulse);
-    EXPECT_EQ(now.points[i].held, old.points[same].held);
+    EXPECT_EQ(now.points[i].mean_impulse, old.points[same].mean_impulse);
     EXPECT_EQ(now.points[i].total_impulse, 0.0f);
     EXPECT_EQ(now.points[i].approach_speed, 0.0f);
     EXPECT_NEAR(now.points[i].from_a.x, old.points[same].from_a.x + 0.02f, 1.0e-4f);
@@ -259,8 +259,8 @@ TEST(CollideRecycling, KeepsImpulsesAndClearsSums) {
   scene.step();
   Manifold& before = scene.store.manifolds[scene.contact(ground, cube)->first_manifold];
   before.points[2].normal_impulse = 3.0f;
-  before.points[2].held = 2.5f;
-  before.age = 0.75f;
+  before.points[2].mean_impulse = 2.5f;
+  before.load_age = 0.75f;
   before.points[2].total_impulse = 12.0f;
   before.total_friction = {1, 0, 0};
   before.friction_impulse = {0.5f, 0, 0};
@@ -269,8 +269,8 @@ TEST(CollideRecycling, KeepsImpulsesAndClearsSums) {
   const Manifold now = scene.manifold(ground, cube);
   EXPECT_EQ(now.points[2].normal_impulse, 3.0f);
   EXPECT_EQ(now.points[2].total_impulse, 0.0f);
-  EXPECT_EQ(now.points[2].held, 2.5f);
-  EXPECT_EQ(now.age, 0.75f);
+  EXPECT_EQ(now.points[2].mean_impulse, 2.5f);
+  EXPECT_EQ(now.load_age, 0.75f);
   EXPECT_EQ(now.total_friction, Vec3{});
   EXPECT_EQ(now.friction_impulse, (Vec3{0.5f, 0, 0}));
 }

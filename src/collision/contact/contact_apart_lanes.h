@@ -47,12 +47,12 @@ GYRE_INLINE bool is_sharp_box(const Shape& shape) {
   return shape.kind == ShapeKind::box && shape.radius == 0.0f;
 }
 
-GYRE_INLINE bool are_sharp_boxes(const ContactPair& pair) {
+GYRE_INLINE bool are_sharp_boxes(const PairInput& pair) {
   return pair.contact->sensor == 0 && is_sharp_box(pair.shape_a->shape) && is_sharp_box(pair.shape_b->shape);
 }
 
 // True if the full update would begin with the face of two boxes and there is no manifold to clear.
-GYRE_INLINE bool begins_with_face(const ContactPair& pair) {
+GYRE_INLINE bool begins_with_face(const PairInput& pair) {
   const Contact& contact = *pair.contact;
   return contact.manifold_count == 0 && contact.cache.words[0] - 1u < std::uint32_t(boxes::kFirstEdge) &&
          are_sharp_boxes(pair);

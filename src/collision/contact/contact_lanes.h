@@ -110,7 +110,7 @@ constexpr int kCachedDistance = GYRE_FLOATS_BEFORE(Contact, cached_distance);
 // A group of W contacts; lanes without a contact repeat the last one.
 template <int W>
 struct Group {
-  const ContactPair* pairs[W];
+  const PairInput* pairs[W];
   std::int32_t counts[W];  // of manifolds
   Side<W> a, b;
   Wide<W> size, cached_distance;
@@ -122,7 +122,7 @@ struct Group {
 };
 
 template <int W>
-GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group) {
+GYRE_INLINE void load_group(const PairInput* pairs, int count, Group<W>& group) {
   static_assert(GYRE_FLOATS_BEFORE(Contact, size) == kCachedDistance + 1);
   static_assert(GYRE_FLOATS_BEFORE(Contact, seen_a_from_b) == kCachedDistance + 2);
   static_assert(offsetof(Transform, orientation) == sizeof(Vec3));
@@ -130,7 +130,7 @@ GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group
   Records<W> record, centers_a, centers_b;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) {
-    const ContactPair& pair = pairs[i < count ? i : count - 1];
+    const PairInput& pair = pairs[i < count ? i : count - 1];
     group.pairs[i] = &pair;
     bodies_a[i] = pair.body_a;
     bodies_b[i] = pair.body_b;

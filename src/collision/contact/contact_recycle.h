@@ -32,7 +32,7 @@ constexpr float kNearSlack = 0.03f, kFarSlack = 0.25f, kSlow = 0.02f;
 constexpr int kContactBlock = 64;
 
 // A contact to update and its two sides.
-struct ContactPair {
+struct PairInput {
   Contact* contact;
   Manifold* manifolds;  // of the contact: manifold_count of them
   const ColliderShape* shape_a;

@@ -114,7 +114,7 @@ struct ManifoldLanes {
   std::int32_t min_count, max_count;  // of the counts
   WideInt<W> count;
   Wide<W> side;  // the side of the moving body along the normal: 1 for B, -1 for A
-  Vec3W<W> seen_normal;
+  Vec3W<W> anchor_normal;
   Anchor<W> anchors[kMaxManifoldPoints];
 };
 
@@ -125,7 +125,7 @@ GYRE_INLINE void load_manifold(const Group<W>& group, int m, Manifold& none, Man
   manifold.max_count = 0;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) {
-    const ContactPair& pair = *group.pairs[i];
+    const PairInput& pair = *group.pairs[i];
     Manifold* const mine = m < group.counts[i] ? pair.manifolds + m : &none;
     manifold.record[i] = floats(mine);
     manifold.counts[i] = mine->count;
@@ -136,7 +136,7 @@ GYRE_INLINE void load_manifold(const Group<W>& group, int m, Manifold& none, Man
   read_four<W>(manifold.record, 0, column);
   manifold.count = bit_pattern(column[3]);
   read_four<W>(manifold.record, kManifoldSliding, column);
-  manifold.seen_normal = {column[1], column[2], column[3]};
+  manifold.anchor_normal = {column[1], column[2], column[3]};
 }
 
 // Returns the lanes in which all anchors of this manifold are still valid.
@@ -156,7 +156,7 @@ GYRE_INLINE Mask<W> find_motions(const Group<W>& group, const ManifoldMatch<W>& 
     anchor.position = {column[0], column[1], column[2]};
     anchor.separation = column[3];
     const Wide<W> lift = manifold.side * (0.5f * anchor.separation + match.radius);
-    anchor.displacement = motion.of(anchor.position + lift * manifold.seen_normal);
+    anchor.displacement = motion.of(anchor.position + lift * manifold.anchor_normal);
     const Mask<W> slides = length_squared(anchor.displacement) > square(slide);
     fails = fails | (slides & (WideInt<W>(i) < manifold.count));
   }
@@ -194,7 +194,7 @@ GYRE_INLINE Mask<W> move_point(const Group<W>& group, const ManifoldMatch<W>& ma
   const Vec3W<W> from_a = select(match.frame_is_b, other, own);
   const Vec3W<W> from_b = select(match.frame_is_b, own, other);
   const Wide<W> separation =
-      anchor.separation + manifold.side * dot(anchor.displacement, manifold.seen_normal);
+      anchor.separation + manifold.side * dot(anchor.displacement, manifold.anchor_normal);
   const int first = kManifoldPoints + kPointFloats * i;
   Wide<W> impulses[4];
   read_four<W>(manifold.record, first + 8, impulses);
@@ -228,7 +228,7 @@ GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const ManifoldMatch<W>&
   GYRE_UNROLL
   for (int i = 0; i < W; ++i)
     to[i] = (lanes >> i & 1u) != 0 ? const_cast<float*>(manifold.record[i]) : discarded;
-  const Vec3W<W> normal = frame.rotation * manifold.seen_normal;
+  const Vec3W<W> normal = frame.rotation * manifold.anchor_normal;
   write_four<3, W>(to, 0, {normal.x, normal.y, normal.z});
   carry_friction_impulses<W>(manifold, kManifoldFriction, normal, to);
   carry_friction_impulses<W>(manifold, kManifoldTwist, normal, to);
@@ -296,7 +296,7 @@ GYRE_INLINE unsigned recycle_group(const Group<W>& group, unsigned lanes, Manifo
 // How many contacts ahead manifolds are prefetched, since they lie anywhere in memory.
 constexpr int kAhead = 8;
 
-GYRE_INLINE void fetch_manifolds(const ContactPair* pairs, int begin, int end) {
+GYRE_INLINE void fetch_manifolds(const PairInput* pairs, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     if (pairs[i].contact->manifold_count == 0) continue;
     const char* const manifold = reinterpret_cast<const char*>(pairs[i].manifolds);
@@ -307,7 +307,7 @@ GYRE_INLINE void fetch_manifolds(const ContactPair* pairs, int begin, int end) {
 
 // See RecycleContacts.
 template <int W>
-void recycle_contacts(const ContactPair* pairs, int begin, int end, bool allow_recycling,
+void recycle_contacts(const PairInput* pairs, int begin, int end, bool allow_recycling,
                       Recycled& recycled) {
   Manifold none;
   fetch_manifolds(pairs, begin, begin + kAhead < end ? begin + kAhead : end);

@@ -185,7 +185,7 @@ TEST(ContactStore, FaultsAreFound) {
   broken.live = 7;
   EXPECT_NE(find_fault(broken), nullptr);
   broken = store;
-  broken.manifolds[broken.contacts[4].first_manifold].age = 1.0f;
+  broken.manifolds[broken.contacts[4].first_manifold].load_age = 1.0f;
   EXPECT_STREQ(find_fault(broken), "an unused manifold of a contact is not clear");
   broken.contacts[4].manifold_count = 1;
   EXPECT_STREQ(find_fault(broken), "the bit of a contact with manifolds is clear");
@@ -195,16 +195,16 @@ TEST(ContactStore, FaultsAreFound) {
     loaded.with_manifolds.set(4);
     Manifold& manifold = loaded.manifolds[loaded.contacts[4].first_manifold];
     manifold.count = 2;
-    manifold.points[1].held = manifold.anchors[1].separation = 1.0f;
+    manifold.points[1].mean_impulse = manifold.anchors[1].separation = 1.0f;
     EXPECT_STREQ(find_fault(loaded), nullptr);
-    (anchor ? manifold.anchors[2].separation : manifold.points[2].held) = 1.0f;
+    (anchor ? manifold.anchors[2].separation : manifold.points[2].mean_impulse) = 1.0f;
     EXPECT_STREQ(find_fault(loaded), "an unused point of a manifold is not clear");
   }
   broken.with_manifolds.set(4);
   EXPECT_EQ(find_fault(broken), nullptr);
   remove_contact(broken, 4);
   EXPECT_EQ(find_fault(broken), nullptr);
-  broken.manifolds[store.contacts[4].first_manifold].age = 1.0f;
+  broken.manifolds[store.contacts[4].first_manifold].load_age = 1.0f;
   EXPECT_STREQ(find_fault(broken), "a manifold of no contact is not clear");
 }
 

@@ -28,7 +28,7 @@ bool has_rim(const Shape& shape) {
   return shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
 }
 
-std::span<Manifold> manifolds_of(const ContactPair& pair) {
+std::span<Manifold> manifolds_of(const PairInput& pair) {
   return {pair.manifolds, pair.contact->manifold_count};
 }
 // True if the anchors lie in the body frame of B, false if in A's.
@@ -66,7 +66,7 @@ struct ViewedShape {
 };
 
 template <int kRoom>
-void collide_in_view(const ContactPair& pair, const PairView& view, float max_distance,
+void collide_in_view(const PairInput& pair, const PairView& view, float max_distance,
                      CachedTriangles* cached, Found<kRoom>& found) {
   const ViewedShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
   found.count = collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, max_distance, pair.contact->cache,
@@ -81,7 +81,7 @@ float near_along(const PairView& view, Vec3 normal) {
 
 // As collide_in_view, for two sharp boxes. If they stay too far apart along the axis of largest separation, nothing is
 // found and the result is their separation along that axis, a lower bound of the distance.
-float collide_boxes_in_view(const ContactPair& pair, const PairView& view, float max_distance,
+float collide_boxes_in_view(const PairInput& pair, const PairView& view, float max_distance,
                             Found<1>& found) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
@@ -145,7 +145,7 @@ bool is_beyond(const Found<kRoom>& found, float max_distance) {
 // What continues of a manifold from before the update, with its points side by side. Missing points are zero.
 struct FormerManifold {
   Vec3 normal, friction_impulse, rolling_impulse;
-  float twist_impulse, age;
+  float twist_impulse, load_age;
   std::uint32_t triangle, sliding;
   unsigned left;  // bits, by point: not yet matched
   WideInt<kMaxManifoldPoints> feature;
@@ -175,7 +175,7 @@ void read_former(const Manifold& from, FormerManifold& to) {
   to.friction_impulse = from.friction_impulse;
   to.rolling_impulse = from.rolling_impulse;
   to.twist_impulse = from.twist_impulse;
-  to.age = from.age;
+  to.load_age = from.load_age;
   to.triangle = from.triangle;
   to.sliding = from.sliding;
   to.left = (1u << from.count) - 1u;
@@ -187,7 +187,7 @@ void carry_friction_impulses(const FormerManifold& from, Manifold& to) {
   to.friction_impulse = from.friction_impulse - dot(from.friction_impulse, to.normal) * to.normal;
   to.rolling_impulse = from.rolling_impulse - dot(from.rolling_impulse, to.normal) * to.normal;
   to.twist_impulse = from.twist_impulse;
-  to.age = from.age;
+  to.load_age = from.load_age;
   to.sliding = from.sliding;
 }
 
@@ -226,7 +226,7 @@ int find_former(const Former<kRoom>& former, const Manifold& manifold) {
 void inherit_impulses(FormerManifold& former, int k, ContactPointState& point) {
   former.left &= ~(1u << k);
   point.normal_impulse = former.normal_impulse[k];
-  point.held = former.mean_impulse[k];
+  point.mean_impulse = former.mean_impulse[k];
 }
 
 // Matches points by feature within the old manifold. Returns the matched points as bits.
@@ -275,7 +275,7 @@ struct OutputFrames {
   Quat anchor_orientation;
   Vec3 anchor_center;
 
-  OutputFrames(const ContactPair& pair, const PairView& seen) : view(seen) {
+  OutputFrames(const PairInput& pair, const PairView& seen) : view(seen) {
     anchors_in_b = frame_is_b(pair.shape_a->shape, pair.shape_b->shape);
     anchor_orientation = (anchors_in_b ? pair.body_b : pair.body_a)->orientation;
     anchor_center = (anchors_in_b ? pair.center_b : pair.center_a)->position;
@@ -316,14 +316,14 @@ void write_points(const LocalManifold& local, const OutputFrames& frames, Manifo
 void write_manifold(const LocalManifold& local, const OutputFrames& frames, Manifold& out) {
   out.normal = rotate(frames.view.frame_orientation, local.normal);
   out.count = local.count;
-  out.age = 0.0f;
+  out.load_age = 0.0f;
   out.friction_impulse = {};
   out.twist_impulse = 0.0f;
   out.rolling_impulse = {};
   out.triangle = local.triangle;
   out.total_friction = {};
   out.sliding = 0;
-  out.seen_normal = rotate_inverse(frames.anchor_orientation, out.normal);
+  out.anchor_normal = rotate_inverse(frames.anchor_orientation, out.normal);
   write_points(local, frames, out);
 }
 
@@ -349,7 +349,7 @@ void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_b
 }
 
 template <int kRoom>
-void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, const PairView& view) {
+void write_manifolds(const Found<kRoom>& found, const PairInput& pair, const PairView& view) {
   Manifold* const out = pair.manifolds;
   Former<kRoom> former(manifolds_of(pair));
   const OutputFrames frames(pair, view);
@@ -377,7 +377,7 @@ void save_view(Contact& contact, const PairView& view, float cached_distance) {
   contact.seen_a_from_b = view.a_from_b;
 }
 
-bool is_clear_of_surface(const ContactPair& pair, const PairView& view, float max_distance) {
+bool is_clear_of_surface(const PairInput& pair, const PairView& view, float max_distance) {
   const Transform a_from_b =
       inverse(pair.shape_a->body_from_shape) * view.a_from_b * pair.shape_b->body_from_shape;
   return is_clear_of_surface(pair.shape_a->shape, pair.shape_b->shape, a_from_b, max_distance);
@@ -391,7 +391,7 @@ float searched_distance(float max_distance, float point_limit, float left_out) {
 }
 
 // Updates a contact of two convex shapes, or a plane and a convex shape. Returns the distance that it searched.
-float compute_convex_manifold(const ContactPair& pair, const PairView& view, Found<1>& found) {
+float compute_convex_manifold(const PairInput& pair, const PairView& view, Found<1>& found) {
   float point_limit = view.speculative + kPointMargin * view.size;
   if (pair.contact->manifold_count == 0 && view.max_approach < kSlow * view.size) {
     const float far_distance = view.speculative + kFarSlack * view.size;
@@ -412,7 +412,7 @@ float compute_convex_manifold(const ContactPair& pair, const PairView& view, Fou
 }
 
 // Updates a contact with a mesh or height field. Returns the distance that it searched.
-float compute_mesh_manifolds(const ContactPair& pair, const PairView& view, CachedTriangles* cached_triangles,
+float compute_mesh_manifolds(const PairInput& pair, const PairView& view, CachedTriangles* cached_triangles,
                              Found<kMaxMeshManifolds>& found) {
   if (pair.contact->manifold_count == 0) {
     const float far_distance = view.speculative + kClearSteps * view.max_approach + kFarSlack * view.size;
@@ -426,7 +426,7 @@ float compute_mesh_manifolds(const ContactPair& pair, const PairView& view, Cach
 
 // kRoom is the contact's manifold_room.
 template <int kRoom>
-void update_in_room(const ContactPair& pair, const PairView& view, CachedTriangles* cached_triangles) {
+void update_in_room(const PairInput& pair, const PairView& view, CachedTriangles* cached_triangles) {
   Found<kRoom> found;
   float cached_distance = 0.0f;
   if constexpr (kRoom == 1) {
@@ -464,7 +464,7 @@ float smaller_size(float a, float b) {
   return has_a && has_b ? min(a, b) : has_a ? a : has_b ? b : 0.0f;
 }
 
-bool test_sensor_overlap(const ContactPair& pair, const PairView& view) {
+bool test_sensor_overlap(const PairInput& pair, const PairView& view) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
   if (!is_convex(a.kind) && !is_convex(b.kind)) return surfaces_overlap(a, b, view.shapes_a_from_b);
@@ -474,7 +474,7 @@ bool test_sensor_overlap(const ContactPair& pair, const PairView& view) {
   return found.count > 0;
 }
 
-bool compute_manifold(const ContactPair& pair, const PairView& view, CachedTriangles* cached) {
+bool compute_manifold(const PairInput& pair, const PairView& view, CachedTriangles* cached) {
   const bool loaded = carried_load(manifolds_of(pair));
   if (pair.contact->manifold_room == 1) {
     update_in_room<1>(pair, view, cached);

@@ -13,9 +13,9 @@ namespace gyre {
 float smaller_size(float a, float b);
 
 // Full update of a sensor's contact. Returns whether the two shapes overlap; stores no manifold.
-bool test_sensor_overlap(const ContactPair& pair, const PairView& view);
+bool test_sensor_overlap(const PairInput& pair, const PairView& view);
 
 // Full update of any other contact. Returns whether its shapes touch. `cached`: triangles of a mesh contact, else null.
-bool compute_manifold(const ContactPair& pair, const PairView& view, CachedTriangles* cached);
+bool compute_manifold(const PairInput& pair, const PairView& view, CachedTriangles* cached);
 
 }  // namespace gyre

@@ -4,7 +4,7 @@
 #include "base/container/sort.h"
 #include "collision/broadphase/fat_box.h"
 #include "collision/continuous/swept_surface.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 #include "math/rotation.h"
 #include "task/parallel.h"
 
@@ -240,8 +240,8 @@ double touching_share(const ContinuousInput& input, const BodyImpactTime& impact
     pose.position = start + share * drift;
     const Pose placed = pose * own.body_from_shape;
     const DQuat back = conjugate(normalized(to_double(frame.orientation)));
-    Nearest nearest;
-    return find_nearest(other.shape,
+    ClosestPoints nearest;
+    return find_closest_points(other.shape,
                         {&own.shape, rotate(back, placed.position - frame.position),
                          back * normalized(to_double(placed.orientation))},
                         touching, nearest);

@@ -4,7 +4,7 @@
 #include "collision/broadphase/fat_box.h"
 #include "geometry/manifold/manifold.h"
 #include "geometry/query/cast_surface.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 
 namespace gyre {
 namespace {
@@ -91,7 +91,7 @@ void cast_shape(const QueryInput& input, const WorldShape& shape, HitVisit found
                    moving.shape = &shape.shape;
                    moving.position = frame.to_local(shape.pose.position);
                    moving.orientation = conjugate(frame.orientation) * orientation;
-                   moving.way = frame.rotate_to_local(DVec3(shape.translation));
+                   moving.translation = frame.rotate_to_local(DVec3(shape.translation));
                    moving.skin = shape.skin;
                    return cast_shape(target, moving, max_fraction, input.back_faces, hit);
                  });
@@ -122,10 +122,10 @@ void find_between(const QueryInput& input, const WorldShape& shape, const CastBo
       return 1.0f;
     if (!input.accepts(target)) return 1.0f;
     const Frame frame(input.pose_of(target));
-    const PlacedShape convex{&shape.shape, frame.to_local(shape.pose.position),
+    const PosedShape convex{&shape.shape, frame.to_local(shape.pose.position),
                              conjugate(frame.orientation) * orientation};
-    Nearest near;
-    if (!find_nearest(input.shapes[target].shape, convex, max_distance, near)) return 1.0f;
+    ClosestPoints near;
+    if (!find_closest_points(input.shapes[target].shape, convex, max_distance, near)) return 1.0f;
     max_distance = found(ShapeNear{target, near.triangle, near.distance, frame.to_world(near.on_target),
                                    frame.to_world(near.on_convex), frame.rotate_to_world(near.normal)});
     return max_distance < 0.0 ? -1.0f : 1.0f;

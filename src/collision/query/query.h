@@ -1,7 +1,7 @@
 // Queries on a whole world of shapes: rays, shape casts, overlaps, closest points, penetrations.
 //
 // In: the shapes, their poses, and a broad phase with their boxes. Out: results with shape indices, in world axes. The
-// broad phase gives candidates, and each is tested exactly (geometry/query/cast, geometry/query/nearest, manifolds).
+// broad phase gives candidates, and each is tested exactly (geometry/query/cast, geometry/query/closest_points, manifolds).
 // The order of results differs between broad phases; the caller sorts them, the lowest index first among equals.
 // Nothing here allocates, and any number of threads may query at once.
 #pragma once

@@ -51,7 +51,7 @@ Error cancelled() {
 struct Prepared {
   Model model;
   std::unique_ptr<SurfaceField> field;
-  Solid3 solid;
+  SampledSolid solid;
   double openness = 0.0;
 };
 
@@ -103,7 +103,7 @@ Error prepare_solid(const DecompositionDef& def, TaskSystem& tasks, Prepared& ou
   return {};
 }
 
-Result<Geometry> cook_piece(const DecompositionDef& def, const Solid3& solid, const ConvexBody& body) {
+Result<Geometry> cook_piece(const DecompositionDef& def, const SampledSolid& solid, const ConvexBody& body) {
   const ConvexBody lean = make_body(body.vertices, {def.max_hull_vertices, 0.05 * solid.tolerance, 0.0});
   std::vector<Vec3> points;
   for (const DVec3& p : lean.vertices) points.push_back(to_float(solid.model->to_metres(p)));
@@ -111,7 +111,7 @@ Result<Geometry> cook_piece(const DecompositionDef& def, const Solid3& solid, co
 }
 
 // The hull as it is handed out, in the model's coordinates.
-ConvexBody body_of(const Solid3& solid, const Geometry& hull) {
+ConvexBody body_of(const SampledSolid& solid, const Geometry& hull) {
   std::vector<DVec3> points;
   for (const Vec3& p : view_hull(hull).vertices)
     points.push_back(solid.model->scale * (DVec3(p) - solid.model->origin));
@@ -143,7 +143,7 @@ Result<Decomposition> decompose(const DecompositionDef& def) {
   Prepared prepared;
   prepared.model = std::move(*model);
   if (const Error error = prepare_solid(def, tasks, prepared); error.code != ErrorCode::none) return error;
-  const Solid3& solid = prepared.solid;
+  const SampledSolid& solid = prepared.solid;
   if (!progress.go_on(0.1)) return cancelled();
 
   // More parts than hulls that may be left, so that joining has a choice.

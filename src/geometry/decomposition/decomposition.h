@@ -26,18 +26,18 @@ class DecompositionProgress {
 };
 
 // Cuts until all parts are convex within the tolerance or there are `limit` of them.
-std::vector<ConvexBody> cut_up(const Solid3& solid, TaskSystem& tasks, int limit,
+std::vector<ConvexBody> cut_up(const SampledSolid& solid, TaskSystem& tasks, int limit,
                                DecompositionProgress& progress);
 // Joins neighbours whose common hull is convex within the tolerance, the best pair first; then, while there are more than
 // `max_hulls`, those that lack least.
-void join_pieces(const Solid3& solid, TaskSystem& tasks, int max_hulls, std::vector<ConvexBody>& pieces,
+void join_pieces(const SampledSolid& solid, TaskSystem& tasks, int max_hulls, std::vector<ConvexBody>& pieces,
                  DecompositionProgress& progress);
 // Points evenly on the surface, where it borders the solid; `openness` is the part of it near which the winding number is no
 // whole number.
 std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField& field, TaskSystem& tasks,
                                           double spacing, double& openness);
 // Fills in all that is measured on the hulls as they are handed out.
-void measure_pieces(const Solid3& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
+void measure_pieces(const SampledSolid& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
                     DecompositionReport& report);
 
 }  // namespace gyre

@@ -35,7 +35,7 @@ double roughly(double value) {
 }
 
 // The largest flat sides that lie below the hull, the heaviest (area times depth) first.
-std::vector<FlatSide> find_sides(const Solid3& solid, const Part& part) {
+std::vector<FlatSide> find_sides(const SampledSolid& solid, const Part& part) {
   std::vector<Deep> deep;
   for (std::size_t i = 0; i < part.indices.size(); i += 3) {
     const DVec3 a = part.vertices[part.indices[i]], b = part.vertices[part.indices[i + 1]],
@@ -124,7 +124,7 @@ CutFamily spread(const Part& part, DVec3 direction) {
 
 class FamilyCosts {
  public:
-  FamilyCosts(const Solid3& solid, const Part& part, const CutFamily& family)
+  FamilyCosts(const SampledSolid& solid, const Part& part, const CutFamily& family)
       : solid_(solid), part_(part), family_(family), count_(family.offsets.size()) {}
   Cut best();
 
@@ -143,7 +143,7 @@ class FamilyCosts {
     return make_body(points, {kRoughVertices, 1.0e-3 * solid_.tolerance, 1.0e-6});
   }
 
-  const Solid3& solid_;
+  const SampledSolid& solid_;
   const Part& part_;
   const CutFamily& family_;
   std::size_t count_;
@@ -273,7 +273,7 @@ Cut FamilyCosts::best() {
 
 }  // namespace
 
-std::vector<CutFamily> find_families(const Solid3& solid, const Part& part) {
+std::vector<CutFamily> find_families(const SampledSolid& solid, const Part& part) {
   std::vector<CutFamily> families;
   const auto known = [&](DVec3 direction) {
     for (const CutFamily& family : families) {
@@ -303,7 +303,7 @@ std::vector<CutFamily> find_families(const Solid3& solid, const Part& part) {
   return single;
 }
 
-Cut best_of_family(const Solid3& solid, const Part& part, const CutFamily& family) {
+Cut best_of_family(const SampledSolid& solid, const Part& part, const CutFamily& family) {
   return FamilyCosts(solid, part, family).best();
 }
 

@@ -28,9 +28,9 @@ struct Cut {
   double cost = 1.0e300;  // in hull volumes of the part; 1e300: no plane
 };
 
-std::vector<CutFamily> find_families(const Solid3& solid, const Part& part);
+std::vector<CutFamily> find_families(const SampledSolid& solid, const Part& part);
 // The best plane of the family; of equal ones the first.
-Cut best_of_family(const Solid3& solid, const Part& part, const CutFamily& family);
+Cut best_of_family(const SampledSolid& solid, const Part& part, const CutFamily& family);
 // Whether `a` is better by more than rounding, so that mirrored and scaled meshes are cut alike.
 bool clearly_better(const Cut& a, const Cut& b);
 

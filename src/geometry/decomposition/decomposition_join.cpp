@@ -11,7 +11,7 @@ struct Pair {
   double growth = 0.0;  // hull volume that only the two together have, of their own
 };
 
-ConvexBody joined_body(const Solid3& solid, const ConvexBody& a, const ConvexBody& b) {
+ConvexBody joined_body(const SampledSolid& solid, const ConvexBody& a, const ConvexBody& b) {
   std::vector<DVec3> points = a.vertices;
   points.insert(points.end(), b.vertices.begin(), b.vertices.end());
   return make_body(points, {255, 0.01 * solid.tolerance, 1.0e-6 * solid.model->size});
@@ -23,7 +23,7 @@ bool are_near(const ConvexBody& a, const ConvexBody& b, double margin) {
 }
 
 // What the two lack together. Of what is above `enough`, only that it is.
-void judge(const Solid3& solid, const std::vector<ConvexBody>& pieces, double enough, Pair& pair) {
+void judge(const SampledSolid& solid, const std::vector<ConvexBody>& pieces, double enough, Pair& pair) {
   const ConvexBody &a = pieces[pair.a], &b = pieces[pair.b];
   const ConvexBody body = joined_body(solid, a, b);
   pair.growth = max(body.volume - a.volume - b.volume, 0.0) / max(body.volume, 1.0e-300);
@@ -36,7 +36,7 @@ void judge(const Solid3& solid, const std::vector<ConvexBody>& pieces, double en
   pair.lack = max(pair.lack, find_overhang(*solid.field, body, search).value);
 }
 
-void judge_all(const Solid3& solid, TaskSystem& tasks, const std::vector<ConvexBody>& pieces, double enough,
+void judge_all(const SampledSolid& solid, TaskSystem& tasks, const std::vector<ConvexBody>& pieces, double enough,
                std::span<Pair> pairs) {
   for_blocks(tasks, int(pairs.size()), 4, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) judge(solid, pieces, enough, pairs[std::size_t(i)]);
@@ -62,7 +62,7 @@ const Pair* min_lacking(const std::vector<Pair>& pairs) {
 }
 
 // Puts the union at a's place; b's place stays empty.
-void join(const Solid3& solid, std::vector<ConvexBody>& pieces, std::uint32_t a, std::uint32_t b) {
+void join(const SampledSolid& solid, std::vector<ConvexBody>& pieces, std::uint32_t a, std::uint32_t b) {
   pieces[a] = joined_body(solid, pieces[a], pieces[b]);
   pieces[b] = {};
 }
@@ -78,7 +78,7 @@ void drop_pairs_of(std::vector<Pair>& pairs, std::uint32_t a, std::uint32_t b) {
 
 class Joining {
  public:
-  Joining(const Solid3& solid, TaskSystem& tasks, std::vector<ConvexBody>& pieces)
+  Joining(const SampledSolid& solid, TaskSystem& tasks, std::vector<ConvexBody>& pieces)
       : solid_(solid), tasks_(tasks), pieces_(pieces), count_(int(pieces.size())) {}
 
   // Pairs within `margin` of each other join until no pair lacks at most `enough`, or `least` pieces are left.
@@ -112,7 +112,7 @@ class Joining {
     if (are_near(pieces_[a], pieces_[b], margin)) pairs.push_back({a, b});
   }
 
-  const Solid3& solid_;
+  const SampledSolid& solid_;
   TaskSystem& tasks_;
   std::vector<ConvexBody>& pieces_;
   int count_;
@@ -120,7 +120,7 @@ class Joining {
 
 }  // namespace
 
-void join_pieces(const Solid3& solid, TaskSystem& tasks, int max_hulls, std::vector<ConvexBody>& pieces,
+void join_pieces(const SampledSolid& solid, TaskSystem& tasks, int max_hulls, std::vector<ConvexBody>& pieces,
                  DecompositionProgress& progress) {
   Joining joining(solid, tasks, pieces);
   joining.run(solid.tolerance, solid.tolerance, 1, false, progress);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kLines = 100;  // along each of two axes
 
-struct Span1 {
+struct Interval {
   double from, to;
 };
 
@@ -22,7 +22,7 @@ Lengths operator+(const Lengths& a, const Lengths& b) {
 
 class LineMeasure {
  public:
-  LineMeasure(const Solid3& solid, std::span<const ConvexBody> bodies);
+  LineMeasure(const SampledSolid& solid, std::span<const ConvexBody> bodies);
   Lengths measure(int line) const;
   double cell_area() const { return width_ * height_; }
 
@@ -32,17 +32,17 @@ class LineMeasure {
     return {0.0, low_.y + (double(line % kLines) + 0.5) * width_,
             low_.z + (double(line / kLines) + 0.5) * height_};
   }
-  std::vector<Span1> solid_spans(int line) const;
-  std::vector<Span1> hull_spans(int line) const;
+  std::vector<Interval> solid_spans(int line) const;
+  std::vector<Interval> hull_spans(int line) const;
 
-  const Solid3& solid_;
+  const SampledSolid& solid_;
   std::span<const ConvexBody> bodies_;
   DVec3 low_{1e300, 1e300, 1e300}, high_{-1e300, -1e300, -1e300};
   double width_ = 0.0, height_ = 0.0;
   std::vector<std::vector<double>> crossings_;  // by line
 };
 
-LineMeasure::LineMeasure(const Solid3& solid, std::span<const ConvexBody> bodies)
+LineMeasure::LineMeasure(const SampledSolid& solid, std::span<const ConvexBody> bodies)
     : solid_(solid), bodies_(bodies) {
   const auto widen = [&](DVec3 p) {
     low_ = lower(low_, p);
@@ -86,11 +86,11 @@ void LineMeasure::add_triangle(std::size_t t) {
   }
 }
 
-std::vector<Span1> LineMeasure::solid_spans(int line) const {
+std::vector<Interval> LineMeasure::solid_spans(int line) const {
   std::vector<double> places = crossings_[std::size_t(line)];
   std::vector<double> scratch(places.size());
   merge_sort(std::span<double>(places), std::span<double>(scratch), [](double a, double b) { return a < b; });
-  std::vector<Span1> spans;
+  std::vector<Interval> spans;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
     if (places[i + 1] - places[i] < 1.0e-9) continue;
     DVec3 middle = start(line);
@@ -106,9 +106,9 @@ std::vector<Span1> LineMeasure::solid_spans(int line) const {
 }
 
 // Where the line is in any hull: spans that do not overlap, ascending.
-std::vector<Span1> LineMeasure::hull_spans(int line) const {
+std::vector<Interval> LineMeasure::hull_spans(int line) const {
   const DVec3 at = start(line);
-  std::vector<Span1> all;
+  std::vector<Interval> all;
   for (const ConvexBody& body : bodies_) {
     if (at.y < body.low.y || at.y > body.high.y || at.z < body.low.z || at.z > body.high.z) continue;
     double from = body.low.x, to = body.high.x;
@@ -124,11 +124,11 @@ std::vector<Span1> LineMeasure::hull_spans(int line) const {
     }
     if (from < to) all.push_back({from, to});
   }
-  std::vector<Span1> scratch(all.size());
-  merge_sort(std::span<Span1>(all), std::span<Span1>(scratch),
-             [](const Span1& a, const Span1& b) { return a.from < b.from; });
-  std::vector<Span1> out;
-  for (const Span1& span : all) {
+  std::vector<Interval> scratch(all.size());
+  merge_sort(std::span<Interval>(all), std::span<Interval>(scratch),
+             [](const Interval& a, const Interval& b) { return a.from < b.from; });
+  std::vector<Interval> out;
+  for (const Interval& span : all) {
     if (!out.empty() && span.from <= out.back().to) {
       out.back().to = max(out.back().to, span.to);
     } else {
@@ -139,13 +139,13 @@ std::vector<Span1> LineMeasure::hull_spans(int line) const {
 }
 
 Lengths LineMeasure::measure(int line) const {
-  const std::vector<Span1> solid = solid_spans(line), hulls = hull_spans(line);
+  const std::vector<Interval> solid = solid_spans(line), hulls = hull_spans(line);
   Lengths out;
   double both = 0.0;
-  for (const Span1& span : solid) out.solid += span.to - span.from;
-  for (const Span1& span : hulls) out.hulls += span.to - span.from;
-  for (const Span1& a : solid) {
-    for (const Span1& b : hulls) both += max(0.0, min(a.to, b.to) - max(a.from, b.from));
+  for (const Interval& span : solid) out.solid += span.to - span.from;
+  for (const Interval& span : hulls) out.hulls += span.to - span.from;
+  for (const Interval& a : solid) {
+    for (const Interval& b : hulls) both += max(0.0, min(a.to, b.to) - max(a.from, b.from));
   }
   out.excess = out.hulls - both;
   out.missing = out.solid - both;
@@ -173,7 +173,7 @@ double outside_all(std::span<const ConvexBody> bodies, DVec3 p, double known) {
 
 }  // namespace
 
-void measure_pieces(const Solid3& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
+void measure_pieces(const SampledSolid& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
                     DecompositionReport& report) {
   const double metres = 1.0 / solid.model->scale;
   std::vector<Overhang> overhangs(bodies.size());

@@ -36,9 +36,9 @@ FlatMap<EdgeUse> find_edges(const Model& model) {
 }
 
 // Sets of things that hang together.
-class Unions {
+class UnionFind {
  public:
-  explicit Unions(std::size_t count) : parent_(count) {
+  explicit UnionFind(std::size_t count) : parent_(count) {
     for (std::size_t i = 0; i < count; ++i) parent_[i] = std::uint32_t(i);
   }
   std::uint32_t find(std::uint32_t i) {
@@ -141,7 +141,7 @@ struct Piece {
 };
 
 std::vector<Piece> find_pieces(Model& model, std::vector<std::uint32_t>& piece_of) {
-  Unions unions(model.vertices.size());
+  UnionFind unions(model.vertices.size());
   for (std::size_t i = 0; i < model.indices.size(); i += 3) {
     unions.join(model.indices[i], model.indices[i + 1]);
     unions.join(model.indices[i], model.indices[i + 2]);

@@ -122,7 +122,7 @@ double emptiest_place(const SurfaceField& field, const ConvexBody& body, double 
 
 }  // namespace
 
-std::vector<Part> make_parts(const Solid3& solid) {
+std::vector<Part> make_parts(const SampledSolid& solid) {
   const Model& model = *solid.model;
   std::vector<Part> parts(model.group_count);
   // A box well outside of everything: its corners are never inside.
@@ -145,7 +145,7 @@ std::vector<Part> make_parts(const Solid3& solid) {
   return parts;
 }
 
-std::pair<Part, Part> cut_part(const Solid3& solid, const Part& part, const HalfSpace& plane) {
+std::pair<Part, Part> cut_part(const SampledSolid& solid, const Part& part, const HalfSpace& plane) {
   std::vector<double> heights(part.vertices.size());
   for (std::size_t i = 0; i < heights.size(); ++i) {
     const double height = dot(plane.normal, part.vertices[i]) - plane.offset;
@@ -177,7 +177,7 @@ std::pair<Part, Part> cut_part(const Solid3& solid, const Part& part, const Half
   return {std::move(low.out), std::move(high.out)};
 }
 
-void finish_part(const Solid3& solid, Part& part) {
+void finish_part(const SampledSolid& solid, Part& part) {
   part.edges = find_cell_edges(part.cell);
   std::vector<DVec3> corners;
   for (const CellEdge& edge : part.edges) {
@@ -204,13 +204,13 @@ void finish_part(const Solid3& solid, Part& part) {
                       .value;
 }
 
-double deepest_sample(const Solid3& solid, const ConvexBody& body, std::span<const std::uint32_t> samples) {
+double deepest_sample(const SampledSolid& solid, const ConvexBody& body, std::span<const std::uint32_t> samples) {
   double depth = 0.0;
   for (const std::uint32_t i : samples) depth = max(depth, depth_beyond(body, solid.samples[i].point, depth));
   return depth;
 }
 
-double deepest_sample(const Solid3& solid, const ConvexBody& body) {
+double deepest_sample(const SampledSolid& solid, const ConvexBody& body) {
   double depth = 0.0;
   for (const SurfaceSample& sample : solid.samples) {
     const DVec3 p = sample.point;

@@ -21,7 +21,7 @@ struct SurfaceSample {
 };
 
 // What all work on one mesh shares. Lengths in the model's coordinates.
-struct Solid3 {
+struct SampledSolid {
   const Model* model = nullptr;
   const SurfaceField* field = nullptr;
   std::vector<SurfaceSample> samples;
@@ -54,15 +54,15 @@ struct Part {
 };
 
 // One part for each group, each within the whole box.
-std::vector<Part> make_parts(const Solid3& solid);
+std::vector<Part> make_parts(const SampledSolid& solid);
 // What lies below the plane, and what lies above. Only cut: without hulls, which finish_part() makes.
-std::pair<Part, Part> cut_part(const Solid3& solid, const Part& part, const HalfSpace& plane);
+std::pair<Part, Part> cut_part(const SampledSolid& solid, const Part& part, const HalfSpace& plane);
 // Corners, hull, overhang and depth. The hull is empty if the part is flat.
-void finish_part(const Solid3& solid, Part& part);
+void finish_part(const SampledSolid& solid, Part& part);
 
 // How deep any of the samples (or any at all) lies below the hull; at least 0.
-double deepest_sample(const Solid3& solid, const ConvexBody& body, std::span<const std::uint32_t> samples);
-double deepest_sample(const Solid3& solid, const ConvexBody& body);
+double deepest_sample(const SampledSolid& solid, const ConvexBody& body, std::span<const std::uint32_t> samples);
+double deepest_sample(const SampledSolid& solid, const ConvexBody& body);
 
 struct OverhangSearch {
   double ignore = 0.0;      // nothing below this is looked for

@@ -8,7 +8,7 @@ namespace gyre {
 namespace {
 
 // Which parts are cut in this round: all that lack something, or, when too many hulls would come of it, those that lack most.
-std::vector<std::size_t> choose_parts(const Solid3& solid, const std::vector<Part>& parts, int limit) {
+std::vector<std::size_t> choose_parts(const SampledSolid& solid, const std::vector<Part>& parts, int limit) {
   struct Lack {
     double amount;
     std::size_t part;
@@ -34,7 +34,7 @@ struct Trial {
 };
 
 // The best cut of each chosen part.
-std::vector<Cut> find_cuts(const Solid3& solid, TaskSystem& tasks, const std::vector<Part>& parts,
+std::vector<Cut> find_cuts(const SampledSolid& solid, TaskSystem& tasks, const std::vector<Part>& parts,
                            std::span<const std::size_t> chosen) {
   std::vector<std::vector<CutFamily>> families(chosen.size());
   for_blocks(tasks, int(chosen.size()), 1, [&](int i, int, int) {
@@ -55,7 +55,7 @@ std::vector<Cut> find_cuts(const Solid3& solid, TaskSystem& tasks, const std::ve
   return cuts;
 }
 
-double share_done(const Solid3& solid, const std::vector<Part>& parts) {
+double share_done(const SampledSolid& solid, const std::vector<Part>& parts) {
   std::size_t done = 0, all = 1;
   for (const Part& part : parts) {
     all += part.samples.size();
@@ -66,7 +66,7 @@ double share_done(const Solid3& solid, const std::vector<Part>& parts) {
 
 }  // namespace
 
-std::vector<ConvexBody> cut_up(const Solid3& solid, TaskSystem& tasks, int limit,
+std::vector<ConvexBody> cut_up(const SampledSolid& solid, TaskSystem& tasks, int limit,
                                DecompositionProgress& progress) {
   std::vector<Part> parts = make_parts(solid);
   for_blocks(tasks, int(parts.size()), 1,

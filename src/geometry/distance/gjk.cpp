@@ -120,18 +120,18 @@ CorePair::CorePair(const Shape& a, const Shape& b, const Transform& a_from_b)
 
 CorePair::CorePair(const Shape& a, const Shape& b, DVec3 position, DQuat orientation)
     : a_(&a), b_(&b), core_size_(max(core_size(a), core_size(b))) {
-  turn_b(orientation);
+  set_orientation(orientation);
   move_b(position);
 }
 
 CorePair::CorePair(const DVec3 (&triangle)[3], const Shape& b, DVec3 position, DQuat orientation)
     : triangle_(triangle), b_(&b), core_size_(core_size(b)) {
   for (const DVec3& corner : triangle) core_size_ = max(core_size_, largest_part(corner));
-  turn_b(orientation);
+  set_orientation(orientation);
   move_b(position);
 }
 
-void CorePair::turn_b(DQuat orientation) {
+void CorePair::set_orientation(DQuat orientation) {
   x_ = rotate(orientation, DVec3{1, 0, 0});
   y_ = rotate(orientation, DVec3{0, 1, 0});
   z_ = rotate(orientation, DVec3{0, 0, 1});

@@ -54,7 +54,7 @@ class CorePair {
   DVec3 center_of_b() const { return position_; }
 
  private:
-  void turn_b(DQuat orientation);
+  void set_orientation(DQuat orientation);
 
   const Shape* a_ = nullptr;  // null: the triangle
   const DVec3* triangle_ = nullptr;

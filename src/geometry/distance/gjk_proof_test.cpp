@@ -78,7 +78,7 @@ void expect_proofs(int pairs, unsigned seed) {
   for (int begin = 0; begin < pairs && failures < 10; begin += 2000) {
     Hulls hulls;
     for (int i = begin; i < min(pairs, begin + 2000); ++i) {
-      const OddPair odd = odd_pair(random, hulls, i / kKinds % kKinds, i % kKinds);
+      const DegeneratePair odd = degenerate_pair(random, hulls, i / kKinds % kKinds, i % kKinds);
       const CorePair pair(odd.a, odd.b, odd.t);
       const Vec3 guess = random.below(3) == 0 ? random.direction() : Vec3{};
       const CoreDistance found = core_distance(pair, 1.0e30, guess);

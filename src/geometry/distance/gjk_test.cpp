@@ -100,7 +100,7 @@ TEST(Gjk, WhatStandsOverAFaceOfABoxNeedsNoSearch) {
   int beside = 0;
   for (int i = 0; i < 2000; ++i) {
     const Shape capsule = make_along_y(ShapeKind::capsule, 0.1f, random(0.1f, 1));
-    const Transform t{{random(-61, 61), random(1.9f, 3), random(-61, 61)}, random.turn()};
+    const Transform t{{random(-61, 61), random(1.9f, 3), random(-61, 61)}, random.rotation()};
     const DQuat back = conjugate(normalized(to_double(t.orientation)));
     const CorePair pair(box, capsule, t), other_way(capsule, box, -rotate(back, DVec3(t.position)), back);
     const DVec3 along = pair.from_b({0, double(capsule.extents.y), 0}), c = pair.center_of_b();
@@ -127,7 +127,7 @@ TEST(Gjk, DenseSamplingNeverComesNearer) {
   const Shape cylinder = make_along_y(ShapeKind::cylinder, 0.6f, 0.4f),
               cone = make_along_y(ShapeKind::cone, 0.5f, 0.5f);
   for (int i = 0; i < 40; ++i) {
-    Transform t{2.0f * random.direction(), random.turn()};
+    Transform t{2.0f * random.direction(), random.rotation()};
     const CorePair pair(cylinder, cone, t);
     const CoreDistance found = core_distance(pair, 1.0e30, {});
     ASSERT_FALSE(found.overlap);
@@ -156,7 +156,7 @@ TEST(Gjk, GivesUpEarlyOnlyWhenTrulyBeyond) {
   for (int i = 0; i < 4000; ++i) {
     const Shape a = random_shape(random, hulls, random.below(kKinds), 1.0f);
     const Shape b = random_shape(random, hulls, random.below(kKinds), 1.0f);
-    const Transform t{2.0f * random.in_cube(), random.turn()};
+    const Transform t{2.0f * random.in_cube(), random.rotation()};
     const CorePair pair(a, b, t);
     const CoreDistance whole = core_distance(pair, 1.0e30, {});
     const CoreDistance cut = core_distance(pair, 0.1, random.direction());
@@ -175,7 +175,7 @@ TEST(Gjk, AGoodGuessSavesWork) {
   int cold = 0, warm = 0;
   for (int i = 0; i < 500; ++i) {
     const Shape a = hulls.add_random(random, 1.0f), b = hulls.add_random(random, 1.0f);
-    const Transform t{3.0f * random.direction(), random.turn()};
+    const Transform t{3.0f * random.direction(), random.rotation()};
     const CorePair pair(a, b, t);
     const CoreDistance first = core_distance(pair, 1.0e30, {});
     const CoreDistance second = core_distance(pair, 1.0e30, to_float(first.normal));
@@ -192,7 +192,7 @@ TEST(Gjk, ScalingByPowersOfTwoScalesEveryBit) {
     const float radius = random(0.2f, 1), half = random(0.2f, 1);
     const Shape a = make_along_y(ShapeKind::cylinder, radius, half);
     const Shape b = make_box({random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)});
-    const Transform t{1.7f * random.direction(), random.turn()};
+    const Transform t{1.7f * random.direction(), random.rotation()};
     const CoreDistance one = core_distance(CorePair(a, b, t), 1.0e30, {});
     for (float scale : {1.0f / 1024.0f, 1024.0f}) {
       Shape sa = a, sb = b;

@@ -48,7 +48,7 @@ TEST(Penetration, BoxesEqualTheAxisSearchByBruteForce) {
   for (int i = 0; i < 4000; ++i) {
     const Shape a = make_box({random(0.1f, 1), random(0.1f, 1), random(0.1f, 1)});
     const Shape b = make_box({random(0.1f, 1), random(0.1f, 1), random(0.1f, 1)});
-    const Transform t{random.in_cube(0.8f), random.turn()};
+    const Transform t{random.in_cube(0.8f), random.rotation()};
     const CorePair pair(a, b, t);
     const DVec3 axes_a[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     double best = -1.0e300;

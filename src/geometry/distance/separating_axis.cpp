@@ -430,7 +430,7 @@ bool is_lowest_alone(const Polytope& p, const HullEdge& edge, Vec3 up, float gap
 // lie lower.
 bool is_unbeaten_pair(const Polytope& a, const Polytope& b, const Transform& a_from_b,
                       const PolytopeAxis& axis, float rounding) {
-  const float s = axis.of_edges, h = EdgeSearch(a, b, a_from_b).hold(axis.index_a, axis.index_b);
+  const float s = axis.edge_separation, h = EdgeSearch(a, b, a_from_b).hold(axis.index_a, axis.index_b);
   const float lean = 8.0f * rounding / h;
   if (!(h > 0.0f) || !(lean <= 0.5f) || -s > h) return false;
 
@@ -493,7 +493,7 @@ float separation_along(const Polytope& a, const Polytope& b, const Transform& a_
         break;
       }
       axis.normal = pair.normal;
-      axis.of_edges = pair.separation;
+      axis.edge_separation = pair.separation;
       axis.separation = lowest_along(b, rotate_inverse(a_from_b.orientation, pair.normal)) +
                         dot(pair.normal, a_from_b.position) - highest_along(a, pair.normal);
       break;
@@ -512,10 +512,10 @@ PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transfo
   if (favours_face && 2.0f * rounding <= bias_of(a, b, favoured.separation) &&
       favoured.separation + rounding <= max_separation && is_unbeaten(a, b, a_from_b, favoured))
     return favoured;
-  if (favoured.kind == AxisKind::edges && favoured.of_edges + rounding <= max_separation &&
+  if (favoured.kind == AxisKind::edges && favoured.edge_separation + rounding <= max_separation &&
       is_unbeaten_pair(a, b, a_from_b, favoured, rounding)) {
     PolytopeAxis edges = favoured;
-    edges.separation = favoured.of_edges;
+    edges.separation = favoured.edge_separation;
     return edges;
   }
   const FaceQuery qa = best_face(a, b, a_from_b, max_separation,

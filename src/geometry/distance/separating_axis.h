@@ -27,7 +27,7 @@ struct PolytopeAxis {
   int vertex = 0;   // faces: the vertex of the other polytope that is nearest
   Vec3 normal;      // unit, from A to B, in A's frame
   float separation = -kUnbounded;
-  float of_edges =
+  float edge_separation =
       -kUnbounded;  // edges: the separation of the two alone, which is that of the polytopes where they meet
 };
 
@@ -35,7 +35,7 @@ struct PolytopeAxis {
 std::uint32_t axis_name(const PolytopeAxis& axis);
 PolytopeAxis axis_of_name(std::uint32_t name, const Polytope& a, const Polytope& b);
 
-// How far the two are apart along a named axis (its `normal`, `vertex` and `of_edges` are filled too). Exact along the axis.
+// How far the two are apart along a named axis (its `normal`, `vertex` and `edge_separation` are filled too). Exact along the axis.
 float separation_along(const Polytope& a, const Polytope& b, const Transform& a_from_b, PolytopeAxis& axis);
 
 // Faces win over edges, and `favoured`, of which separation_along has been asked, over others, when nearly equal.

@@ -40,7 +40,7 @@ TEST(SeparatingAxis, EqualsBruteForceOverAllAxes) {
     Hulls hulls;
     const float scale = i % 3 == 0 ? 1.0f : i % 3 == 1 ? 1.0e-3f : 1.0e3f;
     const Shape a = hulls.add_random(random, scale), b = hulls.add_random(random, scale);
-    const Transform t{scale * random.in_cube(0.8f), random.turn()};
+    const Transform t{scale * random.in_cube(0.8f), random.rotation()};
     const CorePair pair(a, b, t);
     const double best = all_axes(a, b, pair);
     const Polytope pa = make_polytope(*a.hull), pb = make_polytope(*b.hull);
@@ -78,7 +78,7 @@ TEST(SeparatingAxis, StopsOnlyAtTrueSeparation) {
   for (int i = 0; i < 1500; ++i) {
     Hulls hulls;
     const Shape a = hulls.add_random(random, 1.0f), b = hulls.add_random(random, 1.0f);
-    const Transform t{1.5f * random.in_cube(), random.turn()};
+    const Transform t{1.5f * random.in_cube(), random.rotation()};
     const CorePair pair(a, b, t);
     const PolytopeAxis axis = separating_axis(make_polytope(*a.hull), make_polytope(*b.hull), t, 0.05f, {});
     const CoreDistance distance = core_distance(pair, 1.0e30, {});

@@ -188,7 +188,7 @@ int clip_segments(const FacePair& pair, ManifoldPoint* out) {
     const Vec3 on_b = lerp(b.vertices[0], b.vertices[1], u);
     ManifoldPoint& point = out[points];
     const float gap = dot(on_b - on_a, pair.normal);
-    if (length_squared(on_b - on_a) > square(gap) + square(pair.sideways)) return 0;
+    if (length_squared(on_b - on_a) > square(gap) + square(pair.max_lateral_offset)) return 0;
     point.separation = gap - (pair.radius_a + pair.radius_b);
     if (!(point.separation <= pair.max_separation)) continue;
     point.position = 0.5f * ((on_a + pair.radius_a * pair.normal) + (on_b - pair.radius_b * pair.normal));

@@ -24,7 +24,7 @@ struct FacePair {
   float radius_a = 0.0f;  // of the balls that sweep the cores
   float radius_b = 0.0f;
   float max_separation = 0.0f;  // of the surfaces; what is farther apart is left out
-  float sideways = kUnbounded;  // how far two segments may lie beside each other, seen along the normal
+  float max_lateral_offset = kUnbounded;  // how far two segments may lie beside each other, seen along the normal
 };
 
 // Cuts one feature to the sides of the other, seen along the normal. The reference (A's if `reference_is_a`) is a polygon
@@ -33,12 +33,12 @@ struct FacePair {
 int clip_faces(const FacePair& pair, bool reference_is_a, ManifoldPoint* out);
 
 // Segments that lean less than this sine (6 degrees) against each other touch in two points,
-constexpr float kSideBySide = 0.1f;
+constexpr float kParallelSegmentSine = 0.1f;
 // ... while they lie over each other within this part of the smaller radius: the separation is then within 0.5 % of it.
-constexpr float kSideways = 0.1f;
+constexpr float kMaxLateralOffset = 0.1f;
 
 // Two segments over each other: the two ends of the stretch that both share, seen along the normal. 0 if they share none,
-// or if they lie more than `sideways` beside each other at an end of it.
+// or if they lie more than `max_lateral_offset` beside each other at an end of it.
 int clip_segments(const FacePair& pair, ManifoldPoint* out);
 
 // Names of points: a vertex of A over B's face, a vertex of B over A's, an edge of A across an edge of B (an edge is named

@@ -11,7 +11,7 @@
 #include "geometry/shape/height_field.h"
 #include "geometry/manifold/manifold.h"
 #include "geometry/shape/mesh.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 #include "geometry/testing/surface_oracle.h"
 
 #include <gtest/gtest.h>
@@ -215,7 +215,7 @@ class GroundProof {
   }
 
   void look_nearest() {
-    if (!find_nearest(ground_.shape, {&shape_, DVec3(pose_.position), turn_}, 1.0e30, near))
+    if (!find_closest_points(ground_.shape, {&shape_, DVec3(pose_.position), turn_}, 1.0e30, near))
       return say("nothing nearest", 0);
     if (outside_shape(near.on_convex) > rounding_)
       say("nearest point outside the shape", outside_shape(near.on_convex));
@@ -306,7 +306,7 @@ bool seen_from_front(const Ground& ground, const Nearest& near, DVec3 middle, do
 bool bring_to(const Ground& ground, const Shape& shape, Transform& pose, Vec3 back, double left) {
   Nearest near;
   for (int i = 0; i < 40; ++i) {
-    if (!find_nearest(ground.shape, {&shape, DVec3(pose.position), normalized(to_double(pose.orientation))},
+    if (!find_closest_points(ground.shape, {&shape, DVec3(pose.position), normalized(to_double(pose.orientation))},
                       1.0e30, near))
       return false;
     if (near.overlap) {
@@ -333,7 +333,7 @@ Shape draw_shape(Random& random, Hulls& hulls, int kind) {
   const float thin = odd == 1 ? one_of(random, {0.02f, 1e-3f}) : 1.0f;
   const float low = odd == 2 ? one_of(random, {0.02f, 1e-3f}) : 1.0f;
   const float size = odd == 3 ? one_of(random, {0.03f, 20.0f}) : 1.0f;
-  return odd_shape(random, hulls, kind, size, thin, low);
+  return degenerate_shape(random, hulls, kind, size, thin, low);
 }
 
 std::string describe(const Shape& s, const Transform& t) {

@@ -42,7 +42,7 @@ struct ContactPointState {
   std::uint32_t feature = 0;
   float normal_impulse = 0.0f;  // N s, of the last sub-step: the warm start
   float total_impulse = 0.0f;   // N s, over the whole last step
-  float held = 0.0f;            // N s: the load that the point is used to (a slow mean of normal_impulse)
+  float mean_impulse = 0.0f;            // N s: the load that the point is used to (a slow mean of normal_impulse)
   float approach_speed = 0.0f;  // m/s, before the step's first impulse; positive when closing
 };
 
@@ -57,7 +57,7 @@ struct Manifold {
   Vec3 normal{0, 1, 0};  // unit, world axes, from A to B
   std::int32_t count = 0;
   ContactPointState points[kMaxManifoldPoints];
-  float age = 0.0f;           // s for which it has borne load without a break
+  float load_age = 0.0f;           // s for which it has borne load without a break
   Vec3 friction_impulse;      // N s on B, in the tangent plane, world axes
   float twist_impulse = 0.0f;   // N m s on B about the normal
   Vec3 rolling_impulse;       // N m s on B, world axes
@@ -65,7 +65,7 @@ struct Manifold {
   Vec3 total_friction;        // N s on B over the whole last step
   std::uint32_t sliding = 0;  // 1 when friction was at its limit at the end of the last step
   // What the solver never reads: the manifold as the last full look saw it.
-  Vec3 seen_normal{0, 1, 0};  // in the frame of the anchors
+  Vec3 anchor_normal{0, 1, 0};  // in the frame of the anchors
   PointAnchor anchors[kMaxManifoldPoints];
 };
 

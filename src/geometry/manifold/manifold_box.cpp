@@ -200,7 +200,7 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   // Not across each other: an end is nearest.
   if ((end_a != along_a || end_b != along_b) &&
       (found.separation > 0.0f ||
-       length(on_edge_b - on_edge_a) > Real((1.0f + kLost) * -found.separation + kMissed * thinnest(x))))
+       length(on_edge_b - on_edge_a) > Real((1.0f + kDepthTolerance) * -found.separation + kMissTolerance * thinnest(x))))
     return;
   out.normal = Edges::to_float(normal);
   out.count = 1;
@@ -235,7 +235,7 @@ void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edg
   const Axis face = face_near_edges(x, normal);
   if (face.number != kNoAxis) {
     collide_face(x, face, max_separation, out);
-    if (stands_for_crossing(out, edges.separation, thinnest(x))) return;
+    if (replaces_crossing(out, edges.separation, thinnest(x))) return;
     out.count = 0;
   }
   if (EdgeRow(x, i).squared[edges.edge_b()] < kShallow) {
@@ -276,7 +276,7 @@ void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCach
     collide_face(x, found, pair.max_separation, out);
     // Nearest, or deepest, beside the face.
     const float lost = deepest_of(out) - found.separation;
-    if (lost > kMissed * thinnest(x) + kLost * max(-found.separation, 0.0f)) out.count = 0;
+    if (lost > kMissTolerance * thinnest(x) + kDepthTolerance * max(-found.separation, 0.0f)) out.count = 0;
   }
   // Near, or even overlapping, but beside each other's faces.
   if (out.count == 0) collide_cores(pair.a, pair.b, pair.a_from_b, pair.max_separation, cache, out);

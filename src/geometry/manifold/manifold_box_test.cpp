@@ -198,7 +198,7 @@ TEST(ManifoldBox, TheNormalIsContinuousThroughTouch) {
   for (int i = 0; i < 300; ++i) {
     const Shape a = make_box({random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)});
     const Shape b = make_box({random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)});
-    const Quat q = random.turn();
+    const Quat q = random.rotation();
     const Vec3 d = random.direction();
     // The place along d where they touch, then a micrometre to both sides.
     float near = 0.0f, far = 4.0f;

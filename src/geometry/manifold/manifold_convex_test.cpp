@@ -117,7 +117,7 @@ TEST(ManifoldConvex, SwappingTheShapesTurnsTheNormal) {
   for (int i = 0; i < 20000; ++i) {
     const int kind_a = random.below(kKinds), kind_b = random.below(kKinds);
     const Shape a = random_shape(random, hulls, kind_a, 1.0f), b = random_shape(random, hulls, kind_b, 1.0f);
-    const Transform t{1.2f * random.in_cube(), random.turn()};
+    const Transform t{1.2f * random.in_cube(), random.rotation()};
     const LocalManifold one = collide(a, b, t, 0.02f), other = collide(b, a, inverse(t), 0.02f);
     const std::string what =
         std::string(kind_name(kind_a)) + " " + kind_name(kind_b) + " " + std::to_string(i);
@@ -139,7 +139,7 @@ TEST(ManifoldConvex, PowersOfTwoScaleEveryBit) {
     Hulls hulls;
     const int kind_a = random.below(kKinds), kind_b = random.below(kKinds);
     const Shape a = random_shape(random, hulls, kind_a, 1.0f), b = random_shape(random, hulls, kind_b, 1.0f);
-    const Transform t{0.9f * random.in_cube(), random.turn()};
+    const Transform t{0.9f * random.in_cube(), random.rotation()};
     const LocalManifold one = collide(a, b, t, 0.02f);
     for (float scale : {1.0f / 1024.0f, 1024.0f}) {
       const auto scaled = [&](const Shape& shape) {
@@ -172,8 +172,8 @@ TEST(ManifoldConvex, MovingBothFarAwayChangesNothingMuch) {
   for (int i = 0; i < 2000; ++i) {
     const Shape a = random_shape(random, hulls, 1 + random.below(5), 1.0f);
     const Shape b = random_shape(random, hulls, 1 + random.below(5), 1.0f);
-    const Transform t{0.9f * random.in_cube(), random.turn()};
-    const Pose world_from_a{{1.0e6, -3.0e5, 2.0e6}, random.turn()};
+    const Transform t{0.9f * random.in_cube(), random.rotation()};
+    const Pose world_from_a{{1.0e6, -3.0e5, 2.0e6}, random.rotation()};
     const Pose world_from_b = world_from_a * t;
     const LocalManifold one = collide(a, b, t, 0.02f);
     const LocalManifold other = collide(a, b, inverse_times(world_from_a, world_from_b), 0.02f);
@@ -192,7 +192,7 @@ TEST(ManifoldConvex, TheCacheChangesNoDecisionAboutTouching) {
     const int kind_a = random.below(kKinds), kind_b = random.below(kKinds);
     const Shape a = random_shape(random, hulls, kind_a, 1.0f), b = random_shape(random, hulls, kind_b, 1.0f);
     PairCache cache;
-    Transform t{random.in_cube(1.5f), random.turn()};
+    Transform t{random.in_cube(1.5f), random.rotation()};
     for (int step = 0; step < 10; ++step) {
       t.position += 0.1f * random.in_cube();
       t.orientation = normalized(t.orientation * from_rotation_vector(0.1f * random.in_cube()));
@@ -237,7 +237,7 @@ TEST(ManifoldConvex, PosesThatAreNotFiniteDoNoHarm) {
         for (int part = 0; part < 7; ++part) {
           const Shape a = random_shape(random, hulls, kind_a, 1.0f),
                       b = random_shape(random, hulls, kind_b, 1.0f);
-          Transform t{0.5f * random.in_cube(), random.turn()};
+          Transform t{0.5f * random.in_cube(), random.rotation()};
           float* parts[7] = {&t.position.x,    &t.position.y,    &t.position.z,   &t.orientation.x,
                              &t.orientation.y, &t.orientation.z, &t.orientation.w};
           *parts[part] = bad;
@@ -403,7 +403,7 @@ TEST(ManifoldConvex, BoxesAndTheirHullsAgree) {
     const Vec3 ha{random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)},
         hb{random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)};
     const Shape a = make_box(ha), b = make_box(hb), hull_b = hulls.add_box(hb);
-    const Transform t{random.in_cube(), random.turn()};
+    const Transform t{random.in_cube(), random.rotation()};
     const LocalManifold boxes = collide(a, b, t, 0.02f), mixed = collide(a, hull_b, t, 0.02f);
     const double distance = signed_distance(a, b, t);
     if (absolute(distance - 0.02) < 1.0e-4) continue;

@@ -12,8 +12,8 @@ namespace {
 // A face takes part if the contact normal leans less than this cosine (10 degrees) from its own: its points keep their
 // exact distance along the contact normal, so nothing jumps when a face comes in or drops out.
 constexpr float kFacing = 0.985f;
-// kSideways of cones, which taper.
-constexpr float kSidewaysCone = 0.01f;
+// kMaxLateralOffset of cones, which taper.
+constexpr float kMaxLateralOffsetCone = 0.01f;
 // B's face becomes the reference only if it faces the normal better than A's by this much: no flipping.
 constexpr float kPreferA = 1.0e-3f;
 
@@ -40,7 +40,7 @@ void put_in_a(const Transform& a_from_b, FacePolygon& face) {
 
 bool side_by_side(const FacePolygon& a, const FacePolygon& b) {
   const Vec3 da = a.vertices[1] - a.vertices[0], db = b.vertices[1] - b.vertices[0];
-  return length_squared(cross(da, db)) <= square(kSideBySide) * length_squared(da) * length_squared(db);
+  return length_squared(cross(da, db)) <= square(kParallelSegmentSine) * length_squared(da) * length_squared(db);
 }
 
 // Of a polygon only its edge that is farthest along `direction`.
@@ -68,7 +68,7 @@ float sideways(const Shape& a, const Shape& b) {
   const bool tapers = a.kind == ShapeKind::cone || b.kind == ShapeKind::cone;
   // A sharp edge has no radius; the other shape's decides.
   const float radius = a.radius > 0.0f && b.radius > 0.0f ? min(a.radius, b.radius) : max(a.radius, b.radius);
-  return (tapers ? kSidewaysCone : kSideways) * radius;
+  return (tapers ? kMaxLateralOffsetCone : kMaxLateralOffset) * radius;
 }
 
 // The candidate points of the features of both cores that face each other. At most kMaxClipPoints.
@@ -114,7 +114,7 @@ void fill(const Shape& a, const Shape& b, const Transform& a_from_b, const CoreC
   float deepest = kUnbounded;
   for (int i = 0; i < count; ++i) deepest = min(deepest, points[i].separation);
   const ManifoldPoint nearest = nearest_point(a, b, contact);
-  if (count == 0 || nearest.separation < deepest - kMissed * contact.size) points[count++] = nearest;
+  if (count == 0 || nearest.separation < deepest - kMissTolerance * contact.size) points[count++] = nearest;
   out.normal = contact.normal;
   out.count = reduce_points(points, count, contact.normal);
   for (int i = 0; i < out.count; ++i) out.points[i] = points[i];

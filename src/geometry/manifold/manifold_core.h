@@ -10,10 +10,10 @@ namespace gyre {
 
 // Clipped points stand for the nearest pair of points, or for the deepest overlap, if the deepest of them misses it by
 // no more than this part of the thinner shape's inner radius
-constexpr float kMissed = 1.0e-3f;
+constexpr float kMissTolerance = 1.0e-3f;
 // ... and, of sharp polyhedra that overlap, this part of the depth too: what is lost again and again would never come
 // free.
-constexpr float kLost = 0.1f;
+constexpr float kDepthTolerance = 0.1f;
 
 // As collide_convex, for every pair of convex kinds.
 void collide_cores(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,

@@ -18,7 +18,7 @@ constexpr float kResting = 0.1f;
 
 // Whether the manifold of the face says what the edges say, `separation`, and not a quite different depth. `thin` is the
 // smallest half extent of the two. Of what rests the face may be twice as deep; from deep overlaps the edges lead out sooner.
-inline bool stands_for_crossing(const LocalManifold& face, float separation, float thin) {
+inline bool replaces_crossing(const LocalManifold& face, float separation, float thin) {
   if (face.count < 2) return false;
   float low = face.points[0].separation;
   for (int i = 1; i < face.count; ++i) low = min(low, face.points[i].separation);

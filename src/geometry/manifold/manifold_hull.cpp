@@ -40,7 +40,7 @@ struct Roles {
 // Faces that look this way by less than this cosine are sides.
 constexpr float kLooksThisWay = 1.0e-4f;
 
-float missed(const Polytope& a, const Polytope& b) { return kMissed * min(a.inner_radius, b.inner_radius); }
+float missed(const Polytope& a, const Polytope& b) { return kMissTolerance * min(a.inner_radius, b.inner_radius); }
 
 // Candidate points of one face of the reference, against one face of the incident after the other.
 class FacePoints {
@@ -138,7 +138,7 @@ void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b,
                           DVec3(a_from_b * b.vertices[eb.from]), DVec3(a_from_b * b.vertices[eb.to]));
   const bool at_end = near.s <= 0.0 || near.s >= 1.0 || near.t <= 0.0 || near.t >= 1.0;
   if (at_end && (axis.separation > 0.0f ||
-                 length(near.on_b - near.on_a) > double((1.0f + kLost) * -axis.separation + missed(a, b))))
+                 length(near.on_b - near.on_a) > double((1.0f + kDepthTolerance) * -axis.separation + missed(a, b))))
     return;
   out.count = 1;
   out.points[0].position = to_float(0.5 * (near.on_a + near.on_b));
@@ -185,7 +185,7 @@ bool crossing_faces(const Polytope& a, const Polytope& b, const Transform& a_fro
   const PolytopeAxis face = face_near(a, b, a_from_b, edges.normal);
   if (face.kind == AxisKind::none) return false;
   face_manifold(a, b, a_from_b, face, max_separation, out);
-  return stands_for_crossing(out, edges.separation, min(a.inner_radius, b.inner_radius));
+  return replaces_crossing(out, edges.separation, min(a.inner_radius, b.inner_radius));
 }
 
 // False when they are farther apart than allowed along some axis.
@@ -201,7 +201,7 @@ bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_
     face_manifold(a, b, a_from_b, axis, max_separation, out);
     // Nearest, or deepest, beside the face.
     const float lost = deepest_of(out) - axis.separation;
-    if (lost > missed(a, b) + kLost * max(-axis.separation, 0.0f)) out.count = 0;
+    if (lost > missed(a, b) + kDepthTolerance * max(-axis.separation, 0.0f)) out.count = 0;
     return true;
   }
   if (crossing_faces(a, b, a_from_b, axis, max_separation, out)) return true;

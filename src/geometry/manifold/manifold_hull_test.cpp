@@ -112,7 +112,7 @@ TEST(ManifoldHull, TheNormalIsContinuousThroughTouch) {
   int corners = 0;
   for (int i = 0; i < 300; ++i) {
     const Shape a = hulls.add_random(random, 1.0f), b = hulls.add_random(random, 1.0f);
-    const Quat q = random.turn();
+    const Quat q = random.rotation();
     const Vec3 d = random.direction();
     const Vec3 together = a.hull->centroid - rotate(q, b.hull->centroid);
     float near = 0.0f, far = 4.0f;

@@ -19,14 +19,14 @@ constexpr int kManifoldPoints = GYRE_FLOATS_BEFORE(Manifold, points);          /
 constexpr int kManifoldFriction = GYRE_FLOATS_BEFORE(Manifold, age);           // age and friction_impulse
 constexpr int kManifoldTwist = GYRE_FLOATS_BEFORE(Manifold, twist_impulse);    // and rolling_impulse
 constexpr int kManifoldTotals = GYRE_FLOATS_BEFORE(Manifold, total_friction);  // and sliding
-constexpr int kManifoldSliding = GYRE_FLOATS_BEFORE(Manifold, sliding);        // and seen_normal
+constexpr int kManifoldSliding = GYRE_FLOATS_BEFORE(Manifold, sliding);        // and anchor_normal
 constexpr int kManifoldAnchors = GYRE_FLOATS_BEFORE(Manifold, anchors);        // one group an anchor
 constexpr int kManifoldFloats = int(sizeof(Manifold) / sizeof(float));
 static_assert(kManifoldNormal == 0 && GYRE_FLOATS_BEFORE(Manifold, count) == kManifoldNormal + 3);
 static_assert(GYRE_FLOATS_BEFORE(Manifold, friction_impulse) == kManifoldFriction + 1);
 static_assert(GYRE_FLOATS_BEFORE(Manifold, rolling_impulse) == kManifoldTwist + 1);
 static_assert(kManifoldSliding == kManifoldTotals + 3);
-static_assert(GYRE_FLOATS_BEFORE(Manifold, seen_normal) == kManifoldSliding + 1);
+static_assert(GYRE_FLOATS_BEFORE(Manifold, anchor_normal) == kManifoldSliding + 1);
 
 // Offsets of the groups of four in a ContactPointState.
 constexpr int kPointA = GYRE_FLOATS_BEFORE(ContactPointState, from_a);  // and separation

@@ -187,9 +187,9 @@ void collide_capsules(const Shape& a, const Shape& b, const Transform& a_from_b,
     if (dot(out.normal, t) < 0.0f) out.normal = -out.normal;
   }
   const FacePair pair{
-      &fa, &fb, out.normal, a.radius, b.radius, max_separation, kSideways * min(a.radius, b.radius)};
+      &fa, &fb, out.normal, a.radius, b.radius, max_separation, kMaxLateralOffset * min(a.radius, b.radius)};
   const float sine_squared = length_squared(cross(up, up_b)), nearest = out.points[0].separation;
-  if (sine_squared <= square(kSideBySide * a.extents.y * b.extents.y)) {
+  if (sine_squared <= square(kParallelSegmentSine * a.extents.y * b.extents.y)) {
     out.count = clip_segments(pair, out.points);
     // One behind the other, end to end, they share no stretch but what rounding makes of one.
     const float slack = kMissedByEnds * min(a.radius, b.radius);

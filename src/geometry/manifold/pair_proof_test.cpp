@@ -10,7 +10,7 @@
 // One pair in ten thousand may stay without proof. Those that do are needles and plates a thousandth as thick as long, or lie
 // in each other by half of their size: there a manifold is a first look, and the next one mends what it leaves.
 #include "geometry/manifold/manifold.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 #include "geometry/testing/surface_oracle.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ std::string describe(const Shape& s) {
   }
   return out;
 }
-std::string describe(const OddPair& pair) {
+std::string describe(const DegeneratePair& pair) {
   char text[300];
   const Transform& t = pair.t;
   std::snprintf(text, sizeof text, " at %.9g %.9g %.9g turn %.9g %.9g %.9g %.9g", double(t.position.x),
@@ -50,7 +50,7 @@ class Proof {
  public:
   static constexpr double kTurn = 1.0e-3;  // rad
 
-  Proof(const OddPair& odd, Random& random)
+  Proof(const DegeneratePair& odd, Random& random)
       : odd_(odd), pair_(odd.a, odd.b, odd.t), random_(random), big_(size_of(odd.a, odd.b, odd.t)) {
     small_ = min(long_side(odd.a), long_side(odd.b));
     thin_ = min(thin_side(odd.a), thin_side(odd.b));
@@ -76,8 +76,8 @@ class Proof {
   double on_b(DVec3 p) const { return outside_surface(odd_.b, pair_.to_b(p - pair_.center_of_b())); }
 
   void distance() {
-    const PlacedShape placed{&odd_.b, DVec3(odd_.t.position), normalized(to_double(odd_.t.orientation))};
-    if (!find_nearest(odd_.a, placed, 1.0e30, near)) return say("nothing nearest", 0);
+    const PosedShape placed{&odd_.b, DVec3(odd_.t.position), normalized(to_double(odd_.t.orientation))};
+    if (!find_closest_points(odd_.a, placed, 1.0e30, near)) return say("nothing nearest", 0);
     const double out_a = outside_surface(odd_.a, near.on_target), out_b = on_b(near.on_convex);
     if (near.overlap) {
       if (max(out_a, out_b) <= rounding_) return;
@@ -216,7 +216,7 @@ class Proof {
       say("a corner sinks", sunk / (kTurn * small_));
   }
 
-  const OddPair& odd_;
+  const DegeneratePair& odd_;
   CorePair pair_;
   Random& random_;
   float big_;
@@ -242,7 +242,7 @@ std::vector<Kinds> all_pairs() {
 }
 
 // Surfaces, not cores, brought together.
-void touch(OddPair& odd, Random& random) {
+void touch(DegeneratePair& odd, Random& random) {
   const CorePair pair(odd.a, odd.b, odd.t);
   const CoreDistance found = core_distance(pair, 1.0e30, {});
   if (found.overlap) return;
@@ -258,7 +258,7 @@ void prove(Kinds kinds, int pairs, unsigned seed) {
     Hulls hulls;
     for (int i = begin; i < min(pairs, begin + 1000); ++i) {
       const bool swap = random.below(2) == 0;
-      OddPair odd = odd_pair(random, hulls, swap ? kinds.b : kinds.a, swap ? kinds.a : kinds.b);
+      DegeneratePair odd = degenerate_pair(random, hulls, swap ? kinds.b : kinds.a, swap ? kinds.a : kinds.b);
       if (random.below(3) == 0) touch(odd, random);
       const float reach = 0.02f * float(min(long_side(odd.a), long_side(odd.b)));
       Proof proof(odd, random);

@@ -84,7 +84,7 @@ TEST(CachedTriangles, ChangeNothingOfALook) {
     Vec3 middle;
     for (int round = 0; round < 500; ++round) {
       middle = 0.98f * (middle + random.in_box(0.2f));
-      const PlacedConvex convex(shape, random.rotation());
+      const LocalConvex convex(shape, random.rotation());
       MeshCandidates with, without;
       find_candidates(select_mesh_kernels(), surface, convex, middle, 0.1f, &kept, with);
       find_candidates(select_mesh_kernels(), surface, convex, middle, 0.1f, nullptr, without);

@@ -16,7 +16,7 @@
 #include "geometry/manifold_mesh/manifold_mesh.h"
 
 #include "base/container/sort.h"
-#include "geometry/manifold_mesh/mesh_beside.h"
+#include "geometry/manifold_mesh/mesh_reject.h"
 #include "geometry/manifold_mesh/mesh_candidates.h"
 #include "geometry/manifold_mesh/mesh_cull.h"
 
@@ -79,46 +79,46 @@ class MeshCollider {
 
  private:
   void look_at_candidates();
-  void look_at(const NearTriangle& t, PlacedConvex::Extent along_normal);
-  void wait(const Waiting& found, const NearTriangle& t);
+  void look_at(const LocalTriangle& t, LocalConvex::Extent along_normal);
+  void wait(const Waiting& found, const LocalTriangle& t);
   void settle_waiting();
   void settle_deep_patches();
-  bool runs_through(const NearTriangle& t) const;
-  bool is_ground_between(const NearTriangle& t, Vec3 low, Vec3 high) const;
+  bool runs_through(const LocalTriangle& t) const;
+  bool is_ground_between(const LocalTriangle& t, Vec3 low, Vec3 high) const;
   void note_overlap(const Waiting& found);
   void push_out();
-  void add_corner(const NearTriangle& t, float face_separation, float best);
+  void add_corner(const LocalTriangle& t, float face_separation, float best);
   bool is_corner_missing() const;
   void look_for_corners();
   void settle(const Waiting& waiting);
-  void settle(const Waiting& waiting, const NearTriangle& t);
-  bool is_ruled_out(const NearTriangle& t, bool behind) const;
+  void settle(const Waiting& waiting, const LocalTriangle& t);
+  bool is_ruled_out(const LocalTriangle& t, bool behind) const;
 
-  NearTriangle triangle(std::uint32_t id) const { return near_triangle(surface_, id, position_, convex_); }
+  LocalTriangle triangle(std::uint32_t id) const { return measured_triangle(surface_, id, position_, convex_); }
   void know_side(Vec3 normal);
-  void know_side(Vec3 normal, PlacedConvex::Extent along_normal);
+  void know_side(Vec3 normal, LocalConvex::Extent along_normal);
   void know_face();
-  bool rests_inside(const NearTriangle& t, float face_separation);
-  bool comes_through(const NearTriangle& t, Vec3 corner) const;
-  float face_separation(const NearTriangle& t) const {
+  bool rests_inside(const LocalTriangle& t, float face_separation);
+  bool comes_through(const LocalTriangle& t, Vec3 corner) const;
+  float face_separation(const LocalTriangle& t) const {
     return side_.lowest - dot(t.normal, t.v[0]) - convex_.radius();
   }
 
   bool stands_already(Vec3 normal) const;
   bool stand(Vec3 normal, float separation);
-  void add_face(const NearTriangle& t, float deepest = -kUnbounded);
-  void add_over_face(const NearTriangle& t, Vec3 on_core);
-  void note_valley(const NearTriangle& t);
+  void add_face(const LocalTriangle& t, float deepest = -kUnbounded);
+  void add_over_face(const LocalTriangle& t, Vec3 on_core);
+  void note_valley(const LocalTriangle& t);
   void add_by_valleys();
-  bool add_deep_corners(const NearTriangle& t);
-  void add_feature(const NearTriangle& t, const FeatureAxis& axis);
-  bool lie_at_sharp_edge(const NearTriangle& t, Vec3 direction) const;
-  bool is_buried(const NearTriangle& t, Vec3 direction) const;
-  bool covers(const NearTriangle& other, const NearTriangle& t, Vec3 direction) const;
+  bool add_deep_corners(const LocalTriangle& t);
+  void add_feature(const LocalTriangle& t, const FeatureAxis& axis);
+  bool lie_at_sharp_edge(const LocalTriangle& t, Vec3 direction) const;
+  bool is_buried(const LocalTriangle& t, Vec3 direction) const;
+  bool covers(const LocalTriangle& other, const LocalTriangle& t, Vec3 direction) const;
 
   const MeshKernels& kernels_ = select_mesh_kernels();
   Surface surface_;
-  PlacedConvex convex_;
+  LocalConvex convex_;
   Vec3 position_;
   float max_separation_;
   CachedTriangles* kept_;
@@ -138,7 +138,7 @@ class MeshCollider {
   // The first of those that wait, as they were placed when they were looked at.
   static constexpr int kPlacedRoom = 32;
   union {
-    NearTriangle placed_[kPlacedRoom];
+    LocalTriangle placed_[kPlacedRoom];
   };
   // Of the triangles that the shape certainly overlaps, the one through whose front it leaves first; those with the
   // shape's middle before them first of all.
@@ -157,8 +157,8 @@ class MeshCollider {
   float nearest_ = kUnbounded;
   MeshCandidates candidates_;
   // By groups of candidates: bits of those that are known to be out of reach.
-  static_assert(MeshCandidates::kRoom % PlacedTriangles::kCount == 0 && PlacedTriangles::kCount == 8);
-  std::uint8_t apart_[MeshCandidates::kRoom / PlacedTriangles::kCount];
+  static_assert(MeshCandidates::kRoom % TriangleBatch::kCount == 0 && TriangleBatch::kCount == 8);
+  std::uint8_t apart_[MeshCandidates::kRoom / TriangleBatch::kCount];
   MeshPoints points_;
   AxisScratch scratch_;
   ManifoldGroups groups_;
@@ -168,7 +168,7 @@ void MeshCollider::know_side(Vec3 normal) {
   if (!side_known_ || !(side_.normal == normal)) know_side(normal, convex_.extent(normal));
 }
 
-void MeshCollider::know_side(Vec3 normal, PlacedConvex::Extent along_normal) {
+void MeshCollider::know_side(Vec3 normal, LocalConvex::Extent along_normal) {
   if (side_known_ && side_.normal == normal) return;
   side_.normal = normal;
   side_.lowest = along_normal.low;
@@ -203,7 +203,7 @@ bool MeshCollider::stand(Vec3 normal, float separation) {
   return true;
 }
 
-void MeshCollider::add_face(const NearTriangle& t, float deepest) {
+void MeshCollider::add_face(const LocalTriangle& t, float deepest) {
   points_.count = 0;
   for (int i = 0; i < 3; ++i) {
     if (convex_.lies_outside(t.outward[i], t.v[i], t.slack)) return note_valley(t);
@@ -218,7 +218,7 @@ void MeshCollider::add_face(const NearTriangle& t, float deepest) {
 
 // The lowest corners of a shape that leans and has sunk deep lie under triangles that the shape itself does not touch: the
 // ground goes on there in the same plane. Returns whether any point was added.
-bool MeshCollider::add_deep_corners(const NearTriangle& t) {
+bool MeshCollider::add_deep_corners(const LocalTriangle& t) {
   know_side(t.normal);
   // No corner lies lower than the lowest.
   const float height = dot(t.normal, t.v[0]), enough = -0.9f * max_separation_;
@@ -238,7 +238,7 @@ bool MeshCollider::add_deep_corners(const NearTriangle& t) {
     std::uint32_t ids[16];
     const int count = find_triangles(surface_, grow({foot, foot}, reach), ids);
     for (int i = 0; i < count; ++i) {
-      const NearTriangle under = triangle(ids[i]);
+      const LocalTriangle under = triangle(ids[i]);
       if (dot(under.normal, t.normal) <= kSameNormal) continue;
       add_face(under);
       added = added || points_.count > 0;
@@ -249,7 +249,7 @@ bool MeshCollider::add_deep_corners(const NearTriangle& t) {
 
 // One point of the shape over a triangle, where its facing polygon has none: a cap is cut a little inside of its rim; the lowest corner may
 // hang beside the border while another one lies over the face.
-void MeshCollider::add_over_face(const NearTriangle& t, Vec3 on_core) {
+void MeshCollider::add_over_face(const LocalTriangle& t, Vec3 on_core) {
   const float separation = dot(t.normal, on_core - t.v[0]) - convex_.radius();
   if (separation > max_separation_) return;
   points_.count = 0;
@@ -257,7 +257,7 @@ void MeshCollider::add_over_face(const NearTriangle& t, Vec3 on_core) {
   groups_.add(t.normal, t.id, points_);
 }
 
-void MeshCollider::add_feature(const NearTriangle& t, const FeatureAxis& axis) {
+void MeshCollider::add_feature(const LocalTriangle& t, const FeatureAxis& axis) {
   points_.count = 0;
   feature_points(t, convex_, axis, max_separation_, points_);
   if (is_buried(t, axis.direction)) points_.count = 0;
@@ -266,7 +266,7 @@ void MeshCollider::add_feature(const NearTriangle& t, const FeatureAxis& axis) {
 
 // Whether the face `other` goes on, level, where the contact of `t` would stop the shape: `t` lies nowhere above it, the
 // contact points lie on it, and going against the contact's direction one stays above it.
-bool MeshCollider::covers(const NearTriangle& other, const NearTriangle& t, Vec3 direction) const {
+bool MeshCollider::covers(const LocalTriangle& other, const LocalTriangle& t, Vec3 direction) const {
   const float slack = kCoverSlack * convex_.size();
   const Vec3 sideways = direction - dot(direction, other.normal) * other.normal;
   if (length_squared(sideways) < kOneDirection * kOneDirection ||
@@ -290,7 +290,7 @@ bool MeshCollider::covers(const NearTriangle& other, const NearTriangle& t, Vec3
 }
 
 // Whether all points lie along one sharp or open edge of the triangle.
-bool MeshCollider::lie_at_sharp_edge(const NearTriangle& t, Vec3 direction) const {
+bool MeshCollider::lie_at_sharp_edge(const LocalTriangle& t, Vec3 direction) const {
   const float slack = 2.0f * kCoverSlack * convex_.size();
   for (int i = 0; i < 3; ++i) {
     if (t.edge[i] != EdgeKind::open &&
@@ -306,7 +306,7 @@ bool MeshCollider::lie_at_sharp_edge(const NearTriangle& t, Vec3 direction) cons
   return false;
 }
 
-bool MeshCollider::is_buried(const NearTriangle& t, Vec3 direction) const {
+bool MeshCollider::is_buried(const LocalTriangle& t, Vec3 direction) const {
   if (points_.count == 0 || !lie_at_sharp_edge(t, direction)) return false;
   const Vec3 p = points_.points[0].position - 0.5f * points_.points[0].separation * direction + position_;
   const Aabb near = grow({p, p}, kCoverSlack * convex_.size());
@@ -320,7 +320,7 @@ bool MeshCollider::is_buried(const NearTriangle& t, Vec3 direction) const {
 // Whether a lowest corner of the shape lies so far inside the triangle's sides that no direction but the face's normal can be
 // better: a disc around its foot, as wide as the corner is deep, belongs to the triangle. A needle whose end is deep below may have come
 // there beside the triangle: on its way to the middle it must pass through.
-bool MeshCollider::rests_inside(const NearTriangle& t, float face_separation) {
+bool MeshCollider::rests_inside(const LocalTriangle& t, float face_separation) {
   const float room = max(-face_separation - convex_.radius(), 0.0f) + t.slack;
   if (convex_.has_vertices() &&
       !convex_.has_low_vertex_inside(t.normal, side_.lowest + bias_, t.outward, t.v, room))
@@ -336,7 +336,7 @@ bool MeshCollider::rests_inside(const NearTriangle& t, float face_separation) {
   return false;
 }
 
-bool MeshCollider::comes_through(const NearTriangle& t, Vec3 corner) const {
+bool MeshCollider::comes_through(const LocalTriangle& t, Vec3 corner) const {
   const float below = dot(t.normal, t.v[0] - corner);
   if (below < kCoverSlack * convex_.size()) return true;
   const float above = dot(t.normal, convex_.center() - t.v[0]);
@@ -347,20 +347,20 @@ bool MeshCollider::comes_through(const NearTriangle& t, Vec3 corner) const {
 }
 
 void MeshCollider::look_at_candidates() {
-  PlacedTriangles placed;
-  for (int i = 0; i < candidates_.count; i += PlacedTriangles::kCount) {
+  TriangleBatch placed;
+  for (int i = 0; i < candidates_.count; i += TriangleBatch::kCount) {
     const std::uint32_t* ids = candidates_.ids + i;
-    const int count = min(candidates_.count - i, PlacedTriangles::kCount);
-    place_triangles(kernels_, surface_, ids, count, position_, convex_, max_separation_, placed);
-    apart_[i / PlacedTriangles::kCount] = std::uint8_t(placed.apart);
+    const int count = min(candidates_.count - i, TriangleBatch::kCount);
+    load_triangles(kernels_, surface_, ids, count, position_, convex_, max_separation_, placed);
+    apart_[i / TriangleBatch::kCount] = std::uint8_t(placed.apart);
     for (unsigned rest = placed.touchable; rest != 0; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
-      look_at(take_triangle(surface_, ids[lane], placed, lane), {placed.low[lane], placed.high[lane]});
+      look_at(batch_triangle(surface_, ids[lane], placed, lane), {placed.low[lane], placed.high[lane]});
     }
   }
 }
 
-void MeshCollider::look_at(const NearTriangle& t, PlacedConvex::Extent along_normal) {
+void MeshCollider::look_at(const LocalTriangle& t, LocalConvex::Extent along_normal) {
   know_side(t.normal, along_normal);
   const float height = dot(t.normal, t.v[0]);
   const float face = face_separation(t);
@@ -374,8 +374,8 @@ void MeshCollider::look_at(const NearTriangle& t, PlacedConvex::Extent along_nor
     if (stand(t.normal, face)) add_deep_corners(t);
     return;
   }
-  if (!behind && is_round_beside(surface_, t, convex_, face)) {
-    if (comes_by_valleys(t, convex_, max_separation_))
+  if (!behind && is_round_rejected(surface_, t, convex_, face)) {
+    if (has_valley_points(t, convex_, max_separation_))
       wait({t.id, waiting_count_, face, face, behind, false}, t);
     return;
   }
@@ -409,8 +409,8 @@ void MeshCollider::look_at(const NearTriangle& t, PlacedConvex::Extent along_nor
   add_feature(t, axes.feature);
 }
 
-void MeshCollider::note_valley(const NearTriangle& t) {
-  if (comes_by_valleys(t, convex_, max_separation_)) valleys_[valley_count_++ % kValleyRoom] = t.id;
+void MeshCollider::note_valley(const LocalTriangle& t) {
+  if (has_valley_points(t, convex_, max_separation_)) valleys_[valley_count_++ % kValleyRoom] = t.id;
 }
 
 // What rolls comes from one slope onto the next within a step, and would sink into it before it lies over it. After all others, and never
@@ -418,15 +418,15 @@ void MeshCollider::note_valley(const NearTriangle& t) {
 void MeshCollider::add_by_valleys() {
   const float nearest = groups_.deepest();
   for (int i = 0; i < min(valley_count_, kValleyRoom); ++i) {
-    const NearTriangle t = triangle(valleys_[i]);
+    const LocalTriangle t = triangle(valleys_[i]);
     points_.count = 0;
-    points_by_valleys(t, convex_, max_separation_, points_);
+    valley_points(t, convex_, max_separation_, points_);
     points_.drop_below(nearest);
     groups_.add(t.normal, t.id, points_);
   }
 }
 
-void MeshCollider::wait(const Waiting& found, const NearTriangle& t) {
+void MeshCollider::wait(const Waiting& found, const LocalTriangle& t) {
   if (waiting_count_ < kPlacedRoom) placed_[waiting_count_] = t;
   waiting_[waiting_count_++] = found;
 }
@@ -436,7 +436,7 @@ void MeshCollider::settle(const Waiting& waiting) {
   settle(waiting, triangle(waiting.id));
 }
 
-void MeshCollider::settle(const Waiting& waiting, const NearTriangle& t) {
+void MeshCollider::settle(const Waiting& waiting, const LocalTriangle& t) {
   for (int i = 0; i < standing_count_; ++i) {
     if (dot(standing_[i].normal, t.normal) > kSameNormal) return add_face(t);
   }
@@ -450,7 +450,7 @@ void MeshCollider::settle(const Waiting& waiting, const NearTriangle& t) {
 }
 
 // Whether a contact that stands says better what to do about the triangle.
-bool MeshCollider::is_ruled_out(const NearTriangle& t, bool behind) const {
+bool MeshCollider::is_ruled_out(const LocalTriangle& t, bool behind) const {
   const float slack = kCoverSlack * convex_.size();
   for (int i = 0; i < standing_count_; ++i) {
     const Standing& standing = standing_[i];
@@ -473,12 +473,12 @@ void MeshCollider::settle_waiting() {
 
 // Whether the shape comes through the surface there, and not beside its border: where a line from its lowest point, to its highest or to
 // its middle if that lies in front, crosses the plane there must be ground.
-bool MeshCollider::runs_through(const NearTriangle& t) const {
+bool MeshCollider::runs_through(const LocalTriangle& t) const {
   const Vec3 low = convex_.support(-t.normal);
   return is_ground_between(t, low, convex_.support(t.normal)) || is_ground_between(t, low, convex_.center());
 }
 
-bool MeshCollider::is_ground_between(const NearTriangle& t, Vec3 low, Vec3 high) const {
+bool MeshCollider::is_ground_between(const LocalTriangle& t, Vec3 low, Vec3 high) const {
   const float below = dot(t.normal, t.v[0] - low), above = dot(t.normal, high - t.v[0]);
   if (!(below > 0.0f && above > 0.0f)) return false;
   const Vec3 crossing = lerp(low, high, below / (below + above)) + position_;
@@ -486,7 +486,7 @@ bool MeshCollider::is_ground_between(const NearTriangle& t, Vec3 low, Vec3 high)
   std::uint32_t ids[16];
   const int count = find_triangles(surface_, grow({crossing, crossing}, slack), ids);
   for (int i = 0; i < count; ++i) {
-    const NearTriangle other = triangle(ids[i]);
+    const LocalTriangle other = triangle(ids[i]);
     const Vec3 p = crossing - position_;
     bool inside = dot(other.normal, t.normal) > kSameNormal;
     for (int k = 0; k < 3; ++k) inside = inside && dot(other.outward[k], p - other.v[k]) <= slack;
@@ -498,7 +498,7 @@ bool MeshCollider::is_ground_between(const NearTriangle& t, Vec3 low, Vec3 high)
 // A shape that leans and pierces a large flat patch may have neither a corner above nor a triangle in question below.
 void MeshCollider::settle_deep_patches() {
   for (int i = 0; i < candidates_.deep_patch_count; ++i) {
-    const NearTriangle t = triangle(candidates_.deep_patches[i]);
+    const LocalTriangle t = triangle(candidates_.deep_patches[i]);
     know_side(t.normal);
     const bool behind = dot(t.normal, convex_.center() - t.v[0]) < 0.0f;
     if (is_ruled_out(t, behind) || !runs_through(t)) continue;
@@ -520,7 +520,7 @@ void MeshCollider::push_out() {
   const bool in_question =
       overlap_ < -2.0f * kAxisBias * convex_.size() && groups_.deepest() > 0.1f * overlap_;
   if (!exit_.overlaps || !(in_question || groups_.empty())) return;
-  const NearTriangle t = triangle(exit_.id);
+  const LocalTriangle t = triangle(exit_.id);
   const Vec3 lowest = convex_.support(-t.normal);
   const float separation = dot(t.normal, lowest - t.v[0]) - convex_.radius();
   points_.count = 0;
@@ -530,7 +530,7 @@ void MeshCollider::push_out() {
 
 // Where the lowest corner of a polyhedron lies a little beside the triangle, the points above its face are all farther than
 // the edge is, and an axis search does not know the direction between that corner and the edge. Keeps `points_`.
-void MeshCollider::add_corner(const NearTriangle& t, float face_separation, float best) {
+void MeshCollider::add_corner(const LocalTriangle& t, float face_separation, float best) {
   const float slack = kAxisBias * convex_.size();
   // What lies apart along some direction is no nearer than that, so that no search need tell.
   if (points_.deepest() <= best + 0.9f * slack) return;
@@ -555,8 +555,8 @@ bool MeshCollider::is_corner_missing() const {
 // of edges only, so what they tell may be nearer than any point that was found along their directions.
 void MeshCollider::look_for_corners() {
   for (int i = 0; i < candidates_.count; ++i) {
-    if ((apart_[i / PlacedTriangles::kCount] >> i % PlacedTriangles::kCount & 1) != 0) continue;
-    NearTriangle t = place_triangle(surface_, candidates_.ids[i], position_, convex_);
+    if ((apart_[i / TriangleBatch::kCount] >> i % TriangleBatch::kCount & 1) != 0) continue;
+    LocalTriangle t = local_triangle(surface_, candidates_.ids[i], position_, convex_);
     know_side(t.normal);
     const float face = face_separation(t);
     if (face > max_separation_) continue;

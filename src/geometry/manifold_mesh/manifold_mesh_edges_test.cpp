@@ -3,7 +3,7 @@
 #include "geometry/shape/cooked.h"
 #include "geometry/manifold_mesh/manifold_mesh.h"
 #include "geometry/testing/mesh_contact_test.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 
 #include <gtest/gtest.h>
 
@@ -14,14 +14,14 @@ namespace {
 
 using namespace test;
 
-struct Nearest {
+struct ClosestPoints {
   double distance = 1.0e9;
   DVec3 point;
   std::uint32_t triangle = 0;
 };
 
-Nearest nearest_by_brute_force(const Mesh& mesh, Vec3 center) {
-  Nearest best;
+ClosestPoints nearest_by_brute_force(const Mesh& mesh, Vec3 center) {
+  ClosestPoints best;
   for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
     const TriangleView view = view_triangle(mesh, t);
     const DVec3 p =
@@ -78,7 +78,7 @@ TEST(CollideMeshEdges, SphereEqualsBruteForceOnRoughGround) {
       }
       y += random.between(-0.02f, 0.015f);
       const Vec3 place{center.x, y, center.z};
-      const Nearest want = nearest_by_brute_force(mesh, place);
+      const ClosestPoints want = nearest_by_brute_force(mesh, place);
       const float separation = float(want.distance) - radius;
       const Manifolds found = collide(ground, Sphere{radius}, {place, random.rotation()});
       if (separation > kMargin) {
@@ -395,12 +395,12 @@ TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
     if (!hull) continue;
     const Shape shape = make_shape(AnyShape(*hull));
     Transform pose{{random.between(-0.2f, 0.2f), 1.5f, random.between(-0.2f, 0.2f)}, random.rotation()};
-    gyre::Nearest near;
+    gyre::ClosestPoints near;
     const double gap = double(random.between(0.001f, 0.006f));
     for (int k = 0; k < 8; ++k) {  // down, until they all but touch
-      const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+      const PosedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
       near.distance = 1.0;
-      if (!find_nearest(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < gap) break;
+      if (!find_closest_points(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < gap) break;
       pose.position.y -= float(near.distance - 0.98 * gap);
     }
     if (near.overlap || near.distance > 0.009) continue;
@@ -427,9 +427,9 @@ TEST(CollideMeshEdges, HullsBesideTheBorderOfASlopeAreNotPushed) {
     const Shape shape = make_shape(AnyShape(*hull));
     const Transform pose{{random.between(0.0f, 0.7f), random.between(0.0f, 0.9f), random.between(-0.2f, 0.2f)},
                          random.rotation()};
-    gyre::Nearest near;
-    const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
-    if (!find_nearest(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < 1.0e-3) continue;
+    gyre::ClosestPoints near;
+    const PosedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+    if (!find_closest_points(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < 1.0e-3) continue;
     ++apart;
     const Manifolds found = collide(ground, *hull, pose, 0.01f);
     pushed += found.count > 0 && found.deepest() < 0.0f;
@@ -526,11 +526,11 @@ TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
     if (!hull) continue;
     const Shape shape = make_shape(AnyShape(*hull));
     Transform pose{{random.between(-0.2f, 0.2f), 1.0f, random.between(-0.2f, 0.2f)}, random.rotation()};
-    gyre::Nearest near;
+    gyre::ClosestPoints near;
     for (int k = 0; k < 8; ++k) {  // down, until they all but touch
-      const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+      const PosedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
       near.distance = 1.0;  // beside the ground there is nothing
-      if (!find_nearest(make_shape(ground), placed, 10.0, near)) break;
+      if (!find_closest_points(make_shape(ground), placed, 10.0, near)) break;
       if (near.overlap || near.distance < 2.0e-4) break;
       pose.position.y -= float(near.distance - 1.0e-4);
     }

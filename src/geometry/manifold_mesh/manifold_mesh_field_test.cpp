@@ -169,7 +169,7 @@ TEST(CollideHeightField, BordersAndTheLastCell) {
 int candidate_count(const Geometry& ground, const AnyShape& any, const Transform& pose) {
   const Shape mesh = make_shape(ground), shape = make_shape(any);
   const Surface surface(mesh);
-  const PlacedConvex convex(shape, pose.orientation);
+  const LocalConvex convex(shape, pose.orientation);
   MeshCandidates candidates;
   find_candidates(select_mesh_kernels(), surface, convex, pose.position, kMargin, nullptr, candidates);
   return candidates.count;

@@ -13,7 +13,7 @@ using namespace test;
 
 constexpr float kReach = 0.1f;
 
-TriangleLanes<4> lanes_of(const NearTriangle& t, Vec3 position) {
+TriangleLanes<4> lanes_of(const LocalTriangle& t, Vec3 position) {
   TriangleLanes<4> lanes;
   float reach = largest(absolute(position));
   for (int i = 0; i < 3; ++i) {
@@ -47,9 +47,9 @@ TEST(MeshApart, WhatIsApartIsFoundApart) {
     const Shape other = make_shape(any);
     for (int round = 0; round < 10; ++round) {
       const Vec3 position = random.in_box(1.5f);
-      const PlacedConvex convex(other, random.rotation());
+      const LocalConvex convex(other, random.rotation());
       for (std::uint32_t id = 0; id < surface.mesh->triangle_count(); ++id) {
-        const NearTriangle t = near_triangle(surface, id, position, convex);
+        const LocalTriangle t = measured_triangle(surface, id, position, convex);
         const float face = convex.lowest(t.normal) - dot(t.normal, t.v[0]) - convex.radius();
         if (face > kReach) continue;
         AxisScratch scratch;

@@ -33,7 +33,7 @@ using Floats = Wide<4>;
 
 class DirectionSearch {
  public:
-  DirectionSearch(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+  DirectionSearch(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                   float face_separation, float max_separation, AxisScratch& scratch)
       : surface_(surface), t_(triangle), convex_(convex), max_separation_(max_separation), scratch_(scratch) {
     found_.best = face_separation;
@@ -197,8 +197,8 @@ class DirectionSearch {
   void deepest_way_out(const CorePair& pair, const CoreDistance& found);
 
   const Surface& surface_;
-  const NearTriangle& t_;
-  const PlacedConvex& convex_;
+  const LocalTriangle& t_;
+  const LocalConvex& convex_;
   float max_separation_;
   AxisScratch& scratch_;
   float core_best_;  // the largest separation of core and triangle along any direction, also backwards
@@ -206,7 +206,7 @@ class DirectionSearch {
 };
 
 void DirectionSearch::face_axes() {
-  for (int first = 0; first < convex_.face_count(); first += PlacedConvex::kLanes) {
+  for (int first = 0; first < convex_.face_count(); first += LocalConvex::kLanes) {
     const Floats separations =
         Floats::load_unaligned(scratch_.before_face + first) - Floats(convex_.radius());
     // Behind the last face its copies stand: they are no better than it is.
@@ -226,12 +226,12 @@ void DirectionSearch::face_axes() {
 // is a sum of the two faces' normals, and what it is worth, all but for rounding, the same sum of what the normals are
 // worth, which serve all edges of their faces. So most pairs are known to be in vain by their faces' marks.
 void DirectionSearch::edge_axes() {
-  float outward[3][PlacedConvex::kMaxVertices];
-  std::int32_t marks[PlacedConvex::kMaxVertices];
+  float outward[3][LocalConvex::kMaxVertices];
+  std::int32_t marks[LocalConvex::kMaxVertices];
   EdgeBar bar = edge_bar();
   convex_.dot_faces(t_.along, scratch_.along);
   convex_.dot_faces(t_.outward, outward);
-  for (int f = 0; f < convex_.face_count(); f += PlacedConvex::kLanes) {
+  for (int f = 0; f < convex_.face_count(); f += LocalConvex::kLanes) {
     WideInt<4> mark(0);
     for (int i = 0; i < 3; ++i) {
       const Mask<4> backwards = Floats::load_unaligned(scratch_.along[i] + f) < Floats(0.0f);
@@ -476,16 +476,16 @@ Surface::Surface(const Shape& shape) {
   if (shape.kind == ShapeKind::height_field) field = shape.field;
 }
 
-NearTriangle place_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
-                            const PlacedConvex& convex) {
-  NearTriangle t;
+LocalTriangle local_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                            const LocalConvex& convex) {
+  LocalTriangle t;
   if (surface.mesh != nullptr) {
     view_triangle(*surface.mesh, id, t);
   } else {
     static_cast<TriangleView&>(t) = view_triangle(*surface.field, id);
   }
   if (surface.double_sided() && dot(t.normal, convex.center() + position - t.v[0]) < 0.0f) {
-    static_cast<TriangleView&>(t) = seen_from_behind(t);
+    static_cast<TriangleView&>(t) = back_view(t);
     t.turned = true;
   }
   // The largest coordinate, from both its ends: cheaper than the size of each.
@@ -497,7 +497,7 @@ NearTriangle place_triangle(const Surface& surface, std::uint32_t id, Vec3 posit
   return t;
 }
 
-void measure_edges(NearTriangle& t) {
+void measure_edges(LocalTriangle& t) {
   for (int i = 0; i < 3; ++i) {
     const Vec3 edge = t.v[next_corner(i)] - t.v[i];
     t.length[i] = max(length(edge), 1.0e-30f);
@@ -506,12 +506,12 @@ void measure_edges(NearTriangle& t) {
   }
 }
 
-AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+AxisSearch search_axes(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                        float face_separation, float max_separation, AxisScratch& scratch) {
   return DirectionSearch(surface, triangle, convex, face_separation, max_separation, scratch).run();
 }
 
-AxisSearch search_nearest(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+AxisSearch search_nearest(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                           float face_separation, float max_separation, AxisScratch& scratch) {
   return DirectionSearch(surface, triangle, convex, face_separation, max_separation, scratch).run_nearest();
 }

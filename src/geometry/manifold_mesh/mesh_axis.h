@@ -11,7 +11,7 @@
 
 #include "geometry/shape/height_field.h"
 #include "geometry/shape/mesh.h"
-#include "geometry/manifold_mesh/placed_convex.h"
+#include "geometry/manifold_mesh/local_convex.h"
 
 namespace gyre {
 
@@ -41,7 +41,7 @@ struct Surface {
 };
 
 // A triangle moved to the origin of the convex shape, with its edges measured.
-struct NearTriangle : TriangleView {
+struct LocalTriangle : TriangleView {
   // Known once the edges are measured, and not cleared before.
   union {
     Vec3 along[3];  // unit, from v[i] to the next corner
@@ -53,17 +53,17 @@ struct NearTriangle : TriangleView {
   float slack = 0.0f;   // m: what rounding can do to the places of its corners
   bool turned = false;  // seen from behind: corners 1 and 2 have changed places against the surface's own
 
-  NearTriangle() {}
+  LocalTriangle() {}
 };
 
 // The triangle without its edges' measures. `position` is that of the convex shape. A double-sided surface shows the side on
 // which the shape's middle lies.
-NearTriangle place_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
-                            const PlacedConvex& convex);
-void measure_edges(NearTriangle& triangle);
-inline NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
-                                  const PlacedConvex& convex) {
-  NearTriangle triangle = place_triangle(surface, id, position, convex);
+LocalTriangle local_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                            const LocalConvex& convex);
+void measure_edges(LocalTriangle& triangle);
+inline LocalTriangle measured_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                                  const LocalConvex& convex) {
+  LocalTriangle triangle = local_triangle(surface, id, position, convex);
   measure_edges(triangle);
   return triangle;
 }
@@ -100,18 +100,18 @@ struct AxisSearch {
 // along its edges.
 struct AxisScratch {
   Hull triangle;
-  float before[3][PlacedConvex::kMaxVertices], before_face[PlacedConvex::kMaxVertices];
-  float along[3][PlacedConvex::kMaxVertices];
+  float before[3][LocalConvex::kMaxVertices], before_face[LocalConvex::kMaxVertices];
+  float along[3][LocalConvex::kMaxVertices];
 };
 
 // Looks at all directions but the face's normal, for which the caller knows the separation of the surfaces. Ends early once
 // one separation is above `max_separation`.
-AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+AxisSearch search_axes(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                        float face_separation, float max_separation, AxisScratch& scratch);
 
 // The same from the nearest points alone, for shapes that are apart: also the directions between a corner and an edge or a
 // corner, which an axis search over polyhedra does not know.
-AxisSearch search_nearest(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+AxisSearch search_nearest(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                           float face_separation, float max_separation, AxisScratch& scratch);
 
 }  // namespace gyre

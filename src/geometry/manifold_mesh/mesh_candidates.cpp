@@ -30,7 +30,7 @@ AxisBox axis_box(const Mesh& mesh, std::uint32_t triangle) {
 }
 
 // A cube well inside of what a shape reaches, in the surface's frame: what overlaps it need not be asked for more.
-AxisBox inner_cube(const PlacedConvex& convex, Vec3 position, float max_separation) {
+AxisBox inner_cube(const LocalConvex& convex, Vec3 position, float max_separation) {
   constexpr float kInBall = 0.57f;  // a cube's half side in a ball of radius 1
   const Aabb& local = convex.local_box();
   const float half =
@@ -41,7 +41,7 @@ AxisBox inner_cube(const PlacedConvex& convex, Vec3 position, float max_separati
 
 class Gatherer {
  public:
-  Gatherer(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex, Vec3 position,
+  Gatherer(const MeshKernels& kernels, const Surface& surface, const LocalConvex& convex, Vec3 position,
            float max_separation, CachedTriangles* kept, MeshCandidates& out)
       : kernels_(kernels),
         surface_(surface),
@@ -152,13 +152,13 @@ class Gatherer {
     return flat(column, row) && flat(column + 1, row) && flat(column, row + 1) && flat(column + 1, row + 1);
   }
 
-  bool near(const AxisBox& box) const { return convex_.may_touch(box - position_, max_separation_); }
+  bool near(const AxisBox& box) const { return convex_.can_touch(box - position_, max_separation_); }
   // Whether that may be said of any box inside, however it is rounded there.
   bool near_any(const AxisBox& box) const {
     const AxisBox placed = box - position_;
     const Wide<4> farthest = max(-placed.low(), placed.high());
     const float rounding = 2.0e-6f * max(farthest[0], max(farthest[1], farthest[2]));
-    return convex_.may_touch(placed, max_separation_ + rounding);
+    return convex_.can_touch(placed, max_separation_ + rounding);
   }
 
   // A part that lies inside one flat patch. True if it must be entered: a corner of the shape's face may lie above it.
@@ -167,7 +167,7 @@ class Gatherer {
     if (surface_.double_sided() && dot(normal, convex_.center() + position_ - point) < 0.0f) normal = -normal;
     if (!side_known_ || !(side_.normal == normal)) {
       side_.normal = normal;
-      const PlacedConvex::Extent extent = convex_.extent(normal);
+      const LocalConvex::Extent extent = convex_.extent(normal);
       side_.lowest = extent.low;
       side_.highest = extent.high;
       convex_.face_towards(-normal, side_.face);
@@ -197,7 +197,7 @@ class Gatherer {
     return convex_.has_vertices() && above(convex_.vertex(convex_.lowest_vertex(side_.normal)));
   }
 
-  bool near_patch(const Aabb& box) const { return convex_.may_touch(AxisBox(box) - position_, 0.0f); }
+  bool near_patch(const Aabb& box) const { return convex_.can_touch(AxisBox(box) - position_, 0.0f); }
 
   void note_deep(std::uint32_t id, Vec3 normal) {
     const float height = dot(normal, surface_.triangle(id).v[0] - position_);
@@ -278,7 +278,7 @@ class Gatherer {
 
   const MeshKernels& kernels_;
   const Surface& surface_;
-  const PlacedConvex& convex_;
+  const LocalConvex& convex_;
   Vec3 position_;
   float max_separation_;
   CachedTriangles* kept_;
@@ -292,7 +292,7 @@ class Gatherer {
 
 }  // namespace
 
-void find_candidates(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex,
+void find_candidates(const MeshKernels& kernels, const Surface& surface, const LocalConvex& convex,
                      Vec3 position, float max_separation, CachedTriangles* kept, MeshCandidates& out) {
   out.count = 0;
   out.deep_patch_count = 0;

@@ -24,7 +24,7 @@ struct MeshCandidates {
 
 // `position` is the place of the convex shape's origin in the surface's frame. `kept`, if it is not null: what is kept of a mesh
 // from one look of this shape at it to the next. What is found is the same with it and without it.
-void find_candidates(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex,
+void find_candidates(const MeshKernels& kernels, const Surface& surface, const LocalConvex& convex,
                      Vec3 position, float max_separation, CachedTriangles* kept, MeshCandidates& out);
 
 // The triangles whose boxes overlap a box in the surface's frame, ascending by their place in the tree or pyramid; those

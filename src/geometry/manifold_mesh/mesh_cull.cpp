@@ -4,23 +4,23 @@
 namespace gyre {
 namespace {
 
-constexpr int kCount = PlacedTriangles::kCount;
+constexpr int kCount = TriangleBatch::kCount;
 
 // A curved core has no columns: it is asked by itself.
 void find_extents(const TriangleColumns& triangles, const std::uint32_t* ids, int count, Vec3 position,
-                  const PlacedConvex& convex, PlacedTriangles& out) {
+                  const LocalConvex& convex, TriangleBatch& out) {
   for (int k = 0; k < kCount; ++k) {
     const std::size_t id = ids[min(k, count - 1)];
     const Vec3 normal = triangles.normals[id], corner = triangles.vertices[triangles.indices[3 * id]];
     const bool turned = triangles.double_sided && dot(normal, convex.center() + position - corner) < 0.0f;
-    const PlacedConvex::Extent extent = convex.extent(turned ? -normal : normal);
+    const LocalConvex::Extent extent = convex.extent(turned ? -normal : normal);
     out.low[k] = extent.low;
     out.high[k] = extent.high;
   }
 }
 
 void place(const MeshKernels& kernels, const TriangleColumns& triangles, const std::uint32_t* ids, int count,
-           Vec3 position, const PlacedConvex& convex, float max_separation, PlacedTriangles& out) {
+           Vec3 position, const LocalConvex& convex, float max_separation, TriangleBatch& out) {
   if (!convex.has_vertices()) find_extents(triangles, ids, count, position, convex, out);
   kernels.place(triangles, ids, count, convex.columns(), position, max_separation, out);
 }
@@ -31,8 +31,8 @@ TriangleColumns columns_of(const Mesh& mesh) {
   return {mesh.vertices.data(), mesh.indices.data(), mesh.normals.data(), mesh.double_sided};
 }
 
-void place_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
-                     Vec3 position, const PlacedConvex& convex, float max_separation, PlacedTriangles& out) {
+void load_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
+                     Vec3 position, const LocalConvex& convex, float max_separation, TriangleBatch& out) {
   if (surface.mesh != nullptr)
     return place(kernels, columns_of(*surface.mesh), ids, count, position, convex, max_separation, out);
   // A field has no such columns: they are made.
@@ -47,12 +47,12 @@ void place_triangles(const MeshKernels& kernels, const Surface& surface, const s
   place(kernels, {corners, kNumbers, normals, false}, kNumbers, count, position, convex, max_separation, out);
 }
 
-NearTriangle take_triangle(const Surface& surface, std::uint32_t id, const PlacedTriangles& placed,
+LocalTriangle batch_triangle(const Surface& surface, std::uint32_t id, const TriangleBatch& placed,
                            int lane) {
-  NearTriangle t;
+  LocalTriangle t;
   t.turned = (placed.turned >> lane & 1u) != 0;
   if (t.turned) {
-    static_cast<TriangleView&>(t) = seen_from_behind(surface.triangle(id));
+    static_cast<TriangleView&>(t) = back_view(surface.triangle(id));
   } else if (surface.mesh != nullptr) {
     view_surroundings(*surface.mesh, id, t);
   } else {

@@ -9,11 +9,11 @@ namespace gyre {
 
 TriangleColumns columns_of(const Mesh& mesh);
 
-// Of `count` triangles, 1 to PlacedTriangles::kCount. `position` is the place of the convex shape's origin in the surface's frame.
-void place_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
-                     Vec3 position, const PlacedConvex& convex, float max_separation, PlacedTriangles& out);
+// Of `count` triangles, 1 to TriangleBatch::kCount. `position` is the place of the convex shape's origin in the surface's frame.
+void load_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
+                     Vec3 position, const LocalConvex& convex, float max_separation, TriangleBatch& out);
 
-// One of them that may be touched, as near_triangle() tells it.
-NearTriangle take_triangle(const Surface& surface, std::uint32_t id, const PlacedTriangles& placed, int lane);
+// One of them that may be touched, as measured_triangle() tells it.
+LocalTriangle batch_triangle(const Surface& surface, std::uint32_t id, const TriangleBatch& placed, int lane);
 
 }  // namespace gyre

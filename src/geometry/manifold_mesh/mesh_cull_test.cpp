@@ -16,7 +16,7 @@ using namespace test;
 constexpr float kReach = 0.1f;
 
 // Whether the triangle is farther from the shape than it may be, or has all of it behind.
-bool is_out_of_reach(const NearTriangle& t, const PlacedConvex& convex) {
+bool is_out_of_reach(const LocalTriangle& t, const LocalConvex& convex) {
   if (convex.highest(t.normal) + convex.radius() <= dot(t.normal, t.v[0]) + 1.0e-5f) return true;
   const DVec3 corners[3] = {DVec3(t.v[0]), DVec3(t.v[1]), DVec3(t.v[2])};
   const CorePair pair(corners, convex.shape(), {}, normalized(to_double(convex.orientation())));
@@ -25,14 +25,14 @@ bool is_out_of_reach(const NearTriangle& t, const PlacedConvex& convex) {
 }
 
 // Whether both searches find what is known to be apart out of reach, and so have no say in any contact.
-bool is_apart_to_searches(const Surface& surface, const NearTriangle& t, const PlacedConvex& convex) {
+bool is_apart_to_searches(const Surface& surface, const LocalTriangle& t, const LocalConvex& convex) {
   AxisScratch scratch;
   const float face = convex.lowest(t.normal) - convex.radius() - dot(t.normal, t.v[0]);
   return search_axes(surface, t, convex, face, kReach, scratch).best > kReach &&
          search_nearest(surface, t, convex, face, kReach, scratch).best > kReach;
 }
 
-bool same(const NearTriangle& a, const NearTriangle& b) {
+bool same(const LocalTriangle& a, const LocalTriangle& b) {
   bool all = a.id == b.id && a.normal == b.normal && a.slack == b.slack && a.turned == b.turned &&
              a.flat_corners == b.flat_corners;
   for (int i = 0; i < 3; ++i) {
@@ -44,20 +44,20 @@ bool same(const NearTriangle& a, const NearTriangle& b) {
 }
 
 // What must be so of one triangle of those that were placed.
-void check_lane(const Surface& surface, std::uint32_t id, const PlacedTriangles& placed, int lane,
-                Vec3 position, const PlacedConvex& convex) {
-  const NearTriangle t = near_triangle(surface, id, position, convex);
-  const PlacedConvex::Extent extent = convex.extent(t.normal);
+void check_lane(const Surface& surface, std::uint32_t id, const TriangleBatch& placed, int lane,
+                Vec3 position, const LocalConvex& convex) {
+  const LocalTriangle t = measured_triangle(surface, id, position, convex);
+  const LocalConvex::Extent extent = convex.extent(t.normal);
   ASSERT_EQ(placed.low[lane], extent.low);
   ASSERT_EQ(placed.high[lane], extent.high);
   const bool touchable = (placed.touchable >> lane & 1u) != 0, apart = (placed.apart >> lane & 1u) != 0;
-  ASSERT_TRUE(touchable ? same(t, take_triangle(surface, id, placed, lane)) : is_out_of_reach(t, convex));
+  ASSERT_TRUE(touchable ? same(t, batch_triangle(surface, id, placed, lane)) : is_out_of_reach(t, convex));
   ASSERT_TRUE(!apart || is_apart_to_searches(surface, t, convex));
-  PlacedTriangles alone;
-  place_triangles(mesh_kernels<4>(), surface, &id, 1, position, convex, kReach, alone);
+  TriangleBatch alone;
+  load_triangles(mesh_kernels<4>(), surface, &id, 1, position, convex, kReach, alone);
   ASSERT_EQ(alone.touchable, touchable ? 1u : 0u);
   ASSERT_EQ(alone.apart, apart ? 1u : 0u);
-  ASSERT_TRUE(!touchable || same(t, take_triangle(surface, id, alone, 0)));
+  ASSERT_TRUE(!touchable || same(t, batch_triangle(surface, id, alone, 0)));
 }
 
 void check(const Geometry& ground, Random& random) {
@@ -68,14 +68,14 @@ void check(const Geometry& ground, Random& random) {
     const Shape other = make_shape(any);
     for (int round = 0; round < 40; ++round) {
       const Vec3 position = random.in_box(2.0f);
-      const PlacedConvex convex(other, random.rotation());
+      const LocalConvex convex(other, random.rotation());
       // Also fewer than all lanes.
-      const int count = 1 + round % PlacedTriangles::kCount;
+      const int count = 1 + round % TriangleBatch::kCount;
       for (std::uint32_t first = 0; first + 8 <= 128; first += std::uint32_t(count)) {
-        std::uint32_t ids[PlacedTriangles::kCount];
+        std::uint32_t ids[TriangleBatch::kCount];
         for (int lane = 0; lane < count; ++lane) ids[lane] = first + std::uint32_t(lane);
-        PlacedTriangles placed;
-        place_triangles(select_mesh_kernels(), surface, ids, count, position, convex, kReach, placed);
+        TriangleBatch placed;
+        load_triangles(select_mesh_kernels(), surface, ids, count, position, convex, kReach, placed);
         ASSERT_EQ((placed.touchable | placed.apart) >> count, 0u);
         for (int lane = 0; lane < count; ++lane) {
           check_lane(surface, ids[lane], placed, lane, position, convex);
@@ -123,7 +123,7 @@ TEST(MeshCull, BoxesAreNearToAllKernels) {
     const Shape other = make_shape(any);
     for (int round = 0; round < 400; ++round) {
       const Vec3 position = random.in_box(2.0f), middle = position + random.in_box(0.1f);
-      const PlacedConvex convex(other, random.rotation());
+      const LocalConvex convex(other, random.rotation());
       const Aabb body{convex.box().low + position, convex.box().high + position};
       const NearBoxes boxes{grow(body, kReach), grow({middle, middle}, 0.05f), position, kReach};
       std::uint32_t ids[24];
@@ -135,7 +135,7 @@ TEST(MeshCull, BoxesAreNearToAllKernels) {
       for (int i = 0; i < count; ++i) {
         const AxisBox box(triangle_box(mesh, ids[i]));
         const bool counts = box.overlaps(AxisBox(boxes.outer)) &&
-                            (box.overlaps(AxisBox(boxes.inner)) || convex.may_touch(box - position, kReach));
+                            (box.overlaps(AxisBox(boxes.inner)) || convex.can_touch(box - position, kReach));
         ASSERT_EQ(counts, (bits >> i & 1u) != 0);
         ++(counts ? near : far);
       }

@@ -1,4 +1,4 @@
-// Triangles of a surface looked at side by side, beside one convex shape that is placed (placed_convex.h): a kernel, since a
+// Triangles of a surface looked at side by side, beside one convex shape that is placed (local_convex.h): a kernel, since a
 // processor with eight lanes does most looks at a mesh by half of the instructions.
 //
 // In: triangles by number, columns of the shape. Out: which of them have boxes near the shape; and of up to eight triangles how
@@ -44,9 +44,9 @@ struct NearBoxes {
   float reach;
 };
 
-// As NearTriangle and PlacedConvex::Extent (mesh_axis.h, placed_convex.h), side by side. Not cleared: what is behind the last triangle
+// As LocalTriangle and LocalConvex::Extent (mesh_axis.h, local_convex.h), side by side. Not cleared: what is behind the last triangle
 // is never read, nor edges where none may be touched.
-struct PlacedTriangles {
+struct TriangleBatch {
   static constexpr int kCount = 8;
   typedef float Column[kCount];
   struct Columns {
@@ -69,9 +69,9 @@ struct MeshKernels {
   // Of up to 32 triangles: bits of those whose boxes count.
   std::uint32_t (*find_near)(const TriangleColumns& triangles, const std::uint32_t* ids, int count,
                              const ConvexColumns& convex, const NearBoxes& boxes);
-  // Of up to PlacedTriangles::kCount.
+  // Of up to TriangleBatch::kCount.
   void (*place)(const TriangleColumns& triangles, const std::uint32_t* ids, int count,
-                const ConvexColumns& convex, Vec3 position, float max_separation, PlacedTriangles& out);
+                const ConvexColumns& convex, Vec3 position, float max_separation, TriangleBatch& out);
 };
 
 // Those that this machine runs best.

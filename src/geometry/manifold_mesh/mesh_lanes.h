@@ -1,4 +1,4 @@
-// W triangles side by side. See mesh_kernels.h. Numbers are rounded as place_triangle and measure_edges round them.
+// W triangles side by side. See mesh_kernels.h. Numbers are rounded as local_triangle and measure_edges round them.
 #pragma once
 
 #include "geometry/manifold_mesh/mesh_apart_lanes.h"
@@ -57,9 +57,9 @@ GYRE_INLINE void gather_corners(const TriangleColumns& triangles, const std::uin
 
 // ------------------------------------------------------------------------------------------------------------ the boxes
 
-// As PlacedConvex::may_touch.
+// As LocalConvex::can_touch.
 template <int W>
-GYRE_INLINE Mask<W> may_touch(const ConvexColumns& convex, Vec3W<W> low, Vec3W<W> high, float reach) {
+GYRE_INLINE Mask<W> can_touch(const ConvexColumns& convex, Vec3W<W> low, Vec3W<W> high, float reach) {
   const Wide<W> part(0.5f);
   const Vec3W<W> middle = part * (low + high), half = part * (high - low), size = absolute(middle);
   if (convex.core == ConvexColumns::Core::ball) {
@@ -103,7 +103,7 @@ std::uint32_t find_near(const TriangleColumns& triangles, const std::uint32_t* i
     const Mask<W> outer = overlaps<W>(low, high, boxes.outer);
     if (none(outer)) continue;
     const Mask<W> inner = overlaps<W>(low, high, boxes.inner) |
-                          may_touch<W>(convex, low - position, high - position, boxes.reach);
+                          can_touch<W>(convex, low - position, high - position, boxes.reach);
     near |= to_bits(outer & inner) << first;
   }
   return count < 32 ? near & ((1u << count) - 1u) : near;
@@ -112,7 +112,7 @@ std::uint32_t find_near(const TriangleColumns& triangles, const std::uint32_t* i
 // -------------------------------------------------------------------------------------------------------- the triangles
 
 template <int W>
-GYRE_INLINE void store(Vec3W<W> v, PlacedTriangles::Columns& to, int first) {
+GYRE_INLINE void store(Vec3W<W> v, TriangleBatch::Columns& to, int first) {
   v.x.store_unaligned(to.x + first);
   v.y.store_unaligned(to.y + first);
   v.z.store_unaligned(to.z + first);
@@ -154,7 +154,7 @@ GYRE_INLINE void find_extents(const ConvexColumns& convex, Vec3W<W> normal, Wide
 }
 
 template <int W>
-GYRE_INLINE void measure_lanes(const TriangleLanes<W>& t, int first, PlacedTriangles& out) {
+GYRE_INLINE void measure_lanes(const TriangleLanes<W>& t, int first, TriangleBatch& out) {
   GYRE_UNROLL
   for (int i = 0; i < 3; ++i) {
     const Vec3W<W> edge = t.corner[i == 2 ? 0 : i + 1] - t.corner[i];
@@ -167,8 +167,8 @@ GYRE_INLINE void measure_lanes(const TriangleLanes<W>& t, int first, PlacedTrian
 }
 
 template <int W>
-void place_triangles(const TriangleColumns& triangles, const std::uint32_t* ids, int count,
-                     const ConvexColumns& convex, Vec3 position, float max_separation, PlacedTriangles& out) {
+void load_triangles(const TriangleColumns& triangles, const std::uint32_t* ids, int count,
+                     const ConvexColumns& convex, Vec3 position, float max_separation, TriangleBatch& out) {
   out.touchable = out.apart = out.turned = 0;
   for (int first = 0; first < count; first += W) {
     std::uint32_t lanes[W];
@@ -209,7 +209,7 @@ void place_triangles(const TriangleColumns& triangles, const std::uint32_t* ids,
 
 template <int W>
 constexpr MeshKernels mesh_kernels() {
-  return {find_near<W>, place_triangles<W>};
+  return {find_near<W>, load_triangles<W>};
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -76,7 +76,7 @@ bool inside_polygon(const FacePolygon& face, Vec3 p, float slack) {
 }
 
 // The vertex of a hull that is lowest may belong to a face that leans more than the facing one.
-void add_lowest_vertex(const NearTriangle& t, const PlacedConvex& convex, const PlaneSide& side,
+void add_lowest_vertex(const LocalTriangle& t, const LocalConvex& convex, const PlaneSide& side,
                        const Emitter& emit) {
   if (convex.shape().kind != ShapeKind::hull) return;
   const int lowest = convex.lowest_vertex(t.normal);
@@ -91,7 +91,7 @@ void add_lowest_vertex(const NearTriangle& t, const PlacedConvex& convex, const 
 }
 
 // Which corners of the triangle lie under the polygon, seen along the triangle's normal: bits.
-unsigned find_corners_under(const NearTriangle& t, const FacePolygon& face, float facing,
+unsigned find_corners_under(const LocalTriangle& t, const FacePolygon& face, float facing,
                             float (&heights)[4]) {
   unsigned under = ~unsigned(t.flat_corners) & 7u;
   const Vectors corners = side_by_side(t.v[0], t.v[1], t.v[2], t.v[2]), normal = splat<4>(face.normal);
@@ -108,7 +108,7 @@ unsigned find_corners_under(const NearTriangle& t, const FacePolygon& face, floa
   return under;
 }
 
-void corners_under_face(const NearTriangle& t, const FacePolygon& face, const Emitter& emit) {
+void corners_under_face(const LocalTriangle& t, const FacePolygon& face, const Emitter& emit) {
   const float facing = dot(face.normal, t.normal);
   if (face.count < 3 || facing > -0.1f) return;
   float heights[4];
@@ -125,7 +125,7 @@ struct CornersOutside {
   float way[3][kMaxFaceVertices];
   unsigned beyond[3] = {0, 0, 0};
 
-  CornersOutside(const NearTriangle& t, const FacePolygon& face) {
+  CornersOutside(const LocalTriangle& t, const FacePolygon& face) {
     const auto vertex = [&](int k) { return face.vertices[min(k, face.count - 1)]; };
     for (int k = 0; k < face.count; k += 4) {
       const Vectors corners = side_by_side(vertex(k), vertex(k + 1), vertex(k + 2), vertex(k + 3));
@@ -141,7 +141,7 @@ struct CornersOutside {
 
 }  // namespace
 
-void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneSide& side,
+void face_points(const LocalTriangle& t, const LocalConvex& convex, const PlaneSide& side,
                  float max_separation, MeshPoints& out) {
   const FacePolygon& face = side.face;
   const Emitter emit{t.normal, t.v[0], convex.radius(), max_separation, out};
@@ -173,7 +173,7 @@ void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneS
 namespace {
 
 // The way goes both down to the plane and along it to the triangle.
-bool comes_by_valleys(const NearTriangle& t, Vec3 p, float separation, float reach) {
+bool has_valley_points(const LocalTriangle& t, Vec3 p, float separation, float reach) {
   if (separation < 0.0f || separation > reach) return false;
   const float farthest = square(reach) - square(separation);
   bool beside = false;
@@ -190,21 +190,21 @@ bool comes_by_valleys(const NearTriangle& t, Vec3 p, float separation, float rea
 
 }  // namespace
 
-void points_by_valleys(const NearTriangle& t, const PlacedConvex& convex, float max_separation,
+void valley_points(const LocalTriangle& t, const LocalConvex& convex, float max_separation,
                        MeshPoints& out) {
   if (convex.vertex_count() > 2) return;
   const Emitter emit{t.normal, t.v[0], convex.radius(), max_separation, out};
   for (int k = 0; k < convex.vertex_count(); ++k) {
     const Vec3 p = convex.vertex(k);
     const float separation = dot(t.normal, p - t.v[0]) - convex.radius();
-    if (comes_by_valleys(t, p, separation, max_separation))
+    if (has_valley_points(t, p, separation, max_separation))
       emit.pair(p, separation, point_name(PointKind::shape_corner, normal_name(t.normal), std::uint32_t(k)));
   }
 }
 
-bool comes_by_valleys(const NearTriangle& t, const PlacedConvex& convex, float reach) {
+bool has_valley_points(const LocalTriangle& t, const LocalConvex& convex, float reach) {
   MeshPoints found;
-  points_by_valleys(t, convex, reach, found);
+  valley_points(t, convex, reach, found);
   return found.count > 0;
 }
 
@@ -212,7 +212,7 @@ namespace {
 
 // One edge of the triangle, and what of the shape faces it.
 struct EdgeContact {
-  const NearTriangle& t;
+  const LocalTriangle& t;
   int edge;
   const FacePolygon& face;
   Vec3 direction;
@@ -315,7 +315,7 @@ void lowest_edge(const FacePolygon& face, Vec3 direction, FacePolygon& out) {
   out.ids[1] = face.ids[other];
 }
 
-void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex, const FeatureAxis& axis,
+void corner_points(const LocalTriangle& t, int corner, const LocalConvex& convex, const FeatureAxis& axis,
                    const FacePolygon& face, const Emitter& emit) {
   const Vec3 v = t.v[corner];
   const std::uint32_t on_shape = face.count == 2 ? edge_name(face, 0) : face.feature;
@@ -334,7 +334,7 @@ void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex
 }
 
 // What of the shape lies along an edge of the triangle when it is no face: an edge or a point.
-void narrow_feature(const PlacedConvex& convex, const FeatureAxis& axis, const FacePolygon& face,
+void narrow_feature(const LocalConvex& convex, const FeatureAxis& axis, const FacePolygon& face,
                     FacePolygon& out) {
   if (axis.source == AxisSource::shape_edge) {
     out.count = 2;
@@ -352,7 +352,7 @@ void narrow_feature(const PlacedConvex& convex, const FeatureAxis& axis, const F
 
 }  // namespace
 
-void feature_points(const NearTriangle& t, const PlacedConvex& convex, const FeatureAxis& axis,
+void feature_points(const LocalTriangle& t, const LocalConvex& convex, const FeatureAxis& axis,
                     float max_separation, MeshPoints& out) {
   const Vec3 d = axis.direction;
   FacePolygon face;

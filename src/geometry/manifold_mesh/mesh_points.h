@@ -43,18 +43,18 @@ struct MeshPoints {
 };
 
 // Points along the triangle's normal. `side` must have its face.
-void face_points(const NearTriangle& triangle, const PlacedConvex& convex, const PlaneSide& side,
+void face_points(const LocalTriangle& triangle, const LocalConvex& convex, const PlaneSide& side,
                  float max_separation, MeshPoints& out);
 
 // Points of a ball or capsule on a triangle that it does not lie over yet, but may touch on a way of `max_separation`, before anybody
 // looks again: the ends of its core that lie apart from the triangle's plane, and beside the triangle beyond concave edges alone. There
 // the plane runs below the surface, so it stops nothing that has not come over the triangle. Named as by face_points().
-void points_by_valleys(const NearTriangle& triangle, const PlacedConvex& convex, float max_separation,
+void valley_points(const LocalTriangle& triangle, const LocalConvex& convex, float max_separation,
                        MeshPoints& out);
-bool comes_by_valleys(const NearTriangle& triangle, const PlacedConvex& convex, float max_separation);
+bool has_valley_points(const LocalTriangle& triangle, const LocalConvex& convex, float max_separation);
 
 // Points along the direction of a corner or an edge.
-void feature_points(const NearTriangle& triangle, const PlacedConvex& convex, const FeatureAxis& axis,
+void feature_points(const LocalTriangle& triangle, const LocalConvex& convex, const FeatureAxis& axis,
                     float max_separation, MeshPoints& out);
 
 }  // namespace gyre

@@ -139,8 +139,8 @@ Error CoverCheck::check_crossings(std::uint32_t i) {
 bool CoverCheck::count_crossings(std::uint32_t self, DVec3 from, DVec3 direction, int& count) const {
   bool certain = true;
   count = 0;
-  const BoxLine ray(from, double(reach_) * direction, Vec3{});
-  walk_cast(tree_, ray, 1.0f, [&](std::uint32_t first, std::uint32_t leaf_size, float reach) {
+  const BoxRay ray(from, double(reach_) * direction, Vec3{});
+  traverse_cast(tree_, ray, 1.0f, [&](std::uint32_t first, std::uint32_t leaf_size, float reach) {
     for (std::uint32_t k = first; k < first + leaf_size; ++k) {
       const std::uint32_t j = tree_.items[k];
       if (j == self) continue;

@@ -1,9 +1,9 @@
 // A box that moves along a line, or a ray (a box without size), against boxes: those of a tree, those of a height field.
-// Never misses (line_walk.h).
+// Never misses (ray_traversal.h).
 #pragma once
 
 #include "geometry/shape/height_field.h"
-#include "geometry/tree/line_walk.h"
+#include "geometry/tree/ray_traversal.h"
 #include "geometry/tree/static_tree.h"
 
 #include <gyre/math.h>
@@ -13,7 +13,7 @@
 namespace gyre {
 
 // Whether the moving box meets `box` at a fraction from 0 to `reach`, and where first.
-inline bool meets(const BoxLine& line, const Aabb& box, float reach, float& enter) {
+inline bool meets(const BoxRay& line, const Aabb& box, float reach, float& enter) {
   float begin = 0.0f, end = reach;
   for (int axis = 0; axis < 3; ++axis) {
     const float near_plane = line.negative[axis] ? box.high[axis] : box.low[axis];
@@ -34,7 +34,7 @@ struct WaitingPlace {
 
 // Puts the places that `mask` names on a stack so that the nearest is on top; equals keep their order.
 template <class Place, class PlaceOf>
-void push_near_last(WaitingPlace<Place>* stack, int& depth, unsigned mask, const float* enter,
+void push_nearest_last(WaitingPlace<Place>* stack, int& depth, unsigned mask, const float* enter,
                     PlaceOf&& place_of) {
   const int bottom = depth;
   for (unsigned rest = mask; rest != 0; rest &= rest - 1) {
@@ -48,18 +48,18 @@ void push_near_last(WaitingPlace<Place>* stack, int& depth, unsigned mask, const
 // Calls visit(first position, count, reach) for each leaf whose box is met at a fraction from 0 to `reach`, roughly from
 // near to far. visit returns the new reach, never more than the old one.
 template <class Visit>
-void walk_cast(const StaticTree& tree, const BoxLine& line, float reach, Visit&& visit) {
-  static_assert(StaticTree::kStackSize <= LineWalk::kRoom);
+void traverse_cast(const StaticTree& tree, const BoxRay& line, float reach, Visit&& visit) {
+  static_assert(StaticTree::kStackSize <= RayTraversal::kRoom);
   if (tree.nodes.empty()) return;
-  const WalkLine<StaticNode> walk_on = select_static_line_walk();
-  LineWalk walk(line, 0, reach);
+  const RayTraversalKernel<StaticNode> walk_on = select_static_ray_traversal();
+  RayTraversal walk(line, 0, reach);
   while (walk_on(tree.nodes.data(), walk))
     walk.reach = visit(leaf_first(walk.leaf), leaf_count(walk.leaf), walk.reach);
 }
 
 // The same for the solid cells of a height field: visit(column, row, reach).
 template <class Visit>
-void walk_cast(const HeightField& field, const BoxLine& line, float reach, Visit&& visit) {
+void traverse_cast(const HeightField& field, const BoxRay& line, float reach, Visit&& visit) {
   WaitingPlace<HeightBlock> stack[3 * 32 + 4];
   int depth = 0;
   stack[depth++] = {{int(field.levels.size()) - 1, 0, 0}, 0.0f};
@@ -95,7 +95,7 @@ void walk_cast(const HeightField& field, const BoxLine& line, float reach, Visit
       if (heights.low <= heights.high && meets(line, block_box(field, part), reach, enter[k]))
         mask |= 1u << k;
     }
-    push_near_last(stack, depth, mask, enter, child);
+    push_nearest_last(stack, depth, mask, enter, child);
   }
 }
 

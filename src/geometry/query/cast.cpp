@@ -97,7 +97,7 @@ void join(Stretch& s, const Stretch& part) {
 
 // A point, segment or box swept by a ball: the rods along its edges, the balls at its corners, and the box itself pushed
 // out along each axis.
-Stretch inside_swept_core(const LocalRay& ray, DVec3 core, double radius) {
+Stretch inside_rounded_core(const LocalRay& ray, DVec3 core, double radius) {
   if (inside_box(ray, core + DVec3{radius, radius, radius}).empty()) return Stretch::none();
   Stretch s = Stretch::none();
   const double extent[3] = {core.x, core.y, core.z};
@@ -188,7 +188,7 @@ Stretch stretch_inside(const Shape& shape, const LocalRay& ray) {
     case ShapeKind::sphere:
       return inside_ball(ray, {}, radius);
     case ShapeKind::box:
-      return radius > 0.0 ? inside_swept_core(ray, DVec3(shape.extents), radius)
+      return radius > 0.0 ? inside_rounded_core(ray, DVec3(shape.extents), radius)
                           : inside_box(ray, DVec3(shape.extents));
     case ShapeKind::capsule: {
       Stretch s = inside_rod(ray, {}, 1, radius, h);

@@ -6,14 +6,14 @@
 namespace gyre {
 namespace {
 
-constexpr double kNever = __builtin_huge_val();
+constexpr double kNoImpact = __builtin_huge_val();
 
-// Where a t^2 + 2 b t + c falls to 0 after t = 0, at which c > 0 but for rounding; kNever if it does not.
+// Where a t^2 + 2 b t + c falls to 0 after t = 0, at which c > 0 but for rounding; kNoImpact if it does not.
 double falls_to_zero(double a, double b, double c) {
-  if (!(b < 0.0)) return kNever;
+  if (!(b < 0.0)) return kNoImpact;
   if (c <= 0.0) return 0.0;
   const double discriminant = b * b - a * c;
-  return discriminant >= 0.0 ? c / (std::sqrt(discriminant) - b) : kNever;
+  return discriminant >= 0.0 ? c / (std::sqrt(discriminant) - b) : kNoImpact;
 }
 
 // The fractions from `enter` to `leave` within a box of half extents `half`.
@@ -49,7 +49,7 @@ struct AxisWay {
 
  private:
   double turn() const {
-    if (way == 0.0 || side * way > 0.0) return kNever;
+    if (way == 0.0 || side * way > 0.0) return kNoImpact;
     // Going down, the high face is left from above it and the low one from between them.
     const double face = way < 0.0 ? (side > 0.0 ? half : -half) : (side < 0.0 ? -half : half);
     return (face - place) / way;
@@ -66,7 +66,7 @@ bool starts_apart(DVec3 core, double radii, DVec3 middle) {
 
 BallCast cast_ball_at_box(DVec3 core, double radii, const LocalRay& middle, double reach,
                           BallImpact& impact) {
-  double start = 0.0, end = kNever;
+  double start = 0.0, end = kNoImpact;
   if (!clip_to_box(core + DVec3{radii, radii, radii}, middle, start, end) || start > reach)
     return BallCast::misses;
   if (start == 0.0 && !starts_apart(core, radii, middle.origin)) return BallCast::unknown;
@@ -88,7 +88,7 @@ BallCast cast_ball_at_box(DVec3 core, double radii, const LocalRay& middle, doub
       c += out * out;
     }
     const double time = now + falls_to_zero(a, b, c), next = axes[first].next;
-    if (time <= next && time < kNever) {
+    if (time <= next && time < kNoImpact) {
       impact.fraction = start + time;
       if (impact.fraction > reach) return BallCast::misses;
       const DVec3 at = from + time * middle.way;
@@ -100,7 +100,7 @@ BallCast cast_ball_at_box(DVec3 core, double radii, const LocalRay& middle, doub
       impact.normal = size > 0.0 ? out / size : -(middle.way / length(middle.way));
       return BallCast::hits;
     }
-    if (next > end - start || next == kNever) return BallCast::misses;
+    if (next > end - start || next == kNoImpact) return BallCast::misses;
     now = max(now, next);
     axes[first].go_on();
   }
@@ -184,7 +184,7 @@ BallCast cast_ball_at_triangle(const DVec3 (&corners)[3], double radius, const L
   }
   const LocalRay near{middle.origin + start * middle.way, middle.way};
   // No farther than `reach` is asked in the end alone: what is found must not hang on it.
-  double nearest = kNever;
+  double nearest = kNoImpact;
   for (int i = 0; i < 3; ++i)
     cast_at_edge(corners[i], corners[i == 2 ? 0 : i + 1], radius, near, nearest, impact.on_core);
   impact.fraction = start + nearest;

@@ -21,11 +21,11 @@ DVec3 vector(Mixed& random, double most) {
 template <class OnCore>
 bool step_to_impact(const OnCore& on_core, double radii, const LocalRay& middle, double reach,
                     double& fraction, double& least) {
-  const double way = length(middle.way);
+  const double way = length(middle.translation);
   least = 1.0e300;
   fraction = 0.0;
   for (int step = 0; step < 20000; ++step) {
-    const DVec3 at = middle.origin + fraction * middle.way;
+    const DVec3 at = middle.origin + fraction * middle.translation;
     const double gap = length(at - on_core(at)) - radii;
     least = min(least, gap);
     if (gap < 1.0e-10) return true;
@@ -57,34 +57,34 @@ void expect_right(const OnCore& on_core, double radii, const LocalRay& middle, d
     // It may come as near as rounding, and just reach at the end.
     if (hits && fraction < reach * (1.0 - 1.0e-7)) {
       // Grazing: from there on it does not come nearer.
-      const DVec3 later = middle.origin + (fraction + 1.0e-4) * middle.way;
-      EXPECT_GT(length(later - on_core(later)), radii - 1.0e-6 * length(middle.way));
+      const DVec3 later = middle.origin + (fraction + 1.0e-4) * middle.translation;
+      EXPECT_GT(length(later - on_core(later)), radii - 1.0e-6 * length(middle.translation));
     }
     return;
   }
   ++counts.hits;
   EXPECT_GE(impact.fraction, 0.0);
   EXPECT_LE(impact.fraction, reach);
-  const DVec3 at = middle.origin + impact.fraction * middle.way;
+  const DVec3 at = middle.origin + impact.fraction * middle.translation;
   EXPECT_NEAR(length(at - on_core(at)), radii, 1.0e-9);
   EXPECT_NEAR(length(impact.on_core - on_core(at)), 0.0, 1.0e-5);
   EXPECT_NEAR(length(impact.on_core + radii * impact.normal - at), 0.0, 1.0e-7);
-  EXPECT_LE(dot(impact.normal, middle.way), 1.0e-9 * length(middle.way));
+  EXPECT_LE(dot(impact.normal, middle.translation), 1.0e-9 * length(middle.translation));
   // Nothing was passed on the way. The steps end at most 1e-10 before.
   EXPECT_TRUE(hits || least < 1.0e-8);
   for (int i = 0; i < 50; ++i) {
-    const DVec3 before = middle.origin + (impact.fraction * double(i) / 50.0) * middle.way;
+    const DVec3 before = middle.origin + (impact.fraction * double(i) / 50.0) * middle.translation;
     EXPECT_GT(length(before - on_core(before)), radii - 1.0e-9);
   }
 }
 
 LocalRay random_way(Mixed& random, int i) {
   LocalRay ray{vector(random, 3.0), {}};
-  ray.way = vector(random, 1.2) - ray.origin;
-  if (i % 5 == 0) ray.way = 0.3 * ray.way;
-  if (i % 7 == 0) (i % 2 == 0 ? ray.way.x : ray.way.y) = 0.0;
-  if (i % 11 == 0) ray.way.z = ray.way.y = 0.0;
-  if (i % 97 == 0) ray.way = {};
+  ray.translation = vector(random, 1.2) - ray.origin;
+  if (i % 5 == 0) ray.translation = 0.3 * ray.translation;
+  if (i % 7 == 0) (i % 2 == 0 ? ray.translation.x : ray.translation.y) = 0.0;
+  if (i % 11 == 0) ray.translation.z = ray.translation.y = 0.0;
+  if (i % 97 == 0) ray.translation = {};
   return ray;
 }
 
@@ -124,7 +124,7 @@ TEST(CastBall, MeetsTriangles) {
       // Along the plane, beside the triangle.
       const DVec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
       middle.origin = corners[0] + 3.0 * (corners[1] - corners[2]) + (0.5 * radius / length(normal)) * normal;
-      middle.way = -4.0 * (corners[1] - corners[2]);
+      middle.translation = -4.0 * (corners[1] - corners[2]);
     }
     BallImpact impact;
     const BallCast cast = cast_ball_at_triangle(corners, radius, middle, reach, impact);
@@ -143,10 +143,10 @@ TEST(CastBall, KeepsItsPrecisionFromFarAway) {
     const LocalRay middle{far, 1.5 * (vector(random, 0.4) - far)};
     BallImpact impact;
     ASSERT_EQ(cast_ball_at_box(core, 0.25, middle, 1.0, impact), BallCast::hits);
-    const DVec3 at = middle.origin + impact.fraction * middle.way;
+    const DVec3 at = middle.origin + impact.fraction * middle.translation;
     EXPECT_NEAR(length(at - impact.on_core), 0.25, 1.0e-8);
     ASSERT_EQ(cast_ball_at_triangle(corners, 0.25, middle, 1.0, impact), BallCast::hits);
-    EXPECT_NEAR(length(middle.origin + impact.fraction * middle.way - impact.on_core), 0.25, 1.0e-8);
+    EXPECT_NEAR(length(middle.origin + impact.fraction * middle.translation - impact.on_core), 0.25, 1.0e-8);
   }
 }
 

@@ -5,7 +5,7 @@
 #include "geometry/testing/convex_oracle.h"
 #include "geometry/shape/cooked.h"
 #include "geometry/testing/mesh_test_scenes.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 
 #include <gtest/gtest.h>
 
@@ -14,15 +14,15 @@ namespace {
 
 using oracle::Random;
 
-PlacedShape placed(const MovingShape& moving, double t) {
-  return {moving.shape, moving.position + t * moving.way, moving.orientation};
+PosedShape placed(const MovingShape& moving, double t) {
+  return {moving.shape, moving.position + t * moving.translation, moving.orientation};
 }
 
 // The distance from a plain look at everything: no trees, no search in steps.
-double plain_distance(const Shape& target, const PlacedShape& convex) {
-  Nearest near;
+double plain_distance(const Shape& target, const PosedShape& convex) {
+  ClosestPoints near;
   if (is_convex(target.kind) || target.kind == ShapeKind::plane) {
-    find_nearest(target, convex, 1.0e30, near);
+    find_closest_points(target, convex, 1.0e30, near);
     return near.distance;
   }
   double least = 1.0e300;
@@ -57,26 +57,26 @@ void expect_right(const Shape& target, const MovingShape& moving, double size, c
   EXPECT_FALSE(hit.inside);
   EXPECT_LE(plain_distance(target, placed(moving, hit.fraction)), precision) << what;
   EXPECT_NEAR(length(hit.normal), 1.0, 1.0e-6) << what;
-  EXPECT_LE(dot(hit.normal, moving.way), 0.0) << what;
+  EXPECT_LE(dot(hit.normal, moving.translation), 0.0) << what;
   // The point lies on both.
   Shape point;
   point.radius = 0.0f;
-  Nearest near;
-  ASSERT_TRUE(find_nearest(target, {&point, hit.point, {}}, 1.0, near)) << what;
+  ClosestPoints near;
+  ASSERT_TRUE(find_closest_points(target, {&point, hit.point, {}}, 1.0, near)) << what;
   EXPECT_LE(near.distance, 50.0 * precision) << what;
   const DVec3 in_moving =
       rotate_inverse(moving.orientation, hit.point - placed(moving, hit.fraction).position);
-  ASSERT_TRUE(find_nearest(*moving.shape, {&point, in_moving, {}}, 1.0, near)) << what;
+  ASSERT_TRUE(find_closest_points(*moving.shape, {&point, in_moving, {}}, 1.0, near)) << what;
   EXPECT_LE(near.distance, 50.0 * precision) << what;
 }
 
 MovingShape random_way(Random& random, const Shape& shape, double size) {
   MovingShape moving;
   moving.shape = &shape;
-  moving.orientation = normalized(to_double(random.turn()));
+  moving.orientation = normalized(to_double(random.rotation()));
   const double away = random.below(4) == 0 ? 200.0 : 3.0;
   moving.position = away * size * DVec3(random.direction());
-  moving.way = 1.6 * (size * DVec3(random.in_cube(0.8f)) - moving.position);
+  moving.translation = 1.6 * (size * DVec3(random.in_cube(0.8f)) - moving.position);
   return moving;
 }
 
@@ -178,12 +178,12 @@ TEST(CastShape, StartsInOverlap) {
   // Within its skin it may slide and leave, but not go deeper.
   moving.skin = 0.11f;
   EXPECT_FALSE(cast_shape(box, moving, 1.0, false, hit));
-  moving.way = {0, 3, 0};
+  moving.translation = {0, 3, 0};
   EXPECT_FALSE(cast_shape(box, moving, 1.0, false, hit));
-  moving.way = {0, -3, 0};
+  moving.translation = {0, -3, 0};
   EXPECT_TRUE(cast_shape(box, moving, 1.0, false, hit));
   moving.skin = 0.09f;
-  moving.way = {3, 0, 0};
+  moving.translation = {3, 0, 0};
   EXPECT_TRUE(cast_shape(box, moving, 1.0, false, hit));
   // Of a one-sided surface the way out is by its front.
   const Geometry floor = test::flat_grid(3.0f, 1.0f).cook();

@@ -69,19 +69,19 @@ void walk_triangles(const Shape& surface, const LocalRay& ray, Vec3 half, double
   if (!clip_to_surface(surface, ray, half, reach, from, to)) return;
   // Moved near the surface, so that the floats of the walk are no larger than its coordinates.
   const double piece = to - from;
-  const BoxLine line(ray.origin + from * ray.way, piece * ray.way, half);
+  const BoxRay line(ray.origin + from * ray.way, piece * ray.way, half);
   const auto piece_reach = [&](double whole) {
     return piece > 0.0 ? float(clamp((whole - from) / piece, 0.0, 1.0)) * 1.000001f + 1.0e-30f : 1.0f;
   };
   if (surface.kind == ShapeKind::mesh) {
-    walk_cast(surface.mesh->tree, line, 1.0f, [&](std::uint32_t first, std::uint32_t count, float walked) {
+    traverse_cast(surface.mesh->tree, line, 1.0f, [&](std::uint32_t first, std::uint32_t count, float walked) {
       for (std::uint32_t id = first; id < first + count; ++id)
         reach = visit(surface_triangle(*surface.mesh, id), reach);
       return min(walked, piece_reach(reach));
     });
     return;
   }
-  walk_cast(*surface.field, line, 1.0f, [&](std::uint32_t column, std::uint32_t row, float walked) {
+  traverse_cast(*surface.field, line, 1.0f, [&](std::uint32_t column, std::uint32_t row, float walked) {
     for (int side = 0; side < 2; ++side)
       reach = visit(surface_triangle(*surface.field, column, row, side), reach);
     return min(walked, piece_reach(reach));

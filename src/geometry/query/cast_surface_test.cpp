@@ -21,11 +21,11 @@ bool cast_plainly(std::span<const Vec3> vertices, std::span<const std::uint32_t>
   for (std::size_t i = 0; i < indices.size(); i += 3) {
     const DVec3 a(vertices[indices[i]]), u = DVec3(vertices[indices[i + 1]]) - a,
                                          v = DVec3(vertices[indices[i + 2]]) - a;
-    const DVec3 p = cross(ray.way, v);
+    const DVec3 p = cross(ray.translation, v);
     const double det = dot(u, p);
     if (both_sides ? det == 0.0 : det <= 0.0) continue;
     const DVec3 from = ray.origin - a, q = cross(from, u);
-    const double s = dot(from, p) / det, t = dot(ray.way, q) / det, fraction = dot(v, q) / det;
+    const double s = dot(from, p) / det, t = dot(ray.translation, q) / det, fraction = dot(v, q) / det;
     if (s < 0.0 || t < 0.0 || s + t > 1.0 || fraction < 0.0 || fraction > 1.0) continue;
     if (found && fraction >= hit.fraction) continue;
     found = true;

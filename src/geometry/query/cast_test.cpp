@@ -42,13 +42,13 @@ double height_above(const Shape& shape, DVec3 p) {
 bool expect_right(const Shape& shape, const LocalRay& ray, double size, const char* what) {
   LocalHit hit;
   const bool hits = cast_ray(shape, ray, 1.0, false, hit);
-  const double precision = 1.0e-12 * (length(ray.origin) + length(ray.way)) + 2.0e-7 * size;
+  const double precision = 1.0e-12 * (length(ray.origin) + length(ray.translation)) + 2.0e-7 * size;
   constexpr int kSamples = 400;
   const double end = hits ? hit.fraction : 1.0;
   for (int i = 0; i < kSamples; ++i) {
     const double t = end * (i + 0.5) / kSamples;
     if (hits && hit.inside) break;
-    EXPECT_GT(height_above(shape, ray.origin + t * ray.way), -precision)
+    EXPECT_GT(height_above(shape, ray.origin + t * ray.translation), -precision)
         << what << " passed through at " << t;
     if (::testing::Test::HasFailure()) return hits;
   }
@@ -61,9 +61,9 @@ bool expect_right(const Shape& shape, const LocalRay& ray, double size, const ch
     return true;
   }
   EXPECT_NEAR(height_above(shape, hit.point), 0.0, precision) << what;
-  EXPECT_LE(length(hit.point - (ray.origin + hit.fraction * ray.way)), precision) << what;
+  EXPECT_LE(length(hit.point - (ray.origin + hit.fraction * ray.translation)), precision) << what;
   EXPECT_NEAR(length(hit.normal), 1.0, 1.0e-6) << what;
-  EXPECT_LE(dot(hit.normal, ray.way), 1.0e-6 * length(ray.way)) << what;
+  EXPECT_LE(dot(hit.normal, ray.translation), 1.0e-6 * length(ray.translation)) << what;
   // Out along the normal is outside; in against it is not.
   EXPECT_GT(height_above(shape, hit.point + 1.0e-3 * size * hit.normal), 0.0) << what;
   return true;

@@ -289,8 +289,8 @@ TEST(Triangle, SeenFromBehindTwiceIsItself) {
   const Geometry roof =
       test::grid(2.0f, 1.0f, [](float x, float z) { return -std::fabs(x) + 0.1f * z * z; }).cook();
   for (std::uint32_t t = 0; t < mesh_of(roof).triangle_count(); ++t) {
-    const TriangleView front = view_triangle(mesh_of(roof), t), back = seen_from_behind(front);
-    const TriangleView again = seen_from_behind(back);
+    const TriangleView front = view_triangle(mesh_of(roof), t), back = back_view(front);
+    const TriangleView again = back_view(back);
     EXPECT_EQ(triangle_normal(back.v[0], back.v[1], back.v[2]),
               -triangle_normal(front.v[0], front.v[1], front.v[2]));
     EXPECT_EQ(again.normal, front.normal);

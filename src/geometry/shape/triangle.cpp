@@ -3,7 +3,7 @@
 
 namespace gyre {
 
-TriangleView seen_from_behind(const TriangleView& triangle) {
+TriangleView back_view(const TriangleView& triangle) {
   // Corners 0, 2, 1: the new edge i is the old edge 2 - i.
   constexpr int kCorner[3] = {0, 2, 1};
   TriangleView back = triangle;

@@ -46,7 +46,7 @@ constexpr Aabb bounds(const TriangleView& t) {
 }
 
 // The same triangle seen from behind: what was a ridge is a valley.
-TriangleView seen_from_behind(const TriangleView& triangle);
+TriangleView back_view(const TriangleView& triangle);
 
 // The unit normal of a triangle, by double arithmetic; zero if it has no area to speak of: if its height is below 1e-7 of
 // its longest edge.

@@ -22,7 +22,7 @@ inline Shape thin_hull(Random& random, Hulls& hulls, Vec3 half) {
 }
 
 // A shape about as long as `size`, its radius and height made thin by these factors.
-inline Shape odd_shape(Random& random, Hulls& hulls, int kind, float size, float thin, float low) {
+inline Shape degenerate_shape(Random& random, Hulls& hulls, int kind, float size, float thin, float low) {
   const float radius = thin * size * random(0.2f, 1.0f);
   const float half = low * size * random(0.2f, 1.0f);
   const float depth = size * random(0.2f, 1.0f);
@@ -44,13 +44,13 @@ inline Shape odd_shape(Random& random, Hulls& hulls, int kind, float size, float
   }
 }
 
-struct OddPair {
+struct DegeneratePair {
   Shape a, b;
   Transform t;
 };
 
 // Two shapes of given kinds; what is odd about them is drawn.
-inline OddPair odd_pair(Random& random, Hulls& hulls, int kind_a, int kind_b) {
+inline DegeneratePair degenerate_pair(Random& random, Hulls& hulls, int kind_a, int kind_b) {
   const int odd = random.below(8);
   float thin_a = 1, thin_b = 1, low_a = 1, low_b = 1, size_b = 1;
   if (odd == 1) {  // needles and wires
@@ -63,9 +63,9 @@ inline OddPair odd_pair(Random& random, Hulls& hulls, int kind_a, int kind_b) {
   } else if (odd == 3) {
     size_b = one_of(random, {1e-4f, 1e-2f, 1e2f, 1e4f});
   }
-  OddPair pair;
-  pair.a = odd_shape(random, hulls, kind_a, 1.0f, thin_a, low_a);
-  pair.b = odd_shape(random, hulls, kind_b, size_b, thin_b, low_b);
+  DegeneratePair pair;
+  pair.a = degenerate_shape(random, hulls, kind_a, 1.0f, thin_a, low_a);
+  pair.b = degenerate_shape(random, hulls, kind_b, size_b, thin_b, low_b);
   pair.t = random_pose(random, max(1.0f, size_b));
   if (odd == 4) {  // middles that coincide, every other time of equal shapes
     if (random.below(2) == 0) pair.b = pair.a;

@@ -154,8 +154,8 @@ TEST(StaticTree, RaysMeetTheNearestBox) {
     float nearest = reach;
     for (const Aabb& box : boxes) nearest = min(nearest, entry(box, origin, direction, reach));
     float found = reach;
-    const BoxLine ray(DVec3(origin), DVec3(reach * direction), Vec3{});
-    walk_cast(tree, ray, 1.0f, [&](std::uint32_t first, std::uint32_t count, float) {
+    const BoxRay ray(DVec3(origin), DVec3(reach * direction), Vec3{});
+    traverse_cast(tree, ray, 1.0f, [&](std::uint32_t first, std::uint32_t count, float) {
       for (std::uint32_t k = first; k < first + count; ++k) {
         found = min(found, entry(boxes[tree.items[k]], origin, direction, reach));
       }

@@ -20,7 +20,7 @@ std::size_t padded(std::size_t bytes) { return (bytes + kMemoryAlign - 1) / kMem
 // A manifold with `count` points is kept as two runs of its bytes: up to its last point, and from behind the room for points to its
 // last anchor.
 constexpr std::size_t kHeadBytes = offsetof(Manifold, points);
-constexpr std::size_t kTailPlace = offsetof(Manifold, age);
+constexpr std::size_t kTailPlace = offsetof(Manifold, load_age);
 static_assert(kTailPlace == kHeadBytes + kMaxManifoldPoints * sizeof(ContactPointState) &&
                   offsetof(Manifold, anchors) + kMaxManifoldPoints * sizeof(PointAnchor) == sizeof(Manifold),
               "points and anchors end the runs, with all there is in one of them");

@@ -1,7 +1,7 @@
 #include "rigid/batch/surface_rules.h"
 
 #include "geometry/shape/mesh.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 
 namespace gyre {
 
@@ -33,9 +33,9 @@ std::uint32_t nearest_triangle(const RigidWorld& w, std::uint32_t shape, DVec3 p
   const DQuat orientation = normalized(to_double(pose.orientation));
   Shape point;
   point.radius = 0.0f;
-  Nearest near;
-  const PlacedShape placed{&point, rotate_inverse(orientation, place - pose.position), {}};
-  find_nearest(w.shapes.colliders[shape].shape, placed, double(kUnbounded), near);
+  ClosestPoints near;
+  const PosedShape placed{&point, rotate_inverse(orientation, place - pose.position), {}};
+  find_closest_points(w.shapes.colliders[shape].shape, placed, double(kUnbounded), near);
   return near.triangle;
 }
 
@@ -92,12 +92,12 @@ bool holds(const Manifold& manifold, Vec3 direction, Vec3 outward, Vec3 leaving,
 void forget_impulses(Manifold& manifold) {
   for (int k = 0; k < manifold.count; ++k) {
     manifold.points[k].normal_impulse = 0.0f;
-    manifold.points[k].held = 0.0f;
+    manifold.points[k].mean_impulse = 0.0f;
   }
   manifold.friction_impulse = {};
   manifold.rolling_impulse = {};
   manifold.twist_impulse = 0.0f;
-  manifold.age = 0.0f;
+  manifold.load_age = 0.0f;
   manifold.sliding = 0;
 }
 

@@ -131,7 +131,7 @@ PushSum shape_push(const Shape& shape, const ShapeStance& at, const ShapePlane& 
   const DVec3 wind = rotate_inverse(at.turn, against.linear() + cross(against.angular(), at.offset));
   const double speed = length(wind);
   for_each_patch(shape, plane.normal, plane.level, [&](const SurfacePatch& patch) {
-    const DVec3 r = at.offset + rotate(at.turn, patch.place);
+    const DVec3 r = at.offset + rotate(at.turn, patch.position);
     const DVec3 flow = against.linear() + cross(against.angular(), r);
     const double c = max(-dot(flow, rotate(at.turn, patch.normal)), 0.0) * patch.area;
     if (c > 0.0) sum.add(c, r);

@@ -139,8 +139,8 @@ class ContactGatherer {
     constraint.point_count = std::int16_t(manifold.count);
     constraint.loaded = loads.any;
     constraint.may_roll = false;
-    constraint.hold = manifold.age >= kRigidContactAge ? ContactStiffness::held
-                      : manifold.age > 0.0f            ? ContactStiffness::sprung
+    constraint.hold = manifold.load_age >= kRigidContactAge ? ContactStiffness::held
+                      : manifold.load_age > 0.0f            ? ContactStiffness::sprung
                                                        : ContactStiffness::none;
     if (loads.all) {
       constraint.fast = false;

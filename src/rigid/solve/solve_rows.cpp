@@ -431,7 +431,7 @@ void solve_batch_as_rows(BatchContext& solve, const SolverSettings& settings, Ar
   for (const ContactConstraint& constraint : scratch.constraints) {
     float load = 0.0f;
     for (int k = 0; k < constraint.manifold->count; ++k) load += constraint.manifold->points[k].total_impulse;
-    constraint.manifold->age = load > 0.0f ? constraint.manifold->age + solve.contact_settings.step : 0.0f;
+    constraint.manifold->load_age = load > 0.0f ? constraint.manifold->load_age + solve.contact_settings.step : 0.0f;
   }
   finish_joints(solve.w, solve.batch, {}, solve.joint_work);
   // Rows have no colours: what says so looks at these.

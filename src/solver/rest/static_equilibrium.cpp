@@ -127,7 +127,7 @@ void stop(const RestingStructure& s, const StructureSolve& solve) {
 // From now on its contacts are no springs,
 void hold(const RestingStructure& s, const StructureSolve& solve) {
   for (const StructureContact& contact : s.contacts) {
-    solve.constraints[contact.constraint].manifold->age = kRigidContactAge;
+    solve.constraints[contact.constraint].manifold->load_age = kRigidContactAge;
     solve.kernels->harden(solve.blocks, int(contact.block), int(contact.lane));
   }
 }
@@ -135,7 +135,7 @@ void hold(const RestingStructure& s, const StructureSolve& solve) {
 void release(const RestingStructure& s, const StructureSolve& solve) {
   for (const StructureContact& contact : s.contacts) {
     Manifold& manifold = *solve.constraints[contact.constraint].manifold;
-    if (manifold.age >= kRigidContactAge) manifold.age = kReleasedAge;
+    if (manifold.load_age >= kRigidContactAge) manifold.load_age = kReleasedAge;
   }
 }
 

@@ -121,7 +121,7 @@ void keep_contact_impulses(const ContactConstraint& c, const FrictionSet& set, s
     load += normal;
     point.normal_impulse = float(normal) + 0.0f;
     point.total_impulse += point.normal_impulse;
-    point.held = point.normal_impulse;
+    point.mean_impulse = point.normal_impulse;
     if (tangents == 0) continue;
     const double x = rows[2 * k].impulse, y = rows[2 * k + 1].impulse;
     friction += x * axes.tangent_1 + y * axes.tangent_2;

@@ -1,5 +1,5 @@
-// Placing a convex shape beside a mesh. See placed_convex.h.
-#include "geometry/manifold_mesh/placed_convex.h"
+// Placing a convex shape beside a mesh. See local_convex.h.
+#include "geometry/manifold_mesh/local_convex.h"
 
 #include <bit>
 
@@ -8,7 +8,7 @@ namespace {
 
 // Faces of a box as in support.h: 2 * axis + (1 on the positive side); corners by the bits of their signs. Which of an edge's
 // two faces is left and which is right makes no difference to a search for axes.
-constexpr HullEdge kBoxHullEdges[12] = {
+constexpr HullEdge kBoxEdges[12] = {
     {0, 1, 4, 2}, {2, 3, 3, 4}, {4, 5, 2, 5}, {6, 7, 5, 3},  // along x
     {0, 2, 0, 4}, {1, 3, 4, 1}, {4, 6, 5, 0}, {5, 7, 1, 5},  // along y
     {0, 4, 2, 0}, {1, 5, 1, 2}, {2, 6, 0, 3}, {3, 7, 3, 1},  // along z
@@ -22,8 +22,8 @@ constexpr float kBoxNormalX[8] = {-1, 1, -0.0f, 0, -0.0f, 0, 0, 0};
 constexpr float kBoxNormalY[8] = {-0.0f, 0, -1, 1, -0.0f, 0, 0, 0};
 constexpr float kBoxNormalZ[8] = {-0.0f, 0, -0.0f, 0, -1, 1, 1, 1};
 
-using Floats = Wide<PlacedConvex::kLanes>;
-using Vectors = Vec3W<PlacedConvex::kLanes>;
+using Floats = Wide<LocalConvex::kLanes>;
+using Vectors = Vec3W<LocalConvex::kLanes>;
 
 Vectors load(const float* x, const float* y, const float* z, int i) {
   return {Floats::load_unaligned(x + i), Floats::load_unaligned(y + i), Floats::load_unaligned(z + i)};
@@ -36,7 +36,7 @@ float greatest(Floats a) { return max(max(a[0], a[1]), max(a[2], a[3])); }
 void turn_columns(const Mat3& turn, const float* x, const float* y, const float* z, int count, float* out_x,
                   float* out_y, float* out_z) {
   const Vectors a = splat<4>(turn.x), b = splat<4>(turn.y), c = splat<4>(turn.z);
-  for (int i = 0; i < count; i += PlacedConvex::kLanes) {
+  for (int i = 0; i < count; i += LocalConvex::kLanes) {
     const Vectors v = load(x, y, z, i);
     const Vectors turned = v.x * a + v.y * b + v.z * c;
     turned.x.store_unaligned(out_x + i);
@@ -62,7 +62,7 @@ Aabb box_of(const Shape& shape) {
 
 }  // namespace
 
-PlacedConvex::PlacedConvex(const Shape& shape, Quat orientation)
+LocalConvex::LocalConvex(const Shape& shape, Quat orientation)
     : shape_(&shape),
       orientation_(orientation),
       rotation_(to_matrix(orientation)),
@@ -90,7 +90,7 @@ PlacedConvex::PlacedConvex(const Shape& shape, Quat orientation)
       place_vertices(x, y, z, 8);
       const float offsets[8] = {e.x, e.x, e.y, e.y, e.z, e.z, e.z, e.z};
       place_faces(kBoxNormalX, kBoxNormalY, kBoxNormalZ, offsets, 6);
-      edges_ = kBoxHullEdges;
+      edges_ = kBoxEdges;
       break;
     }
     case ShapeKind::hull:
@@ -113,19 +113,19 @@ PlacedConvex::PlacedConvex(const Shape& shape, Quat orientation)
   show_columns();
 }
 
-void PlacedConvex::place_vertices(const float* x, const float* y, const float* z, int count) {
+void LocalConvex::place_vertices(const float* x, const float* y, const float* z, int count) {
   vertex_count_ = count;
   turn_columns(rotation_, x, y, z, count, x_, y_, z_);
 }
 
-void PlacedConvex::place_faces(const float* x, const float* y, const float* z, const float* offsets,
+void LocalConvex::place_faces(const float* x, const float* y, const float* z, const float* offsets,
                                int count) {
   face_count_ = count;
   turn_columns(rotation_, x, y, z, count, nx_, ny_, nz_);
   for (int i = 0; i < padded(count); ++i) offset_[i] = offsets[i];
 }
 
-void PlacedConvex::place_hull(const Hull& hull) {
+void LocalConvex::place_hull(const Hull& hull) {
   place_vertices(hull.x.data(), hull.y.data(), hull.z.data(), hull.vertex_count());
   const Vectors a = splat<4>(rotation_.x), b = splat<4>(rotation_.y), c = splat<4>(rotation_.z);
   const HullPlane* const planes = hull.planes.data();
@@ -146,7 +146,7 @@ void PlacedConvex::place_hull(const Hull& hull) {
   center_ = rotation_ * hull.centroid;
 }
 
-void PlacedConvex::dot_faces(const Vec3* directions, float (*out)[kMaxVertices]) const {
+void LocalConvex::dot_faces(const Vec3* directions, float (*out)[kMaxVertices]) const {
   const Vectors a = splat<4>(directions[0]), b = splat<4>(directions[1]), c = splat<4>(directions[2]);
   for (int i = 0; i < face_count_; i += kLanes) {
     const Vectors n = load(nx_, ny_, nz_, i);
@@ -156,7 +156,7 @@ void PlacedConvex::dot_faces(const Vec3* directions, float (*out)[kMaxVertices])
   }
 }
 
-void PlacedConvex::face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const {
+void LocalConvex::face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const {
   const Vectors a = splat<4>(corners[0]), b = splat<4>(corners[1]), c = splat<4>(corners[2]);
   for (int i = 0; i < face_count_; i += kLanes) {
     const Vectors n = load(nx_, ny_, nz_, i);
@@ -169,7 +169,7 @@ void PlacedConvex::face_separations(const Vec3* corners, float (*each)[kMaxVerti
   }
 }
 
-PlacedConvex::Extent PlacedConvex::extent(Vec3 direction) const {
+LocalConvex::Extent LocalConvex::extent(Vec3 direction) const {
   if (vertex_count_ == 0) return {dot(direction, support(-direction)), dot(direction, support(direction))};
   const Vectors d = splat<4>(direction);
   Floats low = dot(load(x_, y_, z_, 0), d), high = low;
@@ -181,7 +181,7 @@ PlacedConvex::Extent PlacedConvex::extent(Vec3 direction) const {
   return {least(low), greatest(high)};
 }
 
-Aabb PlacedConvex::box() const {
+Aabb LocalConvex::box() const {
   if (vertex_count_ == 0) {
     const Extent x = extent({1, 0, 0}), y = extent({0, 1, 0}), z = extent({0, 0, 1});
     return {{x.low, y.low, z.low}, {x.high, y.high, z.high}};
@@ -195,7 +195,7 @@ Aabb PlacedConvex::box() const {
   return {{least(low.x), least(low.y), least(low.z)}, {greatest(high.x), greatest(high.y), greatest(high.z)}};
 }
 
-bool PlacedConvex::has_low_vertex_inside(Vec3 direction, float height, const Vec3* outward,
+bool LocalConvex::has_low_vertex_inside(Vec3 direction, float height, const Vec3* outward,
                                          const Vec3* points, float room) const {
   const Vectors d = splat<4>(direction);
   for (int i = 0; i < vertex_count_; i += kLanes) {
@@ -209,7 +209,7 @@ bool PlacedConvex::has_low_vertex_inside(Vec3 direction, float height, const Vec
   return false;
 }
 
-int PlacedConvex::lowest_vertex(Vec3 direction) const {
+int LocalConvex::lowest_vertex(Vec3 direction) const {
   const Vectors d = splat<4>(direction);
   const auto height = [&](int i) { return dot(load(x_, y_, z_, i), d); };
   Floats low = height(0);
@@ -221,7 +221,7 @@ int PlacedConvex::lowest_vertex(Vec3 direction) const {
   return 0;
 }
 
-bool PlacedConvex::lies_outside(Vec3 outward, Vec3 point, float room) const {
+bool LocalConvex::lies_outside(Vec3 outward, Vec3 point, float room) const {
   const Vectors d = splat<4>(outward), p = splat<4>(point);
   for (int i = 0; i < vertex_count_; i += kLanes) {
     if (!all(dot(d, load(x_, y_, z_, i) - p) > Floats(room))) return false;
@@ -229,17 +229,17 @@ bool PlacedConvex::lies_outside(Vec3 outward, Vec3 point, float room) const {
   return has_vertices();
 }
 
-Vec3 PlacedConvex::support(Vec3 direction) const {
+Vec3 LocalConvex::support(Vec3 direction) const {
   return rotation_ * gyre::support(*shape_, transpose_times(rotation_, direction));
 }
 
-void PlacedConvex::face_towards(Vec3 direction, FacePolygon& out) const {
+void LocalConvex::face_towards(Vec3 direction, FacePolygon& out) const {
   support_face(*shape_, transpose_times(rotation_, direction), out);
   out.normal = rotation_ * out.normal;
   for (int i = 0; i < out.count; ++i) out.vertices[i] = rotation_ * out.vertices[i];
 }
 
-bool PlacedConvex::may_touch(const AxisBox& box, float reach) const {
+bool LocalConvex::can_touch(const AxisBox& box, float reach) const {
   const Floats middle = Floats(0.5f) * (box.low() + box.high()),
                half = Floats(0.5f) * (box.high() - box.low());
   const Floats size = absolute(middle);
@@ -257,7 +257,7 @@ bool PlacedConvex::may_touch(const AxisBox& box, float reach) const {
   return none((along - spread > Floats::load(local_high_)) | (along + spread < Floats::load(local_low_)));
 }
 
-void PlacedConvex::show_columns() {
+void LocalConvex::show_columns() {
   using Core = ConvexColumns::Core;
   const Core core = shape_->kind == ShapeKind::box ? Core::box
                     : face_count_ > 0              ? Core::polyhedron
@@ -282,7 +282,7 @@ void PlacedConvex::show_columns() {
               size_};
 }
 
-float PlacedConvex::box_distance(Vec3 point) const {
+float LocalConvex::box_distance(Vec3 point) const {
   const Vec3 local = to_local(point);
   return largest(max(local - local_box_.high, local_box_.low - local));
 }

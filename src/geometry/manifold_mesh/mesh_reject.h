@@ -10,7 +10,7 @@
 namespace gyre {
 
 // The core's middle must lie before the triangle's plane. False only means that it is not known, as of every other shape.
-bool is_round_beside(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& round,
+bool is_round_rejected(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& round,
                      float face_separation);
 
 }  // namespace gyre

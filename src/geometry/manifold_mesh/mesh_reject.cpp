@@ -1,5 +1,5 @@
-// Balls and capsules beside triangles. See mesh_beside.h.
-#include "geometry/manifold_mesh/mesh_beside.h"
+// Balls and capsules beside triangles. See mesh_reject.h.
+#include "geometry/manifold_mesh/mesh_reject.h"
 
 namespace gyre {
 namespace {
@@ -10,19 +10,19 @@ constexpr float kArc = 3.0e-3f;
 // A sine, squared, between a segment and an edge.
 constexpr float kLeast = 0.05f;
 
-bool is_denied(const NearTriangle& t, int edge, Vec3 from_edge) {
+bool is_denied(const LocalTriangle& t, int edge, Vec3 from_edge) {
   if (t.edge[edge] != EdgeKind::convex) return t.edge[edge] != EdgeKind::open;
   const float inward = dot(from_edge, cross(t.neighbor_normal[edge], t.along[edge]));
   return inward < 0.0f && square(inward) > square(kArc) * length_squared(from_edge);
 }
 
-bool is_denied_at_corner(const Surface& surface, const NearTriangle& t, int corner, Vec3 from_corner) {
+bool is_denied_at_corner(const Surface& surface, const LocalTriangle& t, int corner, Vec3 from_corner) {
   if ((t.flat_corners >> corner & 1) != 0) return true;
   const int own = t.turned && corner != 0 ? 3 - corner : corner;
   return !surface.in_normal_cone(t.id, own, normalized(from_corner), kArc);
 }
 
-bool is_ball_beside(const Surface& surface, const NearTriangle& t, const PlacedConvex& ball,
+bool is_ball_beside(const Surface& surface, const LocalTriangle& t, const LocalConvex& ball,
                     float face_separation) {
   const float size = ball.size(), room = kRoom * size + 8.0f * t.slack;
   // Neither touching nor nearly over the face.
@@ -52,7 +52,7 @@ bool is_ball_beside(const Surface& surface, const NearTriangle& t, const PlacedC
 }
 
 // Whether no edge of the triangle allows a direction across it and the segment that is worth as much as `enough`.
-bool are_axes_denied(const NearTriangle& t, Vec3 from, Vec3 axis, float enough) {
+bool are_axes_denied(const LocalTriangle& t, Vec3 from, Vec3 axis, float enough) {
   for (int i = 0; i < 3; ++i) {
     const Vec3 across = cross(axis, t.along[i]), d = dot(across, t.outward[i]) < 0.0f ? -across : across;
     const float squared = length_squared(d), height = dot(d, from - t.v[i]);
@@ -63,7 +63,7 @@ bool are_axes_denied(const NearTriangle& t, Vec3 from, Vec3 axis, float enough) 
   return true;
 }
 
-bool is_segment_beside(const NearTriangle& t, const PlacedConvex& capsule, float face_separation) {
+bool is_segment_beside(const LocalTriangle& t, const LocalConvex& capsule, float face_separation) {
   const float size = capsule.size(), room = kRoom * size + 8.0f * t.slack, radius = capsule.radius();
   const Vec3 from = capsule.vertex(0), axis = capsule.vertex(1) - from;
   const float squared_axis = length_squared(axis);
@@ -88,7 +88,7 @@ bool is_segment_beside(const NearTriangle& t, const PlacedConvex& capsule, float
 
 }  // namespace
 
-bool is_round_beside(const Surface& surface, const NearTriangle& t, const PlacedConvex& round,
+bool is_round_rejected(const Surface& surface, const LocalTriangle& t, const LocalConvex& round,
                      float face_separation) {
   switch (round.vertex_count()) {
     case 1:

@@ -22,7 +22,7 @@ namespace gyre {
 
 // What planes are held against on each axis: the moving box begins to touch one where (plane - near) * inverse is the fraction
 // of its way, and ends to touch one where it is (plane - far) * inverse.
-struct BoxLine {
+struct BoxRay {
   float near[3], far[3], inverse[3];
   bool negative[3];  // low planes are met last
 
@@ -31,7 +31,7 @@ struct BoxLine {
 
   // A box of half size `half` around `origin` that moves by `way`. Boxes that hold coordinates much larger than all
   // three are met late or early by no more than their own rounding.
-  BoxLine(DVec3 origin, DVec3 way, Vec3 half) {
+  BoxRay(DVec3 origin, DVec3 way, Vec3 half) {
     for (int axis = 0; axis < 3; ++axis) {
       const double o = origin[axis], w = way[axis];
       double margin = double(half[axis]) + kSlack * (absolute(o) + absolute(w) + double(half[axis]));
@@ -47,10 +47,10 @@ struct BoxLine {
 };
 
 // A walk on its way.
-struct LineWalk {
+struct RayTraversal {
   static constexpr int kRoom = 256;  // 32 levels of trees, eight lanes each
 
-  BoxLine line;
+  BoxRay line;
   float reach;  // 0 or more: the fraction of the way up to which is looked, which whoever walks may shorten
   std::uint32_t leaf;  // the one that was met last, without kLeafBit
   int depth = 1;
@@ -61,14 +61,14 @@ struct LineWalk {
   };
 
   // `root`: the index of a node.
-  LineWalk(const BoxLine& along, std::uint32_t root, float to) : line(along), reach(to) { waiting[0] = root; }
+  RayTraversal(const BoxRay& along, std::uint32_t root, float to) : line(along), reach(to) { waiting[0] = root; }
 };
 
 // Goes on to the next leaf; false if there is none.
 template <class Node>
-using WalkLine = bool (*)(const Node* nodes, LineWalk& walk);
+using RayTraversalKernel = bool (*)(const Node* nodes, RayTraversal& walk);
 
 // The one that this machine runs best.
-WalkLine<StaticNode> select_static_line_walk();
+RayTraversalKernel<StaticNode> select_static_ray_traversal();
 
 }  // namespace gyre

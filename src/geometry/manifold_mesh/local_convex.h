@@ -36,15 +36,15 @@ class AxisBox {
   Wide<4> low_, high_;
 };
 
-class PlacedConvex {
+class LocalConvex {
  public:
   static constexpr int kMaxVertices = 256;
   // Columns are searched four at a time: behind the last of them its copies stand.
   static constexpr int kLanes = 4;
 
-  PlacedConvex(const Shape& shape, Quat orientation);
-  PlacedConvex(const PlacedConvex&) = delete;
-  PlacedConvex& operator=(const PlacedConvex&) = delete;
+  LocalConvex(const Shape& shape, Quat orientation);
+  LocalConvex(const LocalConvex&) = delete;
+  LocalConvex& operator=(const LocalConvex&) = delete;
 
   const Shape& shape() const { return *shape_; }
   Quat orientation() const { return orientation_; }
@@ -90,7 +90,7 @@ class PlacedConvex {
                              float room) const;
 
   // Whether anything within `reach` of the surface may lie in the box: false only if certainly nothing does.
-  bool may_touch(const AxisBox& box, float reach) const;
+  bool can_touch(const AxisBox& box, float reach) const;
   // How far a point lies outside the shape's local box; negative inside. And the local box itself.
   float box_distance(Vec3 point) const;
   Vec3 to_local(Vec3 v) const { return transpose_times(rotation_, v); }

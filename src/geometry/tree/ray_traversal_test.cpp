@@ -1,7 +1,7 @@
 // Walks along lines at every width: all leaves that a plain test in double meets, and hardly others.
-#include "geometry/tree/line_walk.h"
+#include "geometry/tree/ray_traversal.h"
 
-#include "geometry/tree/line_walk_lanes.h"
+#include "geometry/tree/ray_traversal_lanes.h"
 #include "geometry/tree/static_tree.h"
 #include "random.h"
 
@@ -33,15 +33,15 @@ bool touches(const Aabb& box, DVec3 from, Vec3 way, Vec3 half, double reach, dou
   return enter <= leave;
 }
 
-std::vector<std::uint32_t> walk_all(WalkLine<StaticNode> walk_on, const StaticTree& tree, const BoxLine& line,
+std::vector<std::uint32_t> walk_all(RayTraversalKernel<StaticNode> walk_on, const StaticTree& tree, const BoxRay& line,
                                     float reach) {
   std::vector<std::uint32_t> leaves;
-  LineWalk walk(line, 0, reach);
+  RayTraversal walk(line, 0, reach);
   while (walk_on(tree.nodes.data(), walk)) leaves.push_back(walk.leaf);
   return leaves;
 }
 
-TEST(LineWalk, FindsWhatLiesOnTheWay) {
+TEST(RayTraversal, FindsWhatLiesOnTheWay) {
   Random random(3);
   std::size_t met = 0;
   for (int round = 0; round < 300; ++round) {
@@ -58,11 +58,11 @@ TEST(LineWalk, FindsWhatLiesOnTheWay) {
     if (round % 7 == 0) way = {};
     const Vec3 half = round % 2 == 0 ? Vec3{} : random.vector(0, 1);
     const float reach = round % 5 == 0 ? 0.5f : 1.0f;
-    const BoxLine line(from, DVec3(way), half);
-    const std::vector<std::uint32_t> leaves = walk_all(walk_line<1, StaticNode>, tree, line, reach);
-    EXPECT_EQ(leaves, (walk_all(walk_line<4, StaticNode>, tree, line, reach)));
-    EXPECT_EQ(leaves, (walk_all(walk_line<8, StaticNode>, tree, line, reach)));
-    EXPECT_EQ(leaves, walk_all(select_static_line_walk(), tree, line, reach));
+    const BoxRay line(from, DVec3(way), half);
+    const std::vector<std::uint32_t> leaves = walk_all(next_ray_leaf<1, StaticNode>, tree, line, reach);
+    EXPECT_EQ(leaves, (walk_all(next_ray_leaf<4, StaticNode>, tree, line, reach)));
+    EXPECT_EQ(leaves, (walk_all(next_ray_leaf<8, StaticNode>, tree, line, reach)));
+    EXPECT_EQ(leaves, walk_all(select_static_ray_traversal(), tree, line, reach));
 
     std::vector<bool> visited(boxes.size());
     for (const std::uint32_t leaf : leaves) {
@@ -86,31 +86,31 @@ TEST(LineWalk, FindsWhatLiesOnTheWay) {
   EXPECT_GT(met, 500u);
 }
 
-TEST(LineWalk, BeginsBesideABox) {
+TEST(RayTraversal, BeginsBesideABox) {
   // Against the axis, a box that is touched from the first moment on is met at minus zero.
   const Aabb boxes[] = {{{-2, -1, -1}, {0, 1, 1}}};
   StaticTree tree;
   build_static_tree(boxes, tree);
-  BoxLine line({}, {-1, 0, 0}, {});
+  BoxRay line({}, {-1, 0, 0}, {});
   line.near[0] = 0.0f;
-  for (const auto walk_on : {walk_line<1, StaticNode>, walk_line<4, StaticNode>, walk_line<8, StaticNode>})
+  for (const auto walk_on : {next_ray_leaf<1, StaticNode>, next_ray_leaf<4, StaticNode>, next_ray_leaf<8, StaticNode>})
     EXPECT_EQ(walk_all(walk_on, tree, line, 1.0f).size(), 1u);
 }
 
-TEST(LineWalk, EndsWhereWhoeverWalksSays) {
+TEST(RayTraversal, EndsWhereWhoeverWalksSays) {
   std::vector<Aabb> boxes;
   for (int i = 0; i < 100; ++i) boxes.push_back({{float(i), 0, 0}, {float(i) + 0.5f, 1, 1}});
   StaticTree tree;
   build_static_tree(boxes, tree);
-  LineWalk walk(BoxLine({-1, 0.5, 0.5}, {101, 0, 0}, {}), 0, 1.0f);
+  RayTraversal walk(BoxRay({-1, 0.5, 0.5}, {101, 0, 0}, {}), 0, 1.0f);
   int leaves = 0;
-  while (walk_line<4>(tree.nodes.data(), walk)) {
+  while (next_ray_leaf<4>(tree.nodes.data(), walk)) {
     if (++leaves == 1) {
       const std::uint32_t* const first = tree.items.data() + leaf_first(walk.leaf);
       EXPECT_NE(std::find(first, first + leaf_count(walk.leaf), 0u), first + leaf_count(walk.leaf))
           << "the nearest box first";
     }
-    walk.reach = 3.5f / 101.0f;  // all but the first three
+    walk.max_fraction = 3.5f / 101.0f;  // all but the first three
   }
   EXPECT_GE(leaves, 1);
   EXPECT_LE(leaves, 3);

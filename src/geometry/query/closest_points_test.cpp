@@ -1,5 +1,5 @@
 // Closest points against every kind: as far apart as sampled directions say, and on both surfaces.
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 
 #include "geometry/query/cast_surface.h"
 #include "geometry/distance/closest.h"
@@ -35,16 +35,16 @@ TEST(FindNearest, IsProvenForConvexPairs) {
         oracle::Hulls hulls;
         const Shape target = oracle::random_shape(random, hulls, a, 1.0f),
                     shape = oracle::random_shape(random, hulls, b, 1.0f);
-        const Transform t{2.0f * random.in_cube(), random.turn()};
+        const Transform t{2.0f * random.in_cube(), random.rotation()};
         const CorePair pair(target, shape, t);
-        const PlacedShape convex{&shape, DVec3(t.position), normalized(to_double(t.orientation))};
+        const PosedShape convex{&shape, DVec3(t.position), normalized(to_double(t.orientation))};
         const double radii = double(core_radius(target)) + double(core_radius(shape));
         const std::string what = std::string(oracle::kind_name(a)) + " and " + oracle::kind_name(b);
-        Nearest near, none;
-        ASSERT_TRUE(find_nearest(target, convex, 1.0e30, near));
+        ClosestPoints near, none;
+        ASSERT_TRUE(find_closest_points(target, convex, 1.0e30, near));
         if (near.overlap) {
           EXPECT_LE(oracle::sampled_separation(target, shape, pair, random, 100) - radii, 1.0e-6) << what;
-          EXPECT_TRUE(find_nearest(target, convex, 0.0, none));
+          EXPECT_TRUE(find_closest_points(target, convex, 0.0, none));
           continue;
         }
         ++apart;
@@ -53,8 +53,8 @@ TEST(FindNearest, IsProvenForConvexPairs) {
         EXPECT_NEAR(length(near.on_convex - near.on_target), near.distance, 1.0e-6) << what;
         EXPECT_LE(sampled_height(target, near.on_target, random), 1.0e-6) << what;
         EXPECT_LE(sampled_height(shape, pair.to_b(near.on_convex - convex.position), random), 1.0e-6) << what;
-        EXPECT_FALSE(find_nearest(target, convex, 0.999 * near.distance, none));
-        EXPECT_TRUE(find_nearest(target, convex, 1.001 * near.distance, none));
+        EXPECT_FALSE(find_closest_points(target, convex, 0.999 * near.distance, none));
+        EXPECT_TRUE(find_closest_points(target, convex, 1.001 * near.distance, none));
       }
     }
   }
@@ -78,12 +78,12 @@ TEST(FindNearest, OfAPointOnAMeshIsThatOfAllTriangles) {
       const auto corner = [&](std::size_t c) { return DVec3(triangles.vertices[triangles.indices[k + c]]); };
       least = min(least, length(closest_on_triangle(p, corner(0), corner(1), corner(2)).point - p));
     }
-    Nearest near;
-    ASSERT_TRUE(find_nearest(surface, {&point, p, {}}, 1.0e30, near));
+    ClosestPoints near;
+    ASSERT_TRUE(find_closest_points(surface, {&point, p, {}}, 1.0e30, near));
     EXPECT_NEAR(near.distance, least, 1.0e-8 * (1.0 + least));
-    ASSERT_TRUE(find_nearest(surface, {&point, p, {}}, 1.001 * least, near));
+    ASSERT_TRUE(find_closest_points(surface, {&point, p, {}}, 1.001 * least, near));
     EXPECT_NEAR(near.distance, least, 1.0e-8 * (1.0 + least));
-    EXPECT_FALSE(find_nearest(surface, {&point, p, {}}, 0.999 * least, near));
+    EXPECT_FALSE(find_closest_points(surface, {&point, p, {}}, 0.999 * least, near));
   }
 }
 
@@ -100,8 +100,8 @@ TEST(FindNearest, OfAnyShapeOnAHeightFieldIsThatOfAllTriangles) {
   for (int i = 0; i < 500; ++i) {
     oracle::Hulls hulls;
     const Shape shape = oracle::random_shape(random, hulls, i % oracle::kKinds, 0.5f);
-    const PlacedShape convex{&shape, DVec3(random.in_cube(i % 3 == 0 ? 12.0f : 3.0f)),
-                             normalized(to_double(random.turn()))};
+    const PosedShape convex{&shape, DVec3(random.in_cube(i % 3 == 0 ? 12.0f : 3.0f)),
+                             normalized(to_double(random.rotation()))};
     double least = 1.0e300;
     for (std::uint32_t cell = 0; cell < field.cell_rows() * field.cell_columns(); ++cell) {
       if (!is_solid_cell(field, cell % field.cell_columns(), cell / field.cell_columns())) continue;
@@ -114,12 +114,12 @@ TEST(FindNearest, OfAnyShapeOnAHeightFieldIsThatOfAllTriangles) {
         least = min(least, d.overlap ? 0.0 : max(d.distance - double(core_radius(shape)), 0.0));
       }
     }
-    Nearest near;
-    ASSERT_TRUE(find_nearest(surface, convex, 1.0e30, near));
+    ClosestPoints near;
+    ASSERT_TRUE(find_closest_points(surface, convex, 1.0e30, near));
     EXPECT_NEAR(near.distance, least, 1.0e-7 * (1.0 + least));
     EXPECT_EQ(near.overlap, least == 0.0);
     overlaps += near.overlap ? 1 : 0;
-    EXPECT_EQ(find_nearest(surface, convex, 0.0, near), least == 0.0);
+    EXPECT_EQ(find_closest_points(surface, convex, 0.0, near), least == 0.0);
   }
   EXPECT_GT(overlaps, 30);
 }
@@ -130,12 +130,12 @@ TEST(FindNearest, OfPlanesIsExact) {
     oracle::Hulls hulls;
     const Shape shape = oracle::random_shape(random, hulls, i % oracle::kKinds, 1.0f);
     const Shape plane = oracle::make_plane({0, 1, 0}, 0.25f);
-    const Quat turn = random.turn();
+    const Quat turn = random.rotation();
     const Transform t{{0, random(-1.5f, 3.0f), 0}, turn};
     const double lowest = double(t.position.y) - double(core_radius(shape)) -
                           oracle::extent(shape, rotate_inverse(normalized(to_double(turn)), DVec3{0, -1, 0}));
-    Nearest near;
-    ASSERT_TRUE(find_nearest(plane, {&shape, DVec3(t.position), normalized(to_double(turn))}, 1.0e30, near));
+    ClosestPoints near;
+    ASSERT_TRUE(find_closest_points(plane, {&shape, DVec3(t.position), normalized(to_double(turn))}, 1.0e30, near));
     EXPECT_NEAR(near.distance, max(lowest - 0.25, 0.0), 1.0e-6);
     EXPECT_EQ(near.normal, (DVec3{0, 1, 0}));
   }

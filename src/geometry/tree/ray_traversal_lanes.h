@@ -1,7 +1,7 @@
-// The walk along a line with W lanes at once. See line_walk.h.
+// The walk along a line with W lanes at once. See ray_traversal.h.
 #pragma once
 
-#include "geometry/tree/line_walk.h"
+#include "geometry/tree/ray_traversal.h"
 #include "math/wide.h"
 
 #include <bit>
@@ -11,9 +11,9 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 // A line to be held against many nodes.
 template <int W, class Node>
-class LineLanes {
+class BoxRayLanes {
  public:
-  GYRE_INLINE explicit LineLanes(const BoxLine& line) {
+  GYRE_INLINE explicit BoxRayLanes(const BoxRay& line) {
     GYRE_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
       near_[axis] = line.near[axis];
@@ -66,7 +66,7 @@ GYRE_INLINE void ask_for(const Node* node) {
 
 // Puts the lanes' children on the stack so that the nearest is on top.
 template <class Node>
-GYRE_INLINE std::uint64_t* push_near_last(const Node* nodes, const Node& node, unsigned lanes,
+GYRE_INLINE std::uint64_t* push_nearest_last(const Node* nodes, const Node& node, unsigned lanes,
                                           const float* enter, std::uint32_t child_bits, std::uint64_t* top) {
   const std::uint64_t* const bottom = top;
   for (; lanes != 0; lanes &= lanes - 1) {
@@ -85,8 +85,8 @@ GYRE_INLINE std::uint64_t* push_near_last(const Node* nodes, const Node& node, u
 GYRE_INLINE std::uint32_t leaf_mark(const StaticNode&) { return 0; }
 
 template <int W, class Node>
-bool walk_line(const Node* nodes, LineWalk& walk) {
-  const LineLanes<W, Node> line(walk.line);
+bool next_ray_leaf(const Node* nodes, RayTraversal& walk) {
+  const BoxRayLanes<W, Node> line(walk.line);
   const float reach = walk.reach;
   const std::uint64_t last = std::uint64_t(__builtin_bit_cast(std::uint32_t, reach)) << 32 | 0xffffffffu;
   std::uint64_t* top = walk.waiting + walk.depth;
@@ -102,7 +102,7 @@ bool walk_line(const Node* nodes, LineWalk& walk) {
     const Node& node = nodes[place];
     alignas(32) float enter[Node::kWidth];
     const unsigned lanes = line.meets(node, reach, enter);
-    top = push_near_last(nodes, node, lanes, enter, leaf_mark(node), top);
+    top = push_nearest_last(nodes, node, lanes, enter, leaf_mark(node), top);
   }
   walk.depth = 0;
   return false;

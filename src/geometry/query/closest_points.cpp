@@ -1,5 +1,5 @@
 // GJK against convex shapes, planes and triangles; balls beside balls, capsules and boxes in closed form. See nearest.h.
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 
 #include "geometry/query/cast_ball.h"
 #include "geometry/query/cast_surface.h"
@@ -13,7 +13,7 @@ namespace {
 constexpr double kDistanceRounding = 1.0e-6;
 
 // From the distance of two cores to that of two surfaces.
-void fill(const CoreDistance& near, double radius_a, double radius_b, Nearest& out) {
+void fill(const CoreDistance& near, double radius_a, double radius_b, ClosestPoints& out) {
   const double radii = radius_a + radius_b;
   out.normal = near.normal;
   out.overlap = near.overlap || near.distance <= radii;
@@ -27,7 +27,7 @@ void fill(const CoreDistance& near, double radius_a, double radius_b, Nearest& o
   }
 }
 
-bool finish(const CorePair& pair, double radius_a, double radius_b, double max_distance, Nearest& out) {
+bool finish(const CorePair& pair, double radius_a, double radius_b, double max_distance, ClosestPoints& out) {
   const double radii = radius_a + radius_b;
   // Looks a little farther than asked: hulls choose their support points in float.
   const double reach = (max_distance + radii) * (1.0 + kDistanceRounding) + kDistanceRounding * pair.size();
@@ -38,7 +38,7 @@ bool finish(const CorePair& pair, double radius_a, double radius_b, double max_d
 }
 
 // A ball beside a shape whose core is a point, a segment or a box; false if its middle lies in that core.
-bool nearest_of_ball(const Shape& target, const PlacedShape& ball, double max_distance, Nearest& out,
+bool nearest_of_ball(const Shape& target, const PosedShape& ball, double max_distance, ClosestPoints& out,
                      bool& within) {
   const DVec3 core = box_core(target), p = ball.position;
   CoreDistance near;
@@ -54,7 +54,7 @@ bool nearest_of_ball(const Shape& target, const PlacedShape& ball, double max_di
   return true;
 }
 
-bool nearest_of_plane(const Shape& plane, const PlacedShape& convex, double max_distance, Nearest& out) {
+bool nearest_of_plane(const Shape& plane, const PosedShape& convex, double max_distance, ClosestPoints& out) {
   const DVec3 normal(plane.extents);
   const DVec3 lowest =
       rotate(convex.orientation, core_support(*convex.shape, rotate_inverse(convex.orientation, -normal)));
@@ -68,8 +68,8 @@ bool nearest_of_plane(const Shape& plane, const PlacedShape& convex, double max_
   return true;
 }
 
-bool nearest_of_triangle(const SurfaceTriangle& triangle, const PlacedShape& convex, double max_distance,
-                         Nearest& out) {
+bool nearest_of_triangle(const SurfaceTriangle& triangle, const PosedShape& convex, double max_distance,
+                         ClosestPoints& out) {
   const DVec3 pivot(triangle.a);
   const DVec3 corners[3] = {{}, DVec3(triangle.b) - pivot, DVec3(triangle.c) - pivot};
   if (convex.shape->kind == ShapeKind::sphere) {
@@ -114,7 +114,7 @@ Aabb outward(DVec3 low, DVec3 high) {
 // The nearest triangle whose box comes within `reach` of the convex shape's box.
 class SurfaceSearch {
  public:
-  SurfaceSearch(const Shape& surface, const PlacedShape& convex, double max_distance)
+  SurfaceSearch(const Shape& surface, const PosedShape& convex, double max_distance)
       : surface_(surface), convex_(convex), reach_(max_distance) {
     const Aabb box = bounds(*convex.shape, {{}, to_float(convex.orientation)});
     const float slack = kBoundsSlack * outer_radius(*convex.shape, {});
@@ -123,7 +123,7 @@ class SurfaceSearch {
   }
 
   // In boxes that grow eightfold, so that a near triangle is found without looking at all.
-  bool run(Nearest& out) {
+  bool run(ClosestPoints& out) {
     const Aabb& all = surface_.kind == ShapeKind::mesh ? surface_.mesh->tree.box : surface_.field->box;
     const auto least = double(box_gap(all, box_));
     if (least * (1.0 - kDistanceRounding) > reach_) return false;
@@ -173,7 +173,7 @@ class SurfaceSearch {
   }
 
   void look_at(const SurfaceTriangle& triangle) {
-    Nearest next;
+    ClosestPoints next;
     if (!nearest_of_triangle(triangle, convex_, reach_, next)) return;
     next.triangle = public_triangle(surface_, triangle.id);
     if (found_ && (next.distance > best_.distance ||
@@ -185,16 +185,16 @@ class SurfaceSearch {
   }
 
   const Shape& surface_;
-  const PlacedShape& convex_;
+  const PosedShape& convex_;
   Aabb box_;  // of the convex shape
   double reach_;
   bool found_ = false;
-  Nearest best_;
+  ClosestPoints best_;
 };
 
 }  // namespace
 
-bool find_nearest(const Shape& target, const PlacedShape& convex, double max_distance, Nearest& out) {
+bool find_closest_points(const Shape& target, const PosedShape& convex, double max_distance, ClosestPoints& out) {
   out = {};
   if (target.kind == ShapeKind::plane) return nearest_of_plane(target, convex, max_distance, out);
   if (!is_convex(target.kind)) return SurfaceSearch(target, convex, max_distance).run(out);

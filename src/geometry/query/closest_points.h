@@ -10,13 +10,13 @@
 namespace gyre {
 
 // A convex shape in the frame of another.
-struct PlacedShape {
+struct PosedShape {
   const Shape* shape = nullptr;
   DVec3 position;
   DQuat orientation;
 };
 
-struct Nearest {
+struct ClosestPoints {
   double distance = 0.0;
   bool overlap =
       false;  // they share a point; distance is 0 and the points are one that they share, or near it
@@ -26,6 +26,6 @@ struct Nearest {
 };
 
 // Whether the two are within `max_distance`. Touching counts as overlap.
-bool find_nearest(const Shape& target, const PlacedShape& convex, double max_distance, Nearest& out);
+bool find_closest_points(const Shape& target, const PosedShape& convex, double max_distance, ClosestPoints& out);
 
 }  // namespace gyre

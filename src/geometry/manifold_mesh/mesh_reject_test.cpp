@@ -1,5 +1,5 @@
 // A triangle that is left out beside a ball or capsule: the search for a direction finds none there that the surface allows, so it would wait.
-#include "geometry/manifold_mesh/mesh_beside.h"
+#include "geometry/manifold_mesh/mesh_reject.h"
 
 #include "geometry/testing/mesh_contact_test.h"
 
@@ -28,13 +28,13 @@ void check(MakeShape&& make, int one_in) {
       const Vec3 foot = random.in_box(1.8f);
       const Vec3 position{foot.x, bumpy(foot.x, foot.z) + round_shape.radius * random.between(0.7f, 1.5f),
                           foot.z};
-      const PlacedConvex convex(round_shape, random.rotation());
+      const LocalConvex convex(round_shape, random.rotation());
       for (std::uint32_t id = 0; id < surface.mesh->triangle_count(); ++id) {
-        const NearTriangle t = near_triangle(surface, id, position, convex);
+        const LocalTriangle t = measured_triangle(surface, id, position, convex);
         const float height = dot(t.normal, t.v[0]), face = convex.lowest(t.normal) - height - convex.radius();
         if (dot(t.normal, convex.center()) < height || face > kReach) continue;
         ++asked;
-        if (!is_round_beside(surface, t, convex, face)) continue;
+        if (!is_round_rejected(surface, t, convex, face)) continue;
         ++left_out;
         AxisScratch scratch;
         const AxisSearch found = search_axes(surface, t, convex, face, kReach, scratch);
