@@ -1,4 +1,4 @@
-// Where failed checks go: one process-wide handler, printing and aborting unless replaced.
+// The handler of failed checks: one for the process, which prints and aborts unless replaced.
 #include "base/check.h"
 
 #include <atomic>

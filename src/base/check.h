@@ -1,15 +1,15 @@
-// Checks of the engine's own promises. GYRE_ASSERT is cheap and is compiled in where NDEBUG is not defined, or
-// GYRE_ENABLE_ASSERTS is. GYRE_VALIDATE_ONLY keeps a statement that walks whole structures, in builds with
-// GYRE_VALIDATE=1. Wrong input from outside is never handled here: that is what Result and problems() are for.
+// Checks of the engine's own invariants. GYRE_ASSERT is cheap; it is compiled in without NDEBUG or with
+// GYRE_ENABLE_ASSERTS. GYRE_VALIDATE_ONLY keeps a statement that visits whole structures, in builds with
+// GYRE_VALIDATE=1. Wrong input from outside is never handled here; Result and problems() are for that.
 #pragma once
 
 namespace gyre {
 
-// Told what did not hold: the condition as written, the same in words, and where.
+// Receives a failed check: the condition as written, the same in words, and its location.
 using CheckHandler = void (*)(const char* condition, const char* words, const char* file, int line);
 
-// Replaces what happens when a check fails; null brings back the default, which prints to stderr and aborts. A handler
-// that returns lets the program go on (tests do that); the state is then suspect. Safe to call from any thread.
+// Replaces the handler of failed checks; null restores the default, which prints to stderr and aborts. If a handler
+// returns, as in tests, the program continues with a suspect state. Safe to call from any thread.
 void set_check_handler(CheckHandler handler);
 
 // Calls the handler.
@@ -21,7 +21,7 @@ constexpr bool kAssertsActive = true;
   ((condition) ? static_cast<void>(0) : ::gyre::check_failed(#condition, words, __FILE__, __LINE__))
 #else
 constexpr bool kAssertsActive = false;
-// Not evaluated, but what it names still counts as used and must still compile.
+// Not evaluated, but the names in it count as used and must compile.
 #define GYRE_ASSERT(condition, words) static_cast<void>(sizeof(!(condition)))
 #endif
 

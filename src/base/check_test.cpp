@@ -1,4 +1,4 @@
-// Failed checks reach the handler with the words, the condition and the place; held ones reach nobody.
+// Failed checks reach the handler with words, condition and location; checks that pass do not.
 #include "base/check.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class Check : public testing::Test {
   void TearDown() override { set_check_handler(nullptr); }
 };
 
-TEST_F(Check, HandlerHearsWhatDidNotHold) {
+TEST_F(Check, HandlerReceivesTheFailure) {
   check_failed("1 + 1 == 3", "sums are right", __FILE__, 17);
   EXPECT_EQ(told, "1 + 1 == 3 | sums are right | here");
   EXPECT_EQ(told_line, 17);
@@ -60,7 +60,7 @@ TEST(CheckDeath, DefaultPrintsAndAborts) {
   EXPECT_DEATH(check_failed("a < b", "a is below b", "file.cpp", 3), "file.cpp:3: a is below b \\(a < b\\)");
 }
 
-TEST(Validate, KeepsTheStatementOnlyWhenAsked) {
+TEST(Validate, KeepsTheStatementOnlyIfEnabled) {
   int walks = 0;
   GYRE_VALIDATE_ONLY(walks += 1, walks += 1);
 #if defined(GYRE_VALIDATE) && GYRE_VALIDATE

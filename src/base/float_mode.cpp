@@ -1,5 +1,5 @@
-// The control register of floats on x86 (MXCSR, Intel SDM 1, 10.2.3) and 64-bit ARM (FPCR, Arm ARM C5.2.8). WebAssembly
-// has only the mode that is wanted.
+// Access to the control register of floats on x86 (MXCSR, Intel SDM 1, 10.2.3) and 64-bit ARM (FPCR, Arm ARM C5.2.8).
+// WebAssembly has only the required mode.
 #include "base/float_mode.h"
 
 #if (defined(__SSE2__) || defined(_M_X64)) && !defined(__EMSCRIPTEN__)
@@ -16,14 +16,14 @@ namespace {
 
 std::uint64_t read_mode() { return 0; }
 void write_mode(std::uint64_t) {}
-constexpr std::uint64_t wanted_mode(std::uint64_t mode) { return mode; }
+constexpr std::uint64_t required_mode(std::uint64_t mode) { return mode; }
 
 #elif defined(__SSE2__) || defined(_M_X64)
 
 std::uint64_t read_mode() { return _mm_getcsr(); }
 void write_mode(std::uint64_t mode) { _mm_setcsr(static_cast<unsigned>(mode)); }
 // All traps masked, rounding to nearest, flush-to-zero and denormals-are-zero off: the state at power-up.
-constexpr std::uint64_t wanted_mode(std::uint64_t) { return 0x1f80; }
+constexpr std::uint64_t required_mode(std::uint64_t) { return 0x1f80; }
 
 #elif defined(__aarch64__) || defined(_M_ARM64)
 
@@ -39,19 +39,19 @@ std::uint64_t read_mode() {
 void write_mode(std::uint64_t mode) { __asm__ __volatile__("msr fpcr, %0" : : "r"(mode) : "memory"); }
 #endif
 // Cleared: FIZ, AH, NEP (bits 0 to 2), trap enables (8 to 12, 15), FZ16 (19), rounding (22, 23), FZ (24), DN (25).
-constexpr std::uint64_t wanted_mode(std::uint64_t mode) { return mode & ~std::uint64_t{0x03c89f07}; }
+constexpr std::uint64_t required_mode(std::uint64_t mode) { return mode & ~std::uint64_t{0x03c89f07}; }
 
 #else
 
 std::uint64_t read_mode() { return 0; }
 void write_mode(std::uint64_t) {}
-constexpr std::uint64_t wanted_mode(std::uint64_t mode) { return mode; }
+constexpr std::uint64_t required_mode(std::uint64_t mode) { return mode; }
 
 #endif
 
 }  // namespace
 
-FloatMode::FloatMode() : saved_(read_mode()) { write_mode(wanted_mode(saved_)); }
+FloatMode::FloatMode() : saved_(read_mode()) { write_mode(required_mode(saved_)); }
 
 FloatMode::~FloatMode() { write_mode(saved_); }
 

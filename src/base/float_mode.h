@@ -1,6 +1,6 @@
-// FloatMode: while one lives, its thread computes with the rounding that every result of the engine assumes: to nearest,
-// denormals kept, no traps. Hosts often switch denormals off for audio or leave another rounding behind; without this
-// the same step would give other bits on another thread. The host's mode comes back at the end.
+// FloatMode: while an object lives, its thread computes with the rounding that all results of the engine assume: to
+// nearest, with denormals, without traps. Hosts often switch denormals off for audio or leave another rounding behind;
+// the same step would then give other bits on another thread. The destructor restores the host's mode.
 #pragma once
 
 #include <cstdint>

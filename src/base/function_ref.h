@@ -1,5 +1,5 @@
-// FunctionRef<R(Args...)>: something callable that lives elsewhere, as two pointers. For parameters only: it must not
-// outlive what it was made from.
+// FunctionRef<R(Args...)>: a reference to a callable, as two pointers. For parameters only: it must not outlive the
+// callable.
 #pragma once
 
 #include <memory>

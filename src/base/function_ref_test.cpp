@@ -1,4 +1,4 @@
-// FunctionRef calls lambdas, functions and constant callables where they are, without copying them.
+// FunctionRef calls lambdas, functions and constant callables in place, without a copy.
 #include "base/function_ref.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ int twice(int x) { return 2 * x; }
 
 int call(FunctionRef<int(int)> fn, int x) { return fn(x); }
 
-TEST(FunctionRef, CallsWhatItWasMadeFrom) {
+TEST(FunctionRef, CallsTheOriginal) {
   int sum = 0;
   const auto constant = [](int x) { return x + 1; };
   auto counting = [&sum](int x) mutable { return sum += x; };

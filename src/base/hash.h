@@ -1,6 +1,6 @@
 // 64-bit hashes for state and content, the same on every platform. The function is XXH64, written from its published
-// specification ("xxHash fast digest algorithm", section XXH64): four lanes eat 32 bytes at a time, so it runs near
-// memory speed with nothing but 64-bit multiplies, and reference values exist to test against. Not for secrets.
+// specification ("xxHash fast digest algorithm", section XXH64): four lanes take 32 bytes at a time, so it runs near
+// memory speed with 64-bit multiplies alone, and reference values exist to test against. Not for secrets.
 #pragma once
 
 #include <bit>
@@ -20,7 +20,7 @@ constexpr std::uint64_t kPrime3 = 0x165667B19E3779F9u;
 constexpr std::uint64_t kPrime4 = 0x85EBCA77C2B2AE63u;
 constexpr std::uint64_t kPrime5 = 0x27D4EB2F165667C5u;
 
-// Byte by byte, so that the byte order is fixed and it works in constant expressions; compilers make one load of it.
+// Byte by byte, so that the byte order is fixed and constant expressions can use it; compilers make one load of it.
 template <class Byte>
 constexpr std::uint64_t read_32(const Byte* p) {
   std::uint64_t word = 0;
@@ -50,15 +50,15 @@ struct Lanes {
   constexpr explicit Lanes(std::uint64_t seed)
       : a(seed + kPrime1 + kPrime2), b(seed + kPrime2), c(seed), d(seed - kPrime1) {}
 
-  constexpr void eat(std::uint64_t w, std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+  constexpr void update(std::uint64_t w, std::uint64_t x, std::uint64_t y, std::uint64_t z) {
     a = round(a, w);
     b = round(b, x);
     c = round(c, y);
     d = round(d, z);
   }
   template <class Byte>
-  constexpr void eat(const Byte* block) {
-    eat(read_64(block), read_64(block + 8), read_64(block + 16), read_64(block + 24));
+  constexpr void update(const Byte* block) {
+    update(read_64(block), read_64(block + 8), read_64(block + 16), read_64(block + 24));
   }
 
   constexpr std::uint64_t merge() const {
@@ -91,7 +91,7 @@ constexpr std::uint64_t hash_all(const Byte* p, std::size_t size, std::uint64_t 
   std::size_t left = size;
   if (left >= 32) {
     Lanes lanes(seed);
-    for (; left >= 32; left -= 32, p += 32) lanes.eat(p);
+    for (; left >= 32; left -= 32, p += 32) lanes.update(p);
     hash = lanes.merge();
   }
   return finish(hash + size, p, left);
@@ -117,8 +117,7 @@ constexpr std::uint64_t mix_bits(std::uint64_t word) {
   return word ^ word >> 31;
 }
 
-// Hashes what comes in pieces; where the cuts are does not matter. value() equals hash_bytes of everything so far, and
-// more may follow.
+// Hashes input in pieces, independent of the cuts. value() equals hash_bytes of everything so far, and more may follow.
 class Hasher {
  public:
   explicit Hasher(std::uint64_t seed = 0) : lanes_(seed), seed_(seed) {}
@@ -136,12 +135,13 @@ class Hasher {
     if (waiting_ != 0) {
       const std::size_t missing = 32 - waiting_;
       std::memcpy(buffer_ + waiting_, p, missing);
-      lanes_.eat(buffer_);
+      lanes_.update(buffer_);
       p += missing;
       left -= missing;
     }
-    hash_detail::Lanes lanes = lanes_;  // in registers: for all that compilers know, the bytes might be those of `lanes_`
-    for (; left >= 32; left -= 32, p += 32) lanes.eat(p);
+    // in registers: the compiler must assume that the bytes may alias `lanes_`
+    hash_detail::Lanes lanes = lanes_;
+    for (; left >= 32; left -= 32, p += 32) lanes.update(p);
     lanes_ = lanes;
     if (left != 0) std::memcpy(buffer_, p, left);
     waiting_ = left;

@@ -1,5 +1,5 @@
-// Before a function that seldom runs: it is made small and stays out of line, so that the usual way around it is short enough to be
-// inlined where it is called.
+// Marks functions that seldom run: they are kept out of line and small, so that the common path of the caller can be
+// inlined.
 #pragma once
 
 #if defined(__GNUC__) || defined(__clang__)

@@ -1,4 +1,4 @@
-// Asks for memory that will be read soon, where the order of reading is known and the processor cannot guess it.
+// Prefetches memory that will be read soon, if the order of reads is known and the processor cannot guess it.
 #pragma once
 
 #include <cstddef>

@@ -1,3 +1,4 @@
+// Asks the processor for its instruction sets, its maker and its family. See processor.h.
 #include "base/processor.h"
 
 #if defined(__x86_64__)
@@ -12,14 +13,14 @@ namespace {
 
 #if defined(__x86_64__)
 bool is_by_amd() {
-  unsigned most = 0, b = 0, c = 0, d = 0;
-  if (__get_cpuid(0, &most, &b, &c, &d) == 0) return false;
+  unsigned max_leaf = 0, b = 0, c = 0, d = 0;
+  if (__get_cpuid(0, &max_leaf, &b, &c, &d) == 0) return false;
   char name[12];
   std::memcpy(name, &b, 4), std::memcpy(name + 4, &d, 4), std::memcpy(name + 8, &c, 4);
   return std::memcmp(name, "AuthenticAMD", 12) == 0;
 }
 
-// As processors number themselves: the extended family counts on from 15.
+// The family as processor makers count it: the extended family continues from 15.
 unsigned family() {
   unsigned a = 0, b = 0, c = 0, d = 0;
   if (__get_cpuid(1, &a, &b, &c, &d) == 0) return 0;
@@ -33,7 +34,7 @@ bool has_half_floats() {
   return __get_cpuid_count(7, 0, &a, &b, &c, &d) != 0 && (d & kFp16) != 0;
 }
 
-int find_most() {
+int find_max_lanes() {
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
     return 16;
@@ -41,26 +42,26 @@ int find_most() {
   return __builtin_cpu_supports("avx2") ? 8 : kLanesOfAll;
 }
 
-int find_best() {
+int find_best_lanes() {
   constexpr unsigned kZen5 = 0x1a;
-  const int most = find_most();
-  if (most < 16) return most;
+  const int lanes = find_max_lanes();
+  if (lanes < 16) return lanes;
   return (is_by_amd() ? family() >= kZen5 : has_half_floats()) ? 16 : 8;
 }
 #else
-int find_most() { return kLanesOfAll; }
-int find_best() { return kLanesOfAll; }
+int find_max_lanes() { return kLanesOfAll; }
+int find_best_lanes() { return kLanesOfAll; }
 #endif
 
 }  // namespace
 
 int max_lanes() {
-  static const int lanes = find_most();
+  static const int lanes = find_max_lanes();
   return lanes;
 }
 
 int best_lanes() {
-  static const int lanes = find_best();
+  static const int lanes = find_best_lanes();
   return lanes;
 }
 

@@ -1,10 +1,10 @@
-// How many floats this machine's processor works on side by side: for those who choose kernels when a program or a world begins. A choice
-// never changes a bit of a result.
+// The number of floats that this machine's processor handles side by side, to choose kernels when a program or a world
+// starts. The choice never changes a bit of a result.
 #pragma once
 
 namespace gyre {
 
-// Lanes that kernels have on every processor for which this program is built. (WebAssembly without SIMD would have every lane's code one
+// Lanes available on every processor for which this program is built. (WebAssembly without SIMD would run the lanes one
 // after the other.)
 #if defined(__wasm__) && !defined(__wasm_simd128__)
 inline constexpr int kLanesOfAll = 1;
@@ -12,21 +12,21 @@ inline constexpr int kLanesOfAll = 1;
 inline constexpr int kLanesOfAll = 4;
 #endif
 
-// Lanes that the processor has instructions for: 16 (AVX-512 with what the kernels use of it), 8 (AVX2), or
+// Lanes for which the processor has instructions: 16 (AVX-512 with the extensions that the kernels use), 8 (AVX2), or
 // kLanesOfAll.
 int max_lanes();
 
-// Lanes with which kernels run fastest, at most max_lanes(). 16 only where they were measured to pay: on AMD's from family 1Ah on (Zen 5),
-// where registers of 512 bits are as wide within, and on Intel's from Sapphire Rapids on, which do not slow down for them and are known by
-// their arithmetic of half floats. Elsewhere what they save in instructions is lost again on the way (docs/performance_trials.md): there eight
-// lanes have kernels that use the 32 registers.
+// The fastest number of lanes, at most max_lanes(). 16 only where measurements favour it: on AMD from family 1Ah on
+// (Zen 5), whose 512-bit registers are as wide inside, and on Intel from Sapphire Rapids on, which does not slow down
+// for them (known by its half-float arithmetic). Elsewhere the saved instructions gain no time
+// (docs/performance_trials.md); eight lanes there have kernels that use the 32 registers.
 int best_lanes();
 
-// What somebody asked for, 0 being the best, as far as the processor has it.
-inline int lanes_for(int asked) {
-  if (asked == 0) return best_lanes();
-  const int most = max_lanes();
-  return asked < most ? asked : most;
+// The requested number of lanes (0: the best), limited to what the processor has.
+inline int lanes_for(int requested) {
+  if (requested == 0) return best_lanes();
+  const int max = max_lanes();
+  return requested < max ? requested : max;
 }
 
 }  // namespace gyre

@@ -28,7 +28,7 @@ TEST(Processor, HasNoMoreThanItsInstructions) {
 #endif
 }
 
-TEST(Processor, GivesWhatIsAskedForAsFarAsItCan) {
+TEST(Processor, LimitsTheRequestedLanes) {
   EXPECT_EQ(lanes_for(0), best_lanes());
   EXPECT_EQ(lanes_for(1), 1);
   EXPECT_EQ(lanes_for(4), max_lanes() < 4 ? max_lanes() : 4);

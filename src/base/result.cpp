@@ -1,5 +1,5 @@
-// Fills the words of an Error. printf's own formatting, cut to the size of the message, so that reporting a failure
-// never allocates and never fails itself.
+// Writes the message of an Error with printf's formatting, cut to the size of the message, so that the report of a
+// failure never allocates and never fails.
 #include <gyre/result.h>
 
 #include <cstdarg>
@@ -13,7 +13,7 @@ Error make_error(ErrorCode code, const char* format, ...) {
   error.code = code;
   std::va_list arguments;
   va_start(arguments, format);
-  // A format that cannot be converted leaves an unspecified buffer: end it so that the message is always text.
+  // A format that cannot be converted leaves an unspecified buffer; the message must still be text.
   if (std::vsnprintf(error.message, sizeof error.message, format, arguments) < 0) error.message[0] = '\0';
   va_end(arguments);
   return error;

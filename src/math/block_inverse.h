@@ -5,7 +5,7 @@
 
 namespace gyre {
 
-// The inverse of a block, zero in the rows whose pivots were dropped.
+// Inverts a block; rows with dropped pivots become zero.
 template <int N>
 void invert_block(double* block) {
   double a[N][N];
@@ -13,7 +13,8 @@ void invert_block(double* block) {
     for (int c = 0; c < N; ++c) a[r][c] = block[r * N + c];
   }
   const Ldlt<N, double> f = factor_ldlt(a);
-  // The inverse of L, below its diagonal; of a dropped pivot's column only the pivot's own row would remain, as zero.
+  // The inverse of L, below its diagonal. In the column of a dropped pivot only the pivot's own row would remain, as
+  // zero.
   double inverse[N][N] = {};
   for (int c = 0; c < N; ++c) {
     inverse[c][c] = 1.0;

@@ -1,3 +1,4 @@
+// The minimum degree order, the plan and the kernels of the factorisation. See block_ldlt.h.
 #include "math/block_ldlt.h"
 
 #include "base/check.h"
@@ -12,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-// The graph while nodes are eliminated: for each node the neighbours that are left.
+// The graph during elimination: the remaining neighbours of each node.
 class Elimination {
  public:
   Elimination(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges, Arena& arena)
@@ -35,7 +36,7 @@ class Elimination {
     }
   }
 
-  // Takes the next node out; its neighbours stay readable until the next call. kNone if none is left.
+  // Removes and returns the next node; its neighbours stay readable until the next call. kNone if none is left.
   std::uint32_t next() {
     while (lowest_ < heads_.size() && heads_[lowest_] == kNone) ++lowest_;
     if (lowest_ == heads_.size()) return kNone;
@@ -47,20 +48,20 @@ class Elimination {
     return {lists_[node].items, lists_[node].count};
   }
 
-  // The neighbours of the node become neighbours of each other.
+  // Makes the neighbours of the node neighbours of each other.
   void eliminate(std::uint32_t node) {
     const std::span<const std::uint32_t> around = neighbours(node);
     for (const std::uint32_t other : around) marks_[other] = node;
     for (const std::uint32_t other : around) {
       remove(other);
       List& list = lists_[other];
-      std::uint32_t kept = 0;
+      std::uint32_t count = 0;
       for (std::uint32_t i = 0; i < list.count; ++i) {
         const std::uint32_t item = list.items[i];
-        if (item != node && marks_[item] != node) list.items[kept++] = item;
+        if (item != node && marks_[item] != node) list.items[count++] = item;
       }
-      list.count = kept;
-      reserve(list, kept + std::uint32_t(around.size()) - 1);
+      list.count = count;
+      reserve(list, count + std::uint32_t(around.size()) - 1);
       for (const std::uint32_t item : around) {
         if (item != other) list.add(item);
       }
@@ -77,14 +78,14 @@ class Elimination {
 
   void drop_doubles(std::uint32_t node) {
     List& list = lists_[node];
-    std::uint32_t kept = 0;
+    std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < list.count; ++i) {
       const std::uint32_t item = list.items[i];
       if (marks_[item] == node) continue;
       marks_[item] = node;
-      list.items[kept++] = item;
+      list.items[count++] = item;
     }
-    list.count = kept;
+    list.count = count;
   }
   void reserve(List& list, std::uint32_t room) {
     if (room <= list.room) return;
@@ -93,7 +94,7 @@ class Elimination {
     std::copy(list.items, list.items + list.count, items);
     list.items = items;
   }
-  // Nodes by number of neighbours, in doubly linked lists.
+  // Lists nodes by number of neighbours, in doubly linked lists.
   void insert(std::uint32_t node) {
     const std::uint32_t degree = lists_[node].count;
     before_[node] = kNone;
@@ -119,7 +120,8 @@ class Elimination {
   std::uint32_t lowest_ = 0;
 };
 
-// For each pair of entries of each column the block that its elimination changes: entry i (rows) by entry j <= i.
+// Lists, for each pair of entries of each column, the block that its elimination changes: entry i (rows) by entry j <=
+// i.
 std::span<std::uint32_t> list_targets(std::span<BlockColumn> columns, std::span<const BlockEntry> entries,
                                       Arena& arena) {
   std::size_t count = 0;
@@ -131,7 +133,7 @@ std::span<std::uint32_t> list_targets(std::span<BlockColumn> columns, std::span<
   const std::span<std::uint32_t> targets = arena.make<std::uint32_t>(count);
   for (const BlockColumn& column : columns) {
     for (std::uint32_t j = column.begin; j < column.end; ++j) {
-      const BlockColumn& other = columns[entries[j].place];
+      const BlockColumn& other = columns[entries[j].index];
       std::uint32_t at = other.begin;
       for (std::uint32_t i = j; i < column.end; ++i) {
         const std::uint32_t local = i - column.begin;
@@ -140,7 +142,7 @@ std::span<std::uint32_t> list_targets(std::span<BlockColumn> columns, std::span<
           target = other.diagonal;
           continue;
         }
-        while (entries[at].place != entries[i].place) ++at;
+        while (entries[at].index != entries[i].index) ++at;
         target = entries[at].offset;
       }
     }
@@ -148,16 +150,16 @@ std::span<std::uint32_t> list_targets(std::span<BlockColumn> columns, std::span<
   return targets;
 }
 
-void sort_by_place(std::span<BlockEntry> entries) {
+void sort_by_index(std::span<BlockEntry> entries) {
   for (std::size_t i = 1; i < entries.size(); ++i) {
     const BlockEntry entry = entries[i];
     std::size_t k = i;
-    for (; k > 0 && entries[k - 1].place > entry.place; --k) entries[k] = entries[k - 1];
+    for (; k > 0 && entries[k - 1].index > entry.index; --k) entries[k] = entries[k - 1];
     entries[k] = entry;
   }
 }
 
-// Kernels: R, Q and C are numbers of rows known when compiling, or 0 for those of the arguments.
+// Kernels: R, Q and C are numbers of rows known at compile time, or 0 for those of the arguments.
 template <int R, int C>
 void multiply(const double* b, const double* d, double* out, int rows, int columns) {
   const int r_end = R > 0 ? R : rows, c_end = C > 0 ? C : columns;
@@ -181,7 +183,7 @@ void subtract_product(const double* w, const double* b, double* out, int rows, i
   }
 }
 
-// Calls fn with the number as a constant where it is that of a ball joint or a hinge, 0 otherwise.
+// Calls fn with the number as a constant for a ball joint or a hinge, with 0 otherwise.
 template <class Fn>
 void with_constant(std::uint32_t rows, Fn&& fn) {
   if (rows == 3) return fn(std::integral_constant<int, 3>());
@@ -233,12 +235,12 @@ void eliminate_column(const BlockPlan& plan, const BlockColumn& column, double* 
   const std::uint32_t* target = plan.targets.data() + column.targets;
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
     const BlockEntry& entry = plan.entries[i];
-    const int rows = int(plan.columns[entry.place].size);
+    const int rows = int(plan.columns[entry.index].size);
     with_constant(std::uint32_t(rows), [&](auto r) {
       multiply<r(), C>(values + entry.offset, diagonal, scaled, rows, columns);
       for (std::uint32_t j = column.begin; j <= i; ++j) {
         const BlockEntry& other = plan.entries[j];
-        const int others = int(plan.columns[other.place].size);
+        const int others = int(plan.columns[other.index].size);
         double* out = values + *target++;
         with_constant(std::uint32_t(others), [&](auto q) {
           subtract_product<r(), q(), C>(scaled, values + other.offset, out, rows, others, columns);
@@ -253,7 +255,7 @@ void eliminate_column(const BlockPlan& plan, const BlockColumn& column, double* 
 template <int C>
 void solve_down(const BlockPlan& plan, const BlockColumn& column, const double* values, double* x) {
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
-    const BlockColumn& row = plan.columns[plan.entries[i].place];
+    const BlockColumn& row = plan.columns[plan.entries[i].index];
     with_constant(row.size, [&](auto r) {
       subtract_times<r(), C>(values + plan.entries[i].offset, x + column.row, x + row.row, int(row.size),
                              int(column.size));
@@ -267,7 +269,7 @@ bool is_zero(const double* x, std::uint32_t count) {
   return true;
 }
 
-// D^-1 times a column's part of a vector; D^-1 is what its diagonal block holds.
+// D^-1 times the rows of a vector that belong to a column. The diagonal block contains D^-1.
 template <int C>
 void scale_column(const BlockColumn& column, const double* values, const double* x, double* out) {
   const int size = C > 0 ? C : int(column.size);
@@ -285,7 +287,7 @@ void solve_up(const BlockPlan& plan, const BlockColumn& column, const double* va
   double own[kMaxBlockRows];
   scale_column<C>(column, values, x + column.row, own);
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
-    const BlockColumn& row = plan.columns[plan.entries[i].place];
+    const BlockColumn& row = plan.columns[plan.entries[i].index];
     with_constant(row.size, [&](auto r) {
       subtract_transposed_times<r(), C>(values + plan.entries[i].offset, x + row.row, own, int(row.size),
                                         size);
@@ -294,14 +296,14 @@ void solve_up(const BlockPlan& plan, const BlockColumn& column, const double* va
   for (int r = 0; r < size; ++r) x[column.row + std::uint32_t(r)] = own[r];
 }
 
-// The columns' neighbours as they are eliminated, by node; false if that costs too much.
+// Lists the neighbours of each column at its elimination. False if the work exceeds `max_work`.
 bool eliminate_all(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges,
-                   std::uint64_t max_work, Arena& arena, std::span<std::uint32_t> place_of,
+                   std::uint64_t max_work, Arena& arena, std::span<std::uint32_t> index_of,
                    std::span<std::uint32_t> node_at, std::span<std::span<const std::uint32_t>> below,
                    std::uint64_t& work) {
   Elimination elimination(sizes, edges, arena);
   work = 0;
-  for (std::uint32_t place = 0; place < sizes.size(); ++place) {
+  for (std::uint32_t index = 0; index < sizes.size(); ++index) {
     const std::uint32_t node = elimination.next();
     const std::span<const std::uint32_t> around = elimination.neighbours(node);
     std::uint64_t rows = 0;
@@ -309,9 +311,9 @@ bool eliminate_all(std::span<const std::uint8_t> sizes, std::span<const BlockEdg
     const std::uint64_t own = sizes[node];
     work += own * own * own + own * own * rows + own * rows * (rows + 1) / 2;
     if (work > max_work) return false;
-    place_of[node] = place;
-    node_at[place] = node;
-    below[place] = around;
+    index_of[node] = index;
+    node_at[index] = node;
+    below[index] = around;
     elimination.eliminate(node);
   }
   return true;
@@ -322,39 +324,39 @@ bool eliminate_all(std::span<const std::uint8_t> sizes, std::span<const BlockEdg
 bool plan_blocks(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges,
                  std::uint64_t max_work, Arena& arena, BlockPlan& plan) {
   const std::size_t count = sizes.size();
-  const std::span<std::uint32_t> place_of = arena.make<std::uint32_t>(count);
+  const std::span<std::uint32_t> index_of = arena.make<std::uint32_t>(count);
   const std::span<std::uint32_t> node_at = arena.make<std::uint32_t>(count);
   const std::span<std::span<const std::uint32_t>> below = arena.make<std::span<const std::uint32_t>>(count);
   plan = {};
-  if (!eliminate_all(sizes, edges, max_work, arena, place_of, node_at, below, plan.work)) return false;
+  if (!eliminate_all(sizes, edges, max_work, arena, index_of, node_at, below, plan.work)) return false;
   std::size_t entry_count = 0;
   for (const std::span<const std::uint32_t>& nodes : below) entry_count += nodes.size();
   const std::span<BlockColumn> columns = arena.make<BlockColumn>(count);
   const std::span<BlockEntry> entries = arena.make<BlockEntry>(entry_count);
   std::uint32_t used = 0;
   plan.is_six = true;
-  for (std::uint32_t place = 0; place < count; ++place) {
-    BlockColumn& column = columns[place];
-    column.size = sizes[node_at[place]];
+  for (std::uint32_t index = 0; index < count; ++index) {
+    BlockColumn& column = columns[index];
+    column.size = sizes[node_at[index]];
     plan.is_six = plan.is_six && column.size == kMaxBlockRows;
     column.row = plan.rows;
     plan.rows += column.size;
     column.diagonal = plan.values;
     plan.values += column.size * column.size;
     column.begin = used;
-    for (const std::uint32_t node : below[place]) entries[used++].place = place_of[node];
+    for (const std::uint32_t node : below[index]) entries[used++].index = index_of[node];
     column.end = used;
     const std::span<BlockEntry> own = entries.subspan(column.begin, column.end - column.begin);
-    sort_by_place(own);
+    sort_by_index(own);
     std::uint32_t values = 0;
     for (BlockEntry& entry : own) {
       entry.offset = plan.values + values;
-      values += column.size * sizes[node_at[entry.place]];
+      values += column.size * sizes[node_at[entry.index]];
     }
     plan.values += values;
     plan.widest = std::max(plan.widest, values);
   }
-  plan.place_of = place_of;
+  plan.index_of = index_of;
   plan.node_at = node_at;
   plan.columns = columns;
   plan.entries = entries;
@@ -362,12 +364,12 @@ bool plan_blocks(std::span<const std::uint8_t> sizes, std::span<const BlockEdge>
   return true;
 }
 
-BlockPlace find_block(const BlockPlan& plan, std::uint32_t a, std::uint32_t b) {
-  const std::uint32_t place_a = plan.place_of[a], place_b = plan.place_of[b];
-  const BlockColumn& column = plan.columns[std::min(place_a, place_b)];
-  const std::uint32_t later = std::max(place_a, place_b);
+BlockLocation find_block(const BlockPlan& plan, std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t index_a = plan.index_of[a], index_b = plan.index_of[b];
+  const BlockColumn& column = plan.columns[std::min(index_a, index_b)];
+  const std::uint32_t later = std::max(index_a, index_b);
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
-    if (plan.entries[i].place == later) return {plan.entries[i].offset, place_a == later};
+    if (plan.entries[i].index == later) return {plan.entries[i].offset, index_a == later};
   }
   GYRE_ASSERT(false, "the nodes are not neighbours");
   return {};
@@ -387,8 +389,8 @@ void solve_blocks(const BlockPlan& plan, std::span<const double> values, std::sp
   for (const BlockColumn& column : plan.columns) {
     with_constant(column.size, [&](auto c) { solve_down<c()>(plan, column, values.data(), x.data()); });
   }
-  for (std::size_t place = plan.columns.size(); place-- > 0;) {
-    const BlockColumn& column = plan.columns[place];
+  for (std::size_t index = plan.columns.size(); index-- > 0;) {
+    const BlockColumn& column = plan.columns[index];
     with_constant(column.size, [&](auto c) { solve_up<c()>(plan, column, values.data(), x.data()); });
   }
 }

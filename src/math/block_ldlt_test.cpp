@@ -1,4 +1,4 @@
-// The sparse factorisation against a dense one, on graphs whose order of elimination is known to be good or bad.
+// The sparse factorisation against a dense one, on graphs with a known good or bad elimination order.
 #include "math/block_ldlt.h"
 
 #include "math/dense.h"
@@ -35,7 +35,7 @@ Graph chain(std::uint32_t count, std::uint8_t size, bool closed = false) {
   return graph;
 }
 
-// The joints of a random tree of bodies: those of one body are all neighbours of each other.
+// The joints of a random tree of bodies: the joints of one body are all neighbours of each other.
 Graph tree(std::uint32_t count, std::uint8_t size) {
   Graph graph;
   Random random;
@@ -60,7 +60,7 @@ Graph grid(std::uint32_t side) {
   return graph;
 }
 
-// A symmetric matrix J J^T of the graph's pattern: each edge has rows of its own, each node `own` more.
+// A symmetric matrix J J^T with the graph's pattern: each edge has rows of its own, and each node `own` more.
 struct Matrix {
   std::vector<double> dense;
   std::vector<std::uint32_t> first;  // row of each node
@@ -93,12 +93,12 @@ Matrix random_matrix(const Graph& graph, int own) {
   return m;
 }
 
-// Goes from the matrix' rows to those of the plan.
+// From the rows of the matrix to those of the plan.
 std::vector<double> in_order(const Graph& graph, const Matrix& m, const std::vector<double>& b,
                              const BlockPlan& plan) {
   std::vector<double> x(plan.rows);
   for (std::uint32_t node = 0; node < graph.sizes.size(); ++node) {
-    const BlockColumn& column = plan.columns[plan.place_of[node]];
+    const BlockColumn& column = plan.columns[plan.index_of[node]];
     for (std::uint32_t r = 0; r < graph.sizes[node]; ++r) x[column.row + r] = b[m.first[node] + r];
   }
   return x;
@@ -114,10 +114,10 @@ std::vector<double> factored(const Graph& graph, const Matrix& m, const BlockPla
     }
   };
   for (std::uint32_t node = 0; node < graph.sizes.size(); ++node)
-    copy(node, node, plan.columns[plan.place_of[node]].diagonal);
+    copy(node, node, plan.columns[plan.index_of[node]].diagonal);
   for (const BlockEdge& edge : graph.edges) {
-    const BlockPlace place = find_block(plan, edge.a, edge.b);
-    copy(place.first_is_row ? edge.a : edge.b, place.first_is_row ? edge.b : edge.a, place.offset);
+    const BlockLocation location = find_block(plan, edge.a, edge.b);
+    copy(location.first_is_row ? edge.a : edge.b, location.first_is_row ? edge.b : edge.a, location.offset);
   }
   factor_blocks(plan, values, room);
   return values;
@@ -129,7 +129,7 @@ std::vector<double> sparse_solution(const Graph& graph, const Matrix& m, const s
   solve_blocks(plan, factored(graph, m, plan), x);
   std::vector<double> result(m.rows);
   for (std::uint32_t node = 0; node < graph.sizes.size(); ++node) {
-    const BlockColumn& column = plan.columns[plan.place_of[node]];
+    const BlockColumn& column = plan.columns[plan.index_of[node]];
     for (std::uint32_t r = 0; r < graph.sizes[node]; ++r) result[m.first[node] + r] = x[column.row + r];
   }
   return result;
@@ -153,7 +153,7 @@ double residual(const Matrix& m, const std::vector<double>& x, const std::vector
   return std::sqrt(error / size);
 }
 
-TEST(BlockLdlt, SolvesWhatADenseOneSolves) {
+TEST(BlockLdlt, AgreesWithADenseFactorisation) {
   Graph mixed = tree(40, 3);
   for (std::size_t i = 0; i < mixed.sizes.size(); ++i) mixed.sizes[i] = std::uint8_t(1 + i % kMaxBlockRows);
   mixed.edges.push_back({0, 39});
@@ -171,7 +171,7 @@ TEST(BlockLdlt, SolvesWhatADenseOneSolves) {
   }
 }
 
-// Redundant rows too: a body is held by fewer than it has.
+// Redundant rows too: a body has fewer constraints than rows.
 TEST(BlockLdlt, BlocksOfSixAreSolvedBitForBitAlike) {
   Graph net = grid(7);
   for (std::uint8_t& size : net.sizes) size = 6;
@@ -193,8 +193,8 @@ TEST(BlockLdlt, BlocksOfSixAreSolvedBitForBitAlike) {
   }
 }
 
-// Of right sides that are zero but for one node, as an impulse at a joint makes them.
-TEST(BlockLdlt, HalfASolutionOfEachTellsWhatOneIsToAnother) {
+// For right sides that are zero except in one node, as an impulse at a joint makes them.
+TEST(BlockLdlt, HalfSolutionsGiveTheBilinearForm) {
   Graph mixed = tree(40, 3);
   for (std::size_t i = 0; i < mixed.sizes.size(); ++i) mixed.sizes[i] = std::uint8_t(1 + i % kMaxBlockRows);
   for (const Graph& graph : {chain(12, 5), chain(17, 6, true), grid(5), mixed}) {
@@ -221,7 +221,7 @@ TEST(BlockLdlt, HalfASolutionOfEachTellsWhatOneIsToAnother) {
   }
 }
 
-// Leaves first would add none at all; to go by the fewest neighbours adds a few where a body has many joints.
+// Elimination from the leaves adds no block; minimum degree adds a few where a body has many joints.
 TEST(BlockLdlt, AddsHardlyABlockToATree) {
   for (const std::uint32_t count : {1u, 2u, 10u, 1000u}) {
     Arena arena;
@@ -247,7 +247,7 @@ TEST(BlockLdlt, WorksInProportionToAChainOpenOrClosed) {
   }
 }
 
-TEST(BlockLdlt, RefusesWhatTakesTooMuchWork) {
+TEST(BlockLdlt, RefusesTooMuchWork) {
   const Graph graph = grid(30);
   Arena arena;
   BlockPlan plan;
@@ -256,8 +256,8 @@ TEST(BlockLdlt, RefusesWhatTakesTooMuchWork) {
   EXPECT_GT(plan.work, 1000 * graph.sizes.size());
 }
 
-// Rows that say the same twice: the right side lies in the range, the pivots of the repeated rows are only rounding.
-TEST(BlockLdlt, DropsWhatIsRedundant) {
+// Repeated rows: the right side lies in the range, and the pivots of the repeated rows are only rounding.
+TEST(BlockLdlt, DropsRedundantRows) {
   const Graph graph = chain(12, 5);
   Matrix m = random_matrix(graph, 1);  // 4 columns an edge, 1 a node: 56 columns for 60 rows
   ASSERT_EQ(m.rows, 60u);

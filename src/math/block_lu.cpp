@@ -1,3 +1,4 @@
+// The block factorisation with exchanges of rows within a block. See block_lu.h.
 #include "math/block_lu.h"
 
 #include "math/wide_double.h"
@@ -8,14 +9,14 @@ namespace {
 
 constexpr int N = kLuBlock;
 
-// C numbers of a row, two at a time.
+// C numbers of a row, as pairs.
 template <int C>
-struct RowPart {
+struct RowPairs {
   static constexpr int kWidth = C == 1 ? 1 : 2, kCount = C / kWidth;
   using D = WideDouble<kWidth>;
   D v[kCount];
 
-  explicit RowPart(const double* from) {
+  explicit RowPairs(const double* from) {
     GYRE_UNROLL
     for (int i = 0; i < kCount; ++i) v[i] = D::load_loose(from + kWidth * i);
   }
@@ -41,17 +42,17 @@ void exchange(double& a, double& b) {
   b = t;
 }
 
-// The block by its factors, the row exchanged with each in turn in `pivots`.
+// Factors a block in place; `pivots` holds the row exchanged with each row.
 bool factor_block(double* block, double* pivots) {
   for (int k = 0; k < N; ++k) {
     int best = k;
-    double most = 0.0;
+    double largest = 0.0;
     for (int r = k; r < N; ++r) {
       const double v = block[r * N + k], size = v < 0.0 ? -v : v;
-      if (size > most) most = size, best = r;
+      if (size > largest) largest = size, best = r;
     }
     pivots[k] = double(best);
-    if (!(most > 0.0 && most < 1.0e300)) return false;
+    if (!(largest > 0.0 && largest < 1.0e300)) return false;
     if (best != k) {
       for (int c = 0; c < N; ++c) exchange(block[k * N + c], block[best * N + c]);
     }
@@ -63,7 +64,7 @@ bool factor_block(double* block, double* pivots) {
   return true;
 }
 
-// Columns of C numbers each row: X = block^-1 X.
+// X = block^-1 X, for rows of C numbers.
 template <int C>
 void solve_block(const double* block, const double* pivots, double* x) {
   for (int k = 0; k < N; ++k) {
@@ -72,12 +73,12 @@ void solve_block(const double* block, const double* pivots, double* x) {
     for (int c = 0; c < C; ++c) exchange(x[k * C + c], x[other * C + c]);
   }
   for (int r = 1; r < N; ++r) {
-    RowPart<C> row(x + r * C);
+    RowPairs<C> row(x + r * C);
     for (int k = 0; k < r; ++k) row.subtract(block[r * N + k], x + k * C);
     row.store(x + r * C);
   }
   for (int r = N; r-- > 0;) {
-    RowPart<C> row(x + r * C);
+    RowPairs<C> row(x + r * C);
     for (int k = r + 1; k < N; ++k) row.subtract(block[r * N + k], x + k * C);
     row.divide(block[r * N + r]);
     row.store(x + r * C);
@@ -87,7 +88,7 @@ void solve_block(const double* block, const double* pivots, double* x) {
 // out -= a b.
 void subtract_product(const double* a, const double* b, double* out) {
   for (int r = 0; r < N; ++r) {
-    RowPart<N> row(out + r * N);
+    RowPairs<N> row(out + r * N);
     GYRE_UNROLL
     for (int k = 0; k < N; ++k) row.subtract(a[r * N + k], b + k * N);
     row.store(out + r * N);
@@ -134,12 +135,12 @@ void solve_lu(const BlockLu& lu, std::span<double> x) {
     double* const own = &x[column.row];
     solve_block<1>(&lu.lower[column.diagonal], &lu.pivots[column.row], own);
     for (std::uint32_t i = column.begin; i < column.end; ++i)
-      subtract_times(&lu.lower[plan.entries[i].offset], own, &x[plan.columns[plan.entries[i].place].row]);
+      subtract_times(&lu.lower[plan.entries[i].offset], own, &x[plan.columns[plan.entries[i].index].row]);
   }
-  for (std::size_t place = plan.columns.size(); place-- > 0;) {
-    const BlockColumn& column = plan.columns[place];
+  for (std::size_t index = plan.columns.size(); index-- > 0;) {
+    const BlockColumn& column = plan.columns[index];
     for (std::uint32_t i = column.begin; i < column.end; ++i)
-      subtract_times(&lu.upper[plan.entries[i].offset], &x[plan.columns[plan.entries[i].place].row],
+      subtract_times(&lu.upper[plan.entries[i].offset], &x[plan.columns[plan.entries[i].index].row],
                      &x[column.row]);
   }
 }

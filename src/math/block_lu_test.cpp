@@ -1,4 +1,4 @@
-// The sparse factorisation of unsymmetric blocks against what the matrix makes of a known vector.
+// The sparse factorisation of unsymmetric blocks: it recovers a known vector from its product with the matrix.
 #include "math/block_lu.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ struct Sparse {
   BlockLu lu() { return {&plan, lower, upper, pivots}; }
 };
 
-// Nodes in a square, each coupled to its neighbours. `heavy`: what is added to the diagonal.
+// Nodes in a square, each coupled to its neighbours. `heavy` is added to the diagonal.
 void make_grid(Sparse& sparse, std::uint32_t side, double heavy, Random& random) {
   std::vector<std::uint8_t> sizes(side * side, kLuBlock);
   std::vector<BlockEdge> edges;
@@ -45,10 +45,10 @@ void make_grid(Sparse& sparse, std::uint32_t side, double heavy, Random& random)
     for (std::uint32_t k = 0; k < 6; ++k) sparse.lower[column.diagonal + 6 * k + (k + 1) % 6] += heavy;
   }
   for (const BlockEdge& edge : edges) {
-    const BlockPlace place = find_block(sparse.plan, edge.a, edge.b);
+    const BlockLocation location = find_block(sparse.plan, edge.a, edge.b);
     for (std::uint32_t k = 0; k < 36; ++k) {
-      sparse.lower[place.offset + k] = random.next();
-      sparse.upper[place.offset + k] = random.next();
+      sparse.lower[location.offset + k] = random.next();
+      sparse.upper[location.offset + k] = random.next();
     }
   }
 }
@@ -63,7 +63,7 @@ std::vector<double> times(const Sparse& sparse, const std::vector<double>& x) {
     add(&sparse.lower[column.diagonal], column.row, column.row);
     for (std::uint32_t i = column.begin; i < column.end; ++i) {
       const BlockEntry& entry = sparse.plan.entries[i];
-      const std::uint32_t row = sparse.plan.columns[entry.place].row;
+      const std::uint32_t row = sparse.plan.columns[entry.index].row;
       add(&sparse.lower[entry.offset], row, column.row);
       add(&sparse.upper[entry.offset], column.row, row);
     }
@@ -71,7 +71,7 @@ std::vector<double> times(const Sparse& sparse, const std::vector<double>& x) {
   return y;
 }
 
-TEST(BlockLu, FindsWhatTheMatrixWasGiven) {
+TEST(BlockLu, RecoversAKnownVector) {
   Random random;
   for (std::uint32_t side = 1; side < 8; ++side) {
     Sparse sparse;

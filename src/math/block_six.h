@@ -1,5 +1,5 @@
-// Blocks of six rows and six columns, row after row: those of bodies that move and turn. Two columns at a time; each number has the bits
-// of the same sum taken one by one.
+// Blocks of six rows and six columns, stored by rows, as rigid bodies have. Two columns at a time; each number has the
+// bits of the same sum taken term by term.
 #pragma once
 
 #include "math/wide_double.h"
@@ -14,14 +14,15 @@ struct SixRow {
   WideDouble<2> pair[3];
 
   static GYRE_INLINE SixRow load(const double* from) {
-    return {{WideDouble<2>::load_loose(from), WideDouble<2>::load_loose(from + 2), WideDouble<2>::load_loose(from + 4)}};
+    return {{WideDouble<2>::load_loose(from), WideDouble<2>::load_loose(from + 2),
+             WideDouble<2>::load_loose(from + 4)}};
   }
   GYRE_INLINE void store(double* to) const {
     for (int i = 0; i < 3; ++i) pair[i].store_loose(to + 2 * i);
   }
 };
 
-// sum of weights[k] * rows[k], from the first on
+// sum of weights[k] * rows[k], in ascending order
 GYRE_INLINE SixRow combine(const double* weights, const SixRow (&rows)[kSix]) {
   SixRow sum{};
   for (int k = 0; k < kSix; ++k) {

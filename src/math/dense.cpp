@@ -1,4 +1,4 @@
-// Jacobi eigenvectors, the 3x3 inverse and the run-time sized L D L^T; what and why in dense.h.
+// Jacobi eigenvectors, the 3x3 inverse and the L D L^T of run-time size; see dense.h.
 #include "math/dense.h"
 
 #include <cmath>
@@ -10,12 +10,12 @@
 namespace gyre {
 namespace {
 
-// One Jacobi rotation in the plane (p, q): makes a[p][q] zero and turns the columns of `v` along.
+// One Jacobi rotation in the plane (p, q): makes a[p][q] zero and rotates the columns of `v` with it.
 void jacobi_rotation(double (&a)[3][3], double (&v)[3][3], int p, int q) {
   const double off = a[p][q];
   if (off == 0.0) return;
   const double theta = 0.5 * (a[q][q] - a[p][p]) / off;
-  // The smaller root of t^2 + 2 theta t - 1 = 0: the turn by at most 45 degrees. A huge theta gives t = 0.
+  // The smaller root of t^2 + 2 theta t - 1 = 0: a rotation by at most 45 degrees. A huge theta gives t = 0.
   const double magnitude = theta < 0.0 ? -theta : theta;
   const double root = 1.0 / (magnitude + std::sqrt(theta * theta + 1.0));
   const double t = theta < 0.0 ? -root : root;
@@ -60,13 +60,13 @@ void symmetric_eigen(const double m[6], double moments[3], double axes[9]) {
     return;
   }
 
-  // Worked on at size 1, so that squares neither overflow nor vanish.
+  // Scaled to size 1, so that squares neither overflow nor vanish.
   double a[3][3] = {{m[0] / scale, m[3] / scale, m[4] / scale},
                     {m[3] / scale, m[1] / scale, m[5] / scale},
                     {m[4] / scale, m[5] / scale, m[2] / scale}};
   double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  // Convergence is quadratic: four or five sweeps reach the last bit; the bound is only for safety.
-  for (int sweep = 0; sweep < 30; ++sweep) {
+  // Convergence is quadratic: four or five iterations reach the last bit; the bound is only for safety.
+  for (int iteration = 0; iteration < 30; ++iteration) {
     const double off = std::fabs(a[0][1]) + std::fabs(a[0][2]) + std::fabs(a[1][2]);
     if (off < 1.0e-40) break;
     jacobi_rotation(a, v, 0, 1);
@@ -131,9 +131,9 @@ int factor_ldlt(std::span<double> a, int size, double tolerance) {
       row[k] = scaled * a[k * n + k];
       pivot -= row[k] * scaled;
     }
-    const bool keep = pivot > tolerance * whole;
-    row[i] = keep ? 1.0 / pivot : 0.0;
-    rank += keep ? 1 : 0;
+    const bool is_kept = pivot > tolerance * whole;
+    row[i] = is_kept ? 1.0 / pivot : 0.0;
+    rank += is_kept ? 1 : 0;
   }
   return rank;
 }

@@ -1,4 +1,4 @@
-// Eigenvectors rebuild their matrix; factorisations solve, also singular and badly scaled systems.
+// Eigenvectors reproduce their matrix; factorisations solve singular and badly scaled systems, too.
 #include "math/dense.h"
 
 #include "random.h"
@@ -17,7 +17,7 @@ struct Random : testing_random::Mixed {
   Random() : Mixed{0x853c49e6748fea9bu} {}
 };
 
-// The laws of an eigen decomposition: ascending, orthonormal, right-handed, and A diag A^T is the matrix.
+// The properties of an eigen decomposition: ascending, orthonormal, right-handed, and A diag A^T is the matrix.
 void expect_eigen(const double (&m)[6]) {
   double moments[3], a[9];
   symmetric_eigen(m, moments, a);
@@ -72,9 +72,9 @@ TEST(Dense, EigenOfSpecialMatrices) {
   symmetric_eigen(std::vector<double>{0, 0, 0, 0, 0, 0}.data(), moments, axes);
   for (const double moment : moments) EXPECT_EQ(moment, 0.0);
   for (int i = 0; i < 9; ++i) EXPECT_EQ(axes[i], i % 4 == 0 ? 1.0 : 0.0);
-  for (int place = 0; place < 6; ++place) {
+  for (int index = 0; index < 6; ++index) {
     std::vector<double> m{1, 1, 1, 0, 0, 0};
-    m[std::size_t(place)] = place % 2 == 0 ? std::numeric_limits<double>::quiet_NaN() : -INFINITY;
+    m[std::size_t(index)] = index % 2 == 0 ? std::numeric_limits<double>::quiet_NaN() : -INFINITY;
     symmetric_eigen(m.data(), moments, axes);
     EXPECT_TRUE(std::isnan(moments[0]) && std::isnan(moments[1]) && std::isnan(moments[2]));
     EXPECT_EQ(axes[0], 1.0);

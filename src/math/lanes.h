@@ -1,5 +1,5 @@
-// What all wide kernels (math/wide.h) share with the compiler: the CPU's instructions, functions that must be inlined, loops that must or must
-// not be unrolled, and the vector types of W lanes.
+// The compiler's part in all wide kernels (math/wide.h): the CPU's instructions, attributes for inlining and unrolling,
+// and the vector types of W lanes.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +14,20 @@
 #include <wasm_simd128.h>
 #endif
 
-// Functions must be inlined even in debug builds: a call would pass vectors through memory, and an emitted copy is what
-// the namespace of a CPU kind (math/wide.h) guards against.
+// Functions must be inlined even in debug builds: a call would pass vectors through memory, and the namespace of a CPU
+// kind (math/wide.h) exists to prevent emitted copies.
 #define GYRE_INLINE inline __attribute__((always_inline))
 
 #ifndef GYRE_TARGET_NAMESPACE
 #define GYRE_TARGET_NAMESPACE w_default
 #endif
 
-// Compilers note that vectors wider than the CPU's registers have no stable calling convention; here nothing is called.
+// Vectors wider than the CPU's registers have no stable calling convention, which the compiler notes; here nothing is
+// called.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-// Before a short loop over lanes or columns whose arrays must become registers; and before one whose body is long enough already, of
-// which a compiler would make several copies one after the other.
+// GYRE_UNROLL: before a short loop over lanes or columns whose arrays must become registers. GYRE_ROLLED: before a loop
+// with a long body, which a compiler would copy several times.
 #if defined(__clang__)
 #define GYRE_UNROLL _Pragma("clang loop unroll(full)")
 #define GYRE_ROLLED _Pragma("clang loop unroll(disable)")
@@ -38,7 +39,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// The compiler's vector types for W lanes; plain numbers for one lane. The loose ones may lie anywhere in memory.
+// The compiler's vector types for W lanes; plain numbers for one lane. Loose ones may have any address.
 template <int W>
 struct Lanes {
   static_assert(W == 4 || W == 8 || W == 16);

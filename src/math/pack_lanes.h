@@ -1,5 +1,5 @@
-// Some of eight numbers, one after the other: what a test of eight things at once leaves. Where it is known how many and which only as
-// they are tested, a loop over them is a guess that a processor gets wrong every other time.
+// Packs selected ones of eight numbers, after a test of eight things at once. A loop over the selected ones would have
+// branches that a processor mispredicts every other time.
 #pragma once
 
 #include "math/wide.h"
@@ -14,7 +14,7 @@ constexpr int kPackedLanes = 8;
 
 #if defined(__AVX2__)
 
-// By bits: the lanes that are set, four bits for each, the first one lowest.
+// By bits: the lanes that are set, four bits each, the first one lowest.
 struct LaneOrders {
   std::uint32_t of[1u << kPackedLanes] = {};
 
@@ -30,11 +30,10 @@ inline constexpr LaneOrders kLaneOrders;
 
 #endif
 
-// Writes those numbers whose bits are set, in their order, from `to` on, where there must be room for all eight. Returns how many
-// they are.
+// Writes the numbers whose bits are set, in their order, to `to`, which must have room for eight. Returns their count.
 GYRE_INLINE int pack_lanes(const std::uint32_t* from, unsigned bits, std::uint32_t* to) {
 #if defined(__AVX2__)
-  // Of each lane's number only the lowest three bits are looked at.
+  // Only the lowest three bits of each lane's number count.
   const __m256i order = _mm256_srlv_epi32(_mm256_set1_epi32(int(kLaneOrders.of[bits])),
                                           _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28));
   const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));

@@ -1,6 +1,6 @@
-// Conversions between quaternions, matrices, axes, rotation vectors and Euler angles. All of them are computed in double
-// and rounded once: they are not in the inner loops, and neither lengths near the ends of a float's range nor angles near
-// 0 or pi need care then. NaN in, NaN out.
+// Conversions between quaternions, matrices, axes, rotation vectors and Euler angles. All are computed in double and
+// rounded once: they are outside of inner loops, and in double neither lengths near the ends of a float's range nor
+// angles near 0 or pi need care. NaN in, NaN out.
 #include "math/rotation.h"
 
 #include "math/trig.h"
@@ -11,9 +11,9 @@ namespace {
 
 double element(DVec3 v, int axis) { return v[axis]; }
 
-DQuat from_parts(const double (&v)[3], double w) { return {v[0], v[1], v[2], w}; }
+DQuat from_vector_and_scalar(const double (&v)[3], double w) { return {v[0], v[1], v[2], w}; }
 
-// Axes first, second, third of an order, and whether they are a right-handed triple (+1) or a left-handed one (-1).
+// The first, second and third axis of an order; +1 if they are right-handed, -1 if left-handed.
 struct EulerAxes {
   int axis[3];
   double handedness;
@@ -41,17 +41,17 @@ DQuat about_axis(int axis, float angle) {
   const SinCosD half = sin_cos(0.5 * double(angle));
   double v[3] = {0.0, 0.0, 0.0};
   v[axis] = half.sin;
-  return from_parts(v, half.cos);
+  return from_vector_and_scalar(v, half.cos);
 }
 
-// Some vector at a right angle to `a`, which is not zero.
+// A vector at a right angle to `a`, which must not be zero.
 DVec3 perpendicular(DVec3 a) {
   const double x = absolute(a.x), y = absolute(a.y), z = absolute(a.z);
   if (x <= y && x <= z) return cross(a, {1.0, 0.0, 0.0});
   return y <= z ? cross(a, {0.0, 1.0, 0.0}) : cross(a, {0.0, 0.0, 1.0});
 }
 
-double within_half_turn(double angle) {
+double wrap_to_pi(double angle) {
   if (angle > kPiDouble) return angle - 2.0 * kPiDouble;
   if (angle <= -kPiDouble) return angle + 2.0 * kPiDouble;
   return angle;
@@ -77,10 +77,10 @@ DQuat exponential_map(DVec3 v) {
 DVec3 logarithm_map(DQuat q) {
   const DVec3 u{q.x, q.y, q.z};
   const double sine = length(u);
-  // Both q and -q are this rotation: of the two, the one that turns by at most pi.
+  // Both q and -q are this rotation; takes the one that rotates by at most pi.
   const double sign = q.w < 0.0 ? -1.0 : 1.0;
   const double w = sign * q.w;
-  // Below, angle/sin is 2/w to the last bit.
+  // Below this, angle/sin is 2/w to the last bit.
   if (sine < 1.0e-9 * w) return (2.0 * sign / w) * u;
   if (sine == 0.0) return u;  // the zero quaternion
   return (sign * 2.0 * atan2(sine, w) / sine) * u;
@@ -92,15 +92,15 @@ Vec3 to_rotation_vector(Quat q) { return to_float(logarithm_map(to_double(q))); 
 
 Quat from_axis_angle(Vec3 axis, float angle) {
   const DVec3 a{axis};
-  const double square = length_squared(a);  // of floats: neither overflows nor vanishes in double
+  const double square = length_squared(a);  // of floats: in double it neither overflows nor vanishes
   if (square == 0.0) return {};
   const SinCosD half = sin_cos(0.5 * double(angle));
   const double s = half.sin / std::sqrt(square);
   return to_float(DQuat{s * a.x, s * a.y, s * a.z, half.cos});
 }
 
-Quat integrate_rotation(Quat orientation, Vec3 turn) {
-  return to_float(normalized(exponential_map(DVec3(turn)) * to_double(orientation)));
+Quat integrate_rotation(Quat orientation, Vec3 rotation) {
+  return to_float(normalized(exponential_map(DVec3(rotation)) * to_double(orientation)));
 }
 
 Vec3 rotation_between(Quat from, Quat to) {
@@ -109,8 +109,8 @@ Vec3 rotation_between(Quat from, Quat to) {
 
 // --------------------------------------------------------------------------------------------- matrices, directions
 
-// Shepperd: of |x|, |y|, |z|, |w| the largest is taken from the diagonal, the others from sums and differences divided by
-// it, so that nothing is divided by something small.
+// Shepperd: the largest of |x|, |y|, |z|, |w| comes from the diagonal, the others from sums and differences divided by
+// it, so that no divisor is small.
 Quat from_matrix(const Mat3& m) {
   const double xx = double(m.x.x), yy = double(m.y.y), zz = double(m.z.z);
   const double xy = double(m.x.y) + double(m.y.x), xz = double(m.x.z) + double(m.z.x),
@@ -131,8 +131,8 @@ Quat from_matrix(const Mat3& m) {
   return to_float(normalized(q));
 }
 
-// (a x b, |a||b| + a.b) points along the rotation by half the angle. Opposite directions leave it undefined: then any
-// axis at a right angle turns by pi.
+// (a x b, |a||b| + a.b) points along the rotation by half the angle. For opposite directions it is undefined, and any
+// axis at a right angle rotates by pi.
 Quat from_directions(Vec3 from, Vec3 to) {
   const DVec3 a{from}, b{to};
   const double scale = std::sqrt(length_squared(a) * length_squared(b));
@@ -146,7 +146,7 @@ Quat from_directions(Vec3 from, Vec3 to) {
   return to_float(normalized(q));
 }
 
-// Shoemake. The angle between the two is taken from their sum and difference, which keeps its digits at both ends.
+// Shoemake. The angle between the two comes from their sum and difference, which keeps its digits at both ends.
 Quat slerp(Quat a, Quat b, float t) {
   const DQuat p = to_double(a);
   DQuat q = to_double(b);
@@ -176,8 +176,8 @@ Quat from_euler(EulerAngles angles) {
 // With half angles a, b, c the product of the three rotations (right-handed axes i, j, k) satisfies
 //   w + j = (cos b + sin b) cos(a + c),   i + k = (cos b + sin b) sin(a + c),
 //   w - j = (cos b - sin b) cos(a - c),   i - k = (cos b - sin b) sin(a - c),
-// so the sum, the difference and b come from three arc tangents, exact up to gimbal lock, where one pair vanishes.
-// A left-handed triple is a right-handed one with the middle axis reversed.
+// so the sum, the difference and b come from three arc tangents, exact up to gimbal lock, where one pair vanishes. A
+// left-handed triple is a right-handed one with the middle axis reversed.
 EulerAngles to_euler(Quat q, EulerOrder order) {
   const EulerAxes axes = axes_of(order);
   const DVec3 v{double(q.x), double(q.y), double(q.z)};
@@ -191,17 +191,17 @@ EulerAngles to_euler(Quat q, EulerOrder order) {
   const double minus = std::sqrt(minus_cos * minus_cos + minus_sin * minus_sin);
   const double second = axes.handedness * (2.0 * atan2(plus, minus) - 0.5 * kPiDouble);
 
-  // A float quaternion does not tell the two outer angles apart when a pair is only rounding.
+  // If a pair is only rounding, a float quaternion does not determine the two outer angles.
   constexpr double kLocked = 1.0e-6;
   double first = 0.0, third = 0.0;
   if (minus <= kLocked * plus) {
-    first = within_half_turn(2.0 * atan2(plus_sin, plus_cos));
+    first = wrap_to_pi(2.0 * atan2(plus_sin, plus_cos));
   } else if (plus <= kLocked * minus) {
-    first = within_half_turn(2.0 * atan2(minus_sin, minus_cos));
+    first = wrap_to_pi(2.0 * atan2(minus_sin, minus_cos));
   } else {
     const double sum = atan2(plus_sin, plus_cos), difference = atan2(minus_sin, minus_cos);
-    first = within_half_turn(sum + difference);
-    third = within_half_turn(sum - difference);
+    first = wrap_to_pi(sum + difference);
+    third = wrap_to_pi(sum - difference);
   }
   return {.first = float(first), .second = float(second), .third = float(third), .order = order};
 }

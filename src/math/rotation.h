@@ -1,6 +1,6 @@
-// Rotations beyond the value types of <gyre/math.h>: turning inertia tensors, moving orientations along a rotation
-// vector, and double twins for integrators that follow a freely spinning body. In: unit quaternions and matrices; out:
-// the same, never with library trigonometry.
+// Rotations beyond the value types of <gyre/math.h>: rotated inertia tensors, orientations moved along a rotation
+// vector, and double twins for integrators of freely spinning bodies. In: unit quaternions and matrices; out: the same,
+// never with library trigonometry.
 //
 // Sources: H. Goldstein, "Classical Mechanics"; J. Diebel, "Representing Attitude" (2006); S. W. Shepperd, "Quaternion
 // from Rotation Matrix" (1978); K. Shoemake, "Animating Rotation with Quaternion Curves" (1985); F. S. Grassia,
@@ -13,7 +13,7 @@ namespace gyre {
 
 // ---------------------------------------------------------------------------------------------------------- inertia
 
-// R I R^T: the tensor `inertia` in the frame that `rotation` leads to. Exactly symmetric by construction.
+// R I R^T: the tensor `inertia` rotated by `rotation`. Exactly symmetric by construction.
 constexpr Sym3 rotate_inertia(const Mat3& rotation, const Sym3& inertia) {
   const Mat3& r = rotation;
   // The columns of R I; the result's element (i, j) is row i of it times row j of R.
@@ -42,7 +42,7 @@ constexpr Sym3 rotate_moments(Quat rotation, Vec3 moments) {
 constexpr Vec3 world_tensor_times(Quat world_from_local, Vec3 moments, Vec3 v) {
   return rotate(world_from_local, multiply_each(moments, rotate_inverse(world_from_local, v)));
 }
-// inertia of a point mass: mass (|r|^2 - r r^T), the term that the parallel axis theorem adds.
+// The inertia of a point mass, mass (|r|^2 - r r^T): the term of the parallel axis theorem.
 constexpr Sym3 point_inertia(float mass, Vec3 r) {
   return {mass * (r.y * r.y + r.z * r.z),
           mass * (r.x * r.x + r.z * r.z),
@@ -54,17 +54,16 @@ constexpr Sym3 point_inertia(float mass, Vec3 r) {
 
 // ----------------------------------------------------------------------------------------------------- orientations
 
-// `orientation` turned by the world rotation vector `turn` (rad): from_rotation_vector(turn) * orientation at length 1.
-// Computed in double and rounded once, so that turns far below a float's resolution still add up without bias.
-Quat integrate_rotation(Quat orientation, Vec3 turn);
+// `orientation` rotated by the world rotation vector `rotation` (rad): from_rotation_vector(rotation) * orientation at
+// length 1. Computed in double and rounded once, so that rotations far below a float's resolution add up without bias.
+Quat integrate_rotation(Quat orientation, Vec3 rotation);
 
-// The rotation vector that leads from `from` to `to` by the shorter way, in the frame both are given in:
-// from_rotation_vector(v) * from = to.
+// The shortest rotation vector from `from` to `to`, in the frame of both: from_rotation_vector(v) * from = to.
 Vec3 rotation_between(Quat from, Quat to);
 
 // ---------------------------------------------------------------------------------------------------- double twins
 
-// A unit quaternion in double, for integrators that must keep energy and momentum over many turns.
+// A unit quaternion in double, for integrators that must conserve energy and momentum over many revolutions.
 struct DQuat {
   double x = 0.0;
   double y = 0.0;

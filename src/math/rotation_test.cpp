@@ -1,4 +1,4 @@
-// Round trips between all forms of a rotation, over random and degenerate ones; turned inertia; the double twins.
+// Round trips between all forms of a rotation, over random and degenerate ones; rotated inertia; the double twins.
 #include "math/rotation.h"
 
 #include "random.h"
@@ -28,7 +28,7 @@ struct Random : testing_random::Mixed {
   }
 };
 
-// Random rotations, and those where formulas tend to break.
+// Random rotations, and those at which formulas tend to fail.
 std::vector<Quat> rotations() {
   std::vector<Quat> list;
   Random random;
@@ -48,7 +48,7 @@ std::vector<Quat> rotations() {
   return list;
 }
 
-// How far apart two rotations are: the angle between them in rad.
+// The angle between two rotations, rad.
 double apart(Quat a, Quat b) {
   const DQuat between = to_double(b) * conjugate(to_double(a));
   return length(logarithm_map(between));
@@ -69,7 +69,7 @@ TEST(Rotation, MatrixRoundTrip) {
   }
 }
 
-TEST(Rotation, MatrixTurnsLikeQuaternion) {
+TEST(Rotation, MatrixRotatesLikeQuaternion) {
   Random random;
   for (const Quat q : rotations()) {
     const Vec3 v = random.vector();
@@ -120,7 +120,7 @@ TEST(Rotation, AxisAngle) {
   for (const float size : {1.0e-38f, 1.0e-20f, 1.0e20f, 3.0e38f}) {
     EXPECT_LT(apart(from_axis_angle({0, size, 0}, 1.0f), from_axis_angle({0, 1, 0}, 1.0f)), 2.0e-7);
   }
-  // One whole turn is the other quaternion of no rotation.
+  // One full revolution is the other quaternion of the identity.
   EXPECT_NEAR(from_axis_angle({1, 0, 0}, 2.0f * kPi).w, -1.0f, 1.0e-6f);
 }
 
@@ -139,13 +139,13 @@ TEST(Rotation, FromDirections) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 a = normalized(random.vector());
     Vec3 b = normalized(random.vector());
-    // Also almost the same and almost opposite directions.
+    // Also almost equal and almost opposite directions.
     const float tiny = std::pow(10.0f, -random.between(1, 8));
     if (i % 3 == 1) b = normalized(a + tiny * b);
     if (i % 3 == 2) b = normalized(tiny * b - a);
     const Quat q = from_directions(a, b);
     EXPECT_LT(gyre::distance(rotate(q, a), b), 1.0e-6f);
-    // The shortest way: the axis is at a right angle to both.
+    // The shortest rotation: its axis is at a right angle to both.
     EXPECT_NEAR(dot(Vec3{q.x, q.y, q.z}, a), 0.0f, 3.0e-7f);
   }
   const Vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
@@ -235,14 +235,14 @@ TEST(Rotation, GimbalLock) {
   }
 }
 
-TEST(Rotation, TurnedInertiaIsTheMatrixProduct) {
+TEST(Rotation, RotatedInertiaIsTheMatrixProduct) {
   Random random;
   const Sym3 inertia{3.0f, 2.0f, 4.0f, 0.3f, -0.2f, 0.5f};
   for (const Quat q : rotations()) {
     const Mat3 r = to_matrix(q);
     const Mat3 expected = r * to_matrix(inertia) * transpose(r);
     EXPECT_LT(distance(to_matrix(rotate_inertia(q, inertia)), expected), 5.0e-6);
-    // Turned back, it is the tensor again.
+    // Rotated back, it is the same tensor again.
     EXPECT_LT(
         distance(to_matrix(rotate_inertia(conjugate(q), rotate_inertia(q, inertia))), to_matrix(inertia)),
         1.0e-5);
@@ -260,8 +260,8 @@ TEST(Rotation, PointInertiaIsTheIntegralOfOnePoint) {
   EXPECT_LT(gyre::distance(point_inertia(2.5f, r) * spin, momentum), 1.0e-5f);
 }
 
-TEST(Rotation, IntegrationAddsUpTinyTurns) {
-  // A million turns of 1e-6 rad are one radian, although each is near the resolution of a float quaternion.
+TEST(Rotation, IntegrationAddsUpTinyRotations) {
+  // A million rotations of 1e-6 rad are one radian, although each is near the resolution of a float quaternion.
   Quat q = from_axis_angle({0, 1, 0}, 0.8f);
   const Quat start = q;
   for (int i = 0; i < 1000000; ++i) q = integrate_rotation(q, {0, 0, 1.0e-6f});
@@ -269,7 +269,7 @@ TEST(Rotation, IntegrationAddsUpTinyTurns) {
   EXPECT_LT(apart(q, from_axis_angle({0, 0, 1}, 1.0f) * start), 0.03);
 }
 
-TEST(Rotation, IntegrationIsAWorldTurn) {
+TEST(Rotation, IntegrationRotatesInTheWorldFrame) {
   Random random;
   for (int i = 0; i < 500; ++i) {
     const Quat q = random.rotation();

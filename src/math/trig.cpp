@@ -1,5 +1,6 @@
-// Sine, cosine, arc tangent, arc cosine, exponential and logarithm from IEEE operations alone; see trig.h for the errors
-// and sources. Each function is: special values, reduction to a small argument, Taylor polynomial, reassembly.
+// Sine, cosine, arc tangent, arc cosine, exponential and logarithm from IEEE operations alone; see trig.h for the
+// errors and sources. Each function handles special values, reduces to a small argument, evaluates a Taylor polynomial
+// and reassembles the result.
 #include "math/trig.h"
 
 #include "math/wide_double_angle.h"
@@ -21,8 +22,8 @@ struct Sum {
 // a + b without error (D. Knuth).
 Sum exact_sum(double a, double b) {
   const double sum = a + b;
-  const double b_part = sum - a;
-  return {sum, (a - (sum - b_part)) + (b - b_part)};
+  const double b_rounded = sum - a;
+  return {sum, (a - (sum - b_rounded)) + (b - b_rounded)};
 }
 
 // a * b without error (T. J. Dekker, with G. W. Veltkamp's split into 26 bits); for factors far from the range's ends.
@@ -63,21 +64,22 @@ std::uint32_t bits_of_two_over_pi(int first) {
   return (kTwoOverPi[word] << shift) | (kTwoOverPi[word + 1] >> (32 - shift));
 }
 
-// Payne and Hanek: of the product x * 2/pi only the part modulo 4 matters, so the bits of 2/pi that make multiples of 4
-// are left out and 192 bits are multiplied as integers. `x` is finite and at least 1.
+// Payne and Hanek: only x * 2/pi modulo 4 matters, so the bits of 2/pi that make multiples of 4 are left out and 192
+// bits are multiplied as integers. `x` is finite and at least 1.
 Reduced reduce_huge(double x) {
   constexpr int kWords = 6;
   const std::uint64_t bits = __builtin_bit_cast(std::uint64_t, x);
   const int exponent = int(bits >> 52) - 1075;  // x = mantissa * 2^exponent
   const std::uint64_t mantissa = (bits & ((std::uint64_t(1) << 52) - 1)) | (std::uint64_t(1) << 52);
 
-  // product = mantissa * window modulo 2^192, in words, the highest first; read as a number of turns it lies in [0, 1).
+  // product = mantissa * window modulo 2^192, in words, the highest first; as a number of revolutions it lies in [0,
+  // 1).
   std::uint32_t product[kWords];
   const std::uint64_t factor[2] = {mantissa & 0xffffffffu, mantissa >> 32};
   std::uint64_t carry = 0, previous = 0;
   for (int i = kWords - 1; i >= 0; --i) {
     const std::uint64_t word = bits_of_two_over_pi(exponent - 2 + 32 * i);
-    // Split so that no sum passes 64 bits: two 32x32 products and a carry of at most 33 bits.
+    // Split so that no sum exceeds 64 bits: two 32x32 products and a carry of at most 33 bits.
     const std::uint64_t low = factor[0] * word;
     const std::uint64_t high = factor[1] * previous;
     const std::uint64_t sum = (low & 0xffffffffu) + (high & 0xffffffffu) + (carry & 0xffffffffu);
@@ -86,7 +88,7 @@ Reduced reduce_huge(double x) {
     previous = word;
   }
 
-  // The top two bits are the quadrant. Take the rest as a fraction of a quadrant in [-1/2, 1/2).
+  // The top two bits are the quadrant. The others become a fraction of a quadrant in [-1/2, 1/2).
   unsigned quadrant = product[0] >> 30;
   for (int i = 0; i < kWords; ++i)
     product[i] = (product[i] << 2) | (i + 1 < kWords ? product[i + 1] >> 30 : 0u);
@@ -108,7 +110,7 @@ Reduced reduce_huge(double x) {
     weight *= 0x1p-32;
   }
 
-  // Times pi/2 in two parts.
+  // Times pi/2 as a sum of two.
   const Sum rest = exact_product(fraction.high, 0x1.921fb54442d18p+0);
   const double low = rest.low + (fraction.high * 0x1.1a62633145c07p-54 + fraction.low * 0x1.921fb54442d18p+0);
   return {exact_sum(rest.high, low), quadrant & 3u};
@@ -123,7 +125,7 @@ Reduced reduce(double x) {
     if (x > 0.0) return reduced;
     return {{-reduced.rest.high, -reduced.rest.low}, (4u - reduced.quadrant) & 3u};
   }
-  // Cody and Waite: pi/2 in parts of 33 bits, so that the products with an integer of 16 bits are exact.
+  // Cody and Waite: pi/2 as a sum of numbers of 33 bits, so that their products with an integer of 16 bits are exact.
   const int quadrant = nearest(x * 0x1.45f306dc9c883p-1);
   const double n = double(quadrant);
   const Sum first = exact_sum(x - n * 0x1.921fb54400000p+0, -(n * 0x1.0b4611a600000p-34));
@@ -132,9 +134,9 @@ Reduced reduce(double x) {
   return {exact_sum(second.high, low), unsigned(quadrant) & 3u};
 }
 
-// The pair of `sin` and `cos` of an angle's rest, turned into its quadrant.
+// Moves `sin` and `cos` of an angle's rest into its quadrant.
 template <class Pair, class T>
-Pair turn(T sin, T cos, unsigned quadrant) {
+Pair in_quadrant(T sin, T cos, unsigned quadrant) {
   switch (quadrant) {
     case 0:
       return {sin, cos};
@@ -171,9 +173,9 @@ SinCosD sin_cos(double radians) {
                      z * (1.0 / 479001600.0 + z * (-1.0 / 87178291200.0 + z * (1.0 / 20922789888000.0))))));
   const double sin = r + (r * z * sine_tail + low * (1.0 - 0.5 * z));
   const double half = 0.5 * z;
-  const double head = 1.0 - half;  // what its rounding loses is added back
+  const double head = 1.0 - half;  // its rounding error is added back
   const double cos = head + (((1.0 - head) - half) + (z * z * cosine_tail - r * low));
-  return turn<SinCosD>(sin, cos, reduced.quadrant);
+  return in_quadrant<SinCosD>(sin, cos, reduced.quadrant);
 }
 
 SinCos sin_cos(float radians) {
@@ -182,7 +184,7 @@ SinCos sin_cos(float radians) {
     const SinCosD wide = sin_cos(x);
     return {float(wide.sin), float(wide.cos)};
   }
-  // pi/2 in parts of 23, 23 and 53 bits: products with an integer below 2^30 are exact but for the last.
+  // pi/2 as a sum of numbers of 23, 23 and 53 bits: products with an integer below 2^30 are exact, except the last.
   const int quadrant = nearest(x * 0x1.45f306dc9c883p-1);
   const double n = double(quadrant);
   const double r = ((x - n * 0x1.921fb4p+0) - n * 0x1.4442dp-24) - n * 0x1.8469898cc5170p-48;
@@ -194,7 +196,7 @@ SinCos sin_cos(float radians) {
       1.0 + z * (-0.5 + z * (1.0 / 24.0 +
                              z * (-1.0 / 720.0 +
                                   z * (1.0 / 40320.0 + z * (-1.0 / 3628800.0 + z * (1.0 / 479001600.0))))));
-  return turn<SinCos>(float(sin), float(cos), unsigned(quadrant) & 3u);
+  return in_quadrant<SinCos>(float(sin), float(cos), unsigned(quadrant) & 3u);
 }
 
 // ---------------------------------------------------------------------------------------------------- arc functions
@@ -204,7 +206,7 @@ double atan2(double y, double x) {
   if (y == 0.0) return x < 0.0 ? kPiDouble : 0.0;
   double rise = absolute(y), run = absolute(x);
   if (rise == kInfinity && run == kInfinity) rise = run = 1.0;
-  // Kept away from the ends of the range, where the products below would overflow or lose bits.
+  // Scaled away from the ends of the range, where the products below would overflow or lose bits.
   const double largest = max(rise, run);
   const double scale = largest > 0x1p900 ? 0x1p-100 : (largest < 0x1p-900 ? 0x1p100 : 1.0);
   rise *= scale;
@@ -229,7 +231,7 @@ float acos(float x) { return float(acos(double(x))); }
 
 // --------------------------------------------------------------------------------------- exponential and logarithm
 
-// ln 2 in two parts; the first has 32 bits, so its product with an exponent is exact.
+// ln 2 as a sum of two; the first has 32 bits, so its product with an exponent is exact.
 constexpr Sum kLn2{0x1.62e42feep-1, 0x1.a39ef35793c76p-33};
 
 double exp(double x) {

@@ -1,5 +1,5 @@
-// Trigonometry, exponential and logarithm whose bits are the same with every compiler, C library and CPU: computed with
-// IEEE + - * / and sqrt only, never fused, never through the C library. The float functions are declared in <gyre/math.h>.
+// Trigonometry, exponential and logarithm with the same bits for every compiler, C library and CPU: computed with IEEE
+// + - * / and sqrt only, never fused, never through the C library. The float functions are declared in <gyre/math.h>.
 //
 // Largest error found by the dense tests against 80-bit arithmetic, in units in the last place (ulp) of the result:
 //   float  sin_cos, atan2, acos     0.501 (they are computed in double and rounded once), for every finite argument
@@ -9,9 +9,9 @@
 // NaN gives NaN; the sine and cosine of an infinity are NaN.
 //
 // Sources: W. J. Cody and W. Waite, "Software Manual for the Elementary Functions" (1980), argument reduction by a
-// constant in several parts; M. Payne and R. Hanek, "Radian reduction for trigonometric functions" (1983), reduction of
-// huge arguments; T. J. Dekker, "A floating-point technique for extending the available precision" (1971). The
-// polynomials are Taylor series, cut where the rest is below a tenth of an ulp.
+// constant in several pieces; M. Payne and R. Hanek, "Radian reduction for trigonometric functions" (1983), reduction
+// of huge arguments; T. J. Dekker, "A floating-point technique for extending the available precision" (1971). The
+// polynomials are Taylor series, cut where the remainder is below a tenth of an ulp.
 #pragma once
 
 #include <gyre/math.h>

@@ -1,4 +1,4 @@
-// The stated errors of trig.h, measured densely against the C library in 80-bit (or wider) arithmetic, and the special
+// The errors stated in trig.h, measured densely against the C library in 80-bit (or wider) arithmetic, and the special
 // values. The library is allowed here: it is the oracle.
 #include "math/trig.h"
 
@@ -30,7 +30,7 @@ double ulps(T found, long double exact) {
   return double(std::fabs((long double)found - exact) / unit);
 }
 
-// A small generator of our own, so that the inputs are the same everywhere.
+// A generator of its own, so that the inputs are the same everywhere.
 struct Random : testing_random::Mixed {
   Random() : Mixed{0x9e3779b97f4a7c15u} {}
   // A finite double of any size.
@@ -58,8 +58,8 @@ TEST(Trig, FloatSinCosOverTheWholeRange) {
   EXPECT_LE(error, 0.501);
 }
 
-TEST(Trig, FloatSinCosAtMultiplesOfQuarterTurns) {
-  // Where one of the two nearly vanishes, reduction errors show first.
+TEST(Trig, FloatSinCosAtMultiplesOfRightAngles) {
+  // Reduction errors show first where the sine or the cosine nearly vanishes.
   double error = 0.0;
   for (int k = -200000; k <= 200000; k += 7) {
     const float nearest = float(double(k) * 0.25 * kPiDouble);
@@ -103,7 +103,7 @@ TEST(Trig, DoubleSinCosNearMultiplesOfPi) {
     error = worst(error, ulps(found.cos, cosl((long double)x)));
   }
   EXPECT_LE(error, 1.0);
-  // The double closest to a multiple of pi/2 of all (W. Kahan's worst case): the cosine is 4.687165924254624e-19.
+  // The double closest to a multiple of pi/2 (W. Kahan's worst case): the cosine is 4.687165924254624e-19.
   const SinCosD hardest = sin_cos(0x1.6ac5b262ca1ffp+849);
   EXPECT_NEAR(absolute(hardest.cos), 4.687165924254624e-19, 1.0e-33);
   EXPECT_EQ(absolute(hardest.sin), 1.0);
@@ -235,7 +235,7 @@ TEST(Trig, LogWithinItsError) {
 }
 
 // GCC 12's SLP vectoriser on x86 drops the rounding of neighbouring doubles to float and back, also at strict settings.
-// Gyre is built with -fno-tree-slp-vectorize there; this is the canary for it.
+// Gyre is built with -fno-tree-slp-vectorize there; this test shows if the flag is missing.
 __attribute__((noinline)) void through_float(double (&pair)[2]) {
   const float x = float(pair[0]), y = float(pair[1]);
   pair[0] = double(x);
@@ -243,14 +243,14 @@ __attribute__((noinline)) void through_float(double (&pair)[2]) {
 }
 
 TEST(Trig, CompilerRoundsToFloatWhereTheCodeSaysSo) {
-  volatile double exact = 0.1;  // volatile: not to be computed while compiling
+  volatile double exact = 0.1;  // volatile: not computed at compile time
   double pair[2] = {exact, exact + 0.1};
   through_float(pair);
   EXPECT_EQ(pair[0], 0x1.99999ap-4);
   EXPECT_EQ(pair[1], 0x1.99999ap-3);
 }
 
-// One number over many results: it changes when a compiler, platform or flag changes any bit of any of them.
+// One hash of many results: it changes when a compiler, platform or flag changes any bit of any of them.
 TEST(Trig, TheSameBitsEverywhere) {
   Random random;
   std::uint64_t hash = 14695981039346656037u;

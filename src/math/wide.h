@@ -1,15 +1,15 @@
-// Wide<W>: W floats that move as one, W = 1, 4, 8 or 16, with one interface for every CPU. Kernels are templates over W.
+// Wide<W>: W floats side by side, W = 1, 4, 8 or 16, with one interface for every CPU. Kernels are templates over W.
 //
-// The promise: lane i of any operation has exactly the bits that Wide<1> has for the same input (the payload of NaNs
-// aside), on every compiler and CPU. So there is nothing here that IEEE 754 does not fix: no fused multiply-add, no
-// reciprocal estimates, and min/max are `a < b ? a : b` (what the x86 instructions do, NaN and zeros included).
+// The promise: lane i of any operation has exactly the bits that Wide<1> has for the same input (except the payload of
+// NaNs), on every compiler and CPU. So every operation here is fixed by IEEE 754: no fused multiply-add, no reciprocal
+// estimates, and min/max are `a < b ? a : b` (as the x86 instructions, NaN and zeros included).
 //
-// Built on the vector extensions that GCC and Clang share; instructions by name only where those have no operator (square
-// root, mask to bits). Wider than the CPU's registers works too, only slower.
+// Built on the vector extensions that GCC and Clang share, with named instructions only where those have no operator
+// (square root, mask to bits). Vectors wider than the CPU's registers work too, only slower.
 //
-// A file with kernels for one CPU kind is compiled with its own instruction flags and defines GYRE_TARGET_NAMESPACE before
-// it includes this: all names here then live in an inline namespace of that name, so the linker cannot take one kind's
-// copy of a function for another's. Such a file includes nothing but this, wide_vec.h and headers of its own kind.
+// A file with kernels for one CPU kind is compiled with its own instruction flags and defines GYRE_TARGET_NAMESPACE
+// before it includes this file. All names here then live in an inline namespace of that name, so the linker cannot mix
+// the functions of two kinds. Such a file includes only this, wide_vec.h and headers of its own kind.
 #pragma once
 
 #include "math/wide_mask.h"
@@ -34,7 +34,7 @@ struct Wide {
     return wide;
   }
 
-  // From and to W floats in a row; `load` and `store` want them aligned to 4 W bytes.
+  // From and to W floats in a row; `load` and `store` need them aligned to 4 W bytes.
   static GYRE_INLINE Wide load(const float* from) {
     return of(*reinterpret_cast<const typename Lanes<W>::AnyFloat*>(from));
   }
@@ -53,7 +53,7 @@ struct Wide {
       return v[lane];
     }
   }
-  // A plain store where the lane is not known: Clang else takes the vector out, changes it on the stack, and puts it back.
+  // A plain store if the lane is not known: Clang would otherwise move the vector to the stack and back.
   GYRE_INLINE void set(int lane, float value) {
     if constexpr (W == 1) {
       (void)lane, v = value;
@@ -79,8 +79,8 @@ struct Wide {
   friend GYRE_INLINE Mask<W> operator!=(Wide a, Wide b) { return compare<W, Order::unequal>(a.v, b.v); }
 
   friend GYRE_INLINE Wide select(Mask<W> mask, Wide a, Wide b) { return of(select_lanes(mask, a.v, b.v)); }
-  // a < b ? a : b and a > b ? a : b; where an instruction does exactly that, it is named, since GCC does not find it when
-  // one side is zero.
+  // a < b ? a : b and a > b ? a : b. Instructions that do exactly this are named, since GCC does not find them if one
+  // side is zero.
   friend GYRE_INLINE Wide min(Wide a, Wide b) {
 #if defined(__AVX512F__)
     if constexpr (W == 16) return of((Float)_mm512_maskz_min_ps(__mmask16(0xffff), (__m512)a.v, (__m512)b.v));
@@ -118,7 +118,7 @@ struct Wide {
       return from_bits(bits_of(a) & mask.v);
     }
   }
-  // Without its sign: also -0 and NaN lose it.
+  // Clears the sign, also of -0 and NaN.
   friend GYRE_INLINE Wide absolute(Wide a) { return from_bits(bits_of(a) & (0x7fffffff - Int{})); }
   // `magnitude` with the sign of `sign`.
   friend GYRE_INLINE Wide copy_sign(Wide magnitude, Wide sign) {
@@ -133,7 +133,7 @@ struct Wide {
       return of(__builtin_sqrtf(a.v));
     } else {
 #if defined(__AVX512F__)
-      // With a mask that takes all: GCC's plain form warns of its own uninitialised operand.
+      // With a full mask: GCC's plain form warns of its own uninitialised operand.
       if constexpr (W == 16) return of((Float)_mm512_maskz_sqrt_ps(__mmask16(0xffff), (__m512)a.v));
 #endif
 #if defined(__AVX__)
@@ -223,10 +223,10 @@ struct WideInt {
   friend GYRE_INLINE WideInt operator|(WideInt a, WideInt b) { return of(a.v | b.v); }
   friend GYRE_INLINE WideInt operator^(WideInt a, WideInt b) { return of(a.v ^ b.v); }
   friend GYRE_INLINE WideInt operator~(WideInt a) { return of(~a.v); }
-  // By 0 to 31 bits; to the right the sign bit moves in.
+  // By 0 to 31 bits; a right shift copies the sign bit.
   friend GYRE_INLINE WideInt operator<<(WideInt a, int count) { return of((Int)((Unsigned)a.v << count)); }
   friend GYRE_INLINE WideInt operator>>(WideInt a, int count) { return of(a.v >> count); }
-  // To the right with zeros moving in.
+  // A right shift that moves zeros in.
   friend GYRE_INLINE WideInt shift_right_logical(WideInt a, int count) {
     return of((Int)((Unsigned)a.v >> count));
   }
@@ -273,7 +273,7 @@ template <int W>
 GYRE_INLINE Wide<W> from_bit_pattern(WideInt<W> a) {
   return Wide<W>::from_bits(a.v);
 }
-// A mask as integers 0 and -1, and the lanes of integers that are not zero.
+// A mask as integers 0 and -1.
 template <int W>
 GYRE_INLINE WideInt<W> to_int(Mask<W> mask) {
   return WideInt<W>::of(to_lanes(mask));

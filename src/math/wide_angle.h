@@ -1,4 +1,4 @@
-// Angles of W vectors in the plane and of W rotations side by side, in float: the wide twins of atan2 in math/trig.h and of
+// Angles of W vectors in the plane and of W rotations, in float: the wide twins of atan2 in math/trig.h and of
 // to_rotation_vector in math/rotation.h, with fewer digits.
 #pragma once
 
@@ -9,7 +9,8 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 constexpr float kWidePi = 3.14159265f;
 
-// The angle of (x, y) in (-pi, pi], within 3e-7; 0 for the zero vector. Folded to |t| <= tan(pi / 8), then Taylor's series.
+// The angle of (x, y) in (-pi, pi], within 3e-7; 0 for the zero vector. Folded to |t| <= tan(pi / 8), then Taylor's
+// series.
 template <int W>
 GYRE_INLINE Wide<W> atan2(Wide<W> y, Wide<W> x) {
   const Wide<W> ax = absolute(x), ay = absolute(y);
@@ -27,7 +28,7 @@ GYRE_INLINE Wide<W> atan2(Wide<W> y, Wide<W> x) {
   return copy_sign(angle, y);
 }
 
-// The angle, which is known up to whole turns, that is nearest to another.
+// The angle plus the multiple of 2 pi that brings it nearest to `near`.
 template <int W>
 GYRE_INLINE Wide<W> unwrapped(Wide<W> angle, Wide<W> near) {
   // Adding 1.5 * 2^23 rounds to the nearest integer.
@@ -35,13 +36,13 @@ GYRE_INLINE Wide<W> unwrapped(Wide<W> angle, Wide<W> near) {
   return angle + (2.0f * kWidePi) * turns;
 }
 
-// Axis times angle (at most pi) of a unit quaternion.
+// The rotation vector (axis times angle, at most pi) of a unit quaternion.
 template <int W>
 GYRE_INLINE Vec3W<W> to_rotation_vector(QuatW<W> q) {
   const Vec3W<W> v{q.x, q.y, q.z};
   const Wide<W> sine = length(v);
-  const Mask<W> turns = sine > 1.0e-18f;
-  const Wide<W> share = select(turns, 2.0f * atan2(sine, absolute(q.w)) / sine, Wide<W>(2.0f));
+  const Mask<W> rotates = sine > 1.0e-18f;
+  const Wide<W> share = select(rotates, 2.0f * atan2(sine, absolute(q.w)) / sine, Wide<W>(2.0f));
   return copy_sign(share, q.w) * v;
 }
 

@@ -1,6 +1,6 @@
-// WideDouble<H>: H doubles that move as one, for kernels whose floats are not enough (factorisations). The W floats of a register
-// are two such halves, low lanes first, because a register holds half as many doubles; with W = 1 there is one. Lane i has the
-// bits of plain double arithmetic, as promised in math/wide.h.
+// WideDouble<H>: H doubles side by side, for kernels that need more than floats (factorisations). The W floats of a
+// register are two such halves, low lanes first, because a register holds half as many doubles; with W = 1 there is
+// one. Lane i has the bits of plain double arithmetic, as promised in math/wide.h.
 #pragma once
 
 #include "math/wide.h"
@@ -11,7 +11,7 @@ inline namespace GYRE_TARGET_NAMESPACE {
 template <int H>
 struct DoubleLanes {
   static_assert(H == 2 || H == 4 || H == 8 ||
-                H == 16);  // 16: where a call that names its lanes looks for its function
+                H == 16);  // 16 for overload resolution of calls with explicit lanes
   typedef double Double __attribute__((vector_size(8 * H)));
   typedef double AnyDouble __attribute__((vector_size(8 * H), may_alias));
   typedef double LooseDouble __attribute__((vector_size(8 * H), may_alias, aligned(8)));
@@ -25,7 +25,7 @@ struct DoubleLanes<1> {
   using HalfFloat = float;
 };
 
-// How many halves W lanes are, and how wide these.
+// The number of halves of W lanes, and their width.
 template <int W>
 constexpr int kHalves = W == 1 ? 1 : 2;
 template <int W>
@@ -48,7 +48,7 @@ struct WideDouble {
     return of(*reinterpret_cast<const typename DoubleLanes<H>::AnyDouble*>(from));
   }
   GYRE_INLINE void store(double* to) const { *reinterpret_cast<typename DoubleLanes<H>::AnyDouble*>(to) = v; }
-  // Aligned as one double is.
+  // With the alignment of one double.
   static GYRE_INLINE WideDouble load_loose(const double* from) {
     return of(*reinterpret_cast<const typename DoubleLanes<H>::LooseDouble*>(from));
   }
@@ -56,26 +56,26 @@ struct WideDouble {
     *reinterpret_cast<typename DoubleLanes<H>::LooseDouble*>(to) = v;
   }
 
-  // From and to H floats in a row, anywhere; rounded on the way to memory.
+  // From and to H floats at any address; stores round.
   static GYRE_INLINE WideDouble load_floats(const void* from) {
-    typename DoubleLanes<H>::HalfFloat part;
-    __builtin_memcpy(&part, from, sizeof part);
+    typename DoubleLanes<H>::HalfFloat half;
+    __builtin_memcpy(&half, from, sizeof half);
     if constexpr (H == 1) {
-      return of(double(part));
+      return of(double(half));
     } else {
-      return of(__builtin_convertvector(part, Double));
+      return of(__builtin_convertvector(half, Double));
     }
   }
   GYRE_INLINE void store_floats(void* to) const {
-    typename DoubleLanes<H>::HalfFloat part;
+    typename DoubleLanes<H>::HalfFloat half;
     if constexpr (H == 1) {
-      part = float(v);
+      half = float(v);
     } else {
-      part = __builtin_convertvector(v, typename DoubleLanes<H>::HalfFloat);
+      half = __builtin_convertvector(v, typename DoubleLanes<H>::HalfFloat);
     }
-    __builtin_memcpy(to, &part, sizeof part);
+    __builtin_memcpy(to, &half, sizeof half);
   }
-  // One lane; not for what is done often.
+  // One lane; for rare use.
   GYRE_INLINE double operator[](int lane) const {
     if constexpr (H == 1) {
       return (void)lane, v;
@@ -104,7 +104,7 @@ struct WideDouble {
       return of(__builtin_sqrt(a.v));
     } else {
 #if defined(__AVX512F__)
-      // With a mask that takes all: as for floats.
+      // With a full mask, as for floats.
       if constexpr (H == 8) return of((Double)_mm512_maskz_sqrt_pd(__mmask8(0xff), (__m512d)a.v));
 #endif
 #if defined(__AVX__)
@@ -122,7 +122,7 @@ struct WideDouble {
       return result;
     }
   }
-  // `then` where a == b or a > b, `otherwise` elsewhere.
+  // `then` where a == b (select_equal) or a > b (select_above), `otherwise` elsewhere.
   friend GYRE_INLINE WideDouble select_equal(WideDouble a, WideDouble b, WideDouble then,
                                              WideDouble otherwise) {
     return of(a.v == b.v ? then.v : otherwise.v);
@@ -134,7 +134,7 @@ struct WideDouble {
   // a < b ? a : b and a > b ? a : b.
   friend GYRE_INLINE WideDouble min(WideDouble a, WideDouble b) { return of(a.v < b.v ? a.v : b.v); }
   friend GYRE_INLINE WideDouble max(WideDouble a, WideDouble b) { return of(a.v > b.v ? a.v : b.v); }
-  // Whether a <= b in each lane.
+  // True if a <= b in each lane.
   friend GYRE_INLINE bool all_at_most(WideDouble a, WideDouble b) {
     if constexpr (H == 1) {
       return a.v <= b.v;
@@ -165,16 +165,16 @@ struct WideDouble {
   }
 };
 
-// Half `Half` of the lanes as doubles, and two halves as floats, rounded.
+// Half `Half` of the lanes as doubles; join_halves makes rounded floats of two halves.
 template <int Half, int W>
 GYRE_INLINE WideDouble<kHalfLanes<W>> half_of(Wide<W> a) {
   using Result = WideDouble<kHalfLanes<W>>;
   if constexpr (W == 1) {
     return Result(double(a.v));
   } else {
-    typename DoubleLanes<kHalfLanes<W>>::HalfFloat part;
-    __builtin_memcpy(&part, reinterpret_cast<const char*>(&a.v) + Half * sizeof part, sizeof part);
-    return Result::of(__builtin_convertvector(part, typename Result::Double));
+    typename DoubleLanes<kHalfLanes<W>>::HalfFloat half;
+    __builtin_memcpy(&half, reinterpret_cast<const char*>(&a.v) + Half * sizeof half, sizeof half);
+    return Result::of(__builtin_convertvector(half, typename Result::Double));
   }
 }
 template <int W>
@@ -182,8 +182,9 @@ GYRE_INLINE Wide<W> join_halves(WideDouble<kHalfLanes<W>> low, WideDouble<kHalfL
   if constexpr (W == 1) {
     return (void)high, Wide<W>(float(low.v));
   } else {
-    using Part = typename DoubleLanes<kHalfLanes<W>>::HalfFloat;
-    const Part a = __builtin_convertvector(low.v, Part), b = __builtin_convertvector(high.v, Part);
+    using HalfFloat = typename DoubleLanes<kHalfLanes<W>>::HalfFloat;
+    const HalfFloat a = __builtin_convertvector(low.v, HalfFloat),
+                    b = __builtin_convertvector(high.v, HalfFloat);
     if constexpr (W == 4) return Wide<W>::of(__builtin_shufflevector(a, b, 0, 1, 2, 3));
     if constexpr (W == 8) return Wide<W>::of(__builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7));
     if constexpr (W == 16)

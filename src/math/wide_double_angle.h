@@ -1,4 +1,4 @@
-// Series of angles in double, H side by side: the middle parts of exponential_map (math/rotation.h) and atan2 (math/trig.h),
+// Series of angles in double, H side by side: the kernels of exponential_map (math/rotation.h) and atan2 (math/trig.h),
 // which use them with one lane. Lane i has the bits of one lane.
 #pragma once
 
@@ -7,7 +7,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// sin(a) / a and cos(a) by their series in a^2, a <= 1/2: no division, no root, nothing special at zero.
+// sin(a) / a and cos(a) by their series in a^2, for a <= 1/2: no division, no root, nothing special at zero.
 constexpr double kMaxHalfAngleSquare = 0.25;
 template <int H>
 struct HalfAngle {
@@ -34,19 +34,20 @@ struct AngleSum {
 template <int H>
 GYRE_INLINE AngleSum<H> exact_sum(WideDouble<H> a, WideDouble<H> b) {
   const WideDouble<H> sum = a + b;
-  const WideDouble<H> b_part = sum - a;
-  return {sum, (a - (sum - b_part)) + (b - b_part)};
+  const WideDouble<H> b_rounded = sum - a;
+  return {sum, (a - (sum - b_rounded)) + (b - b_rounded)};
 }
-// An angle beyond a right one (or two) as the difference from it; `whole` is that one.
+// `whole` - `angle` as an unrounded sum, for angles beyond pi/2 or pi.
 template <int H>
 GYRE_INLINE AngleSum<H> mirrored(AngleSum<1> whole, AngleSum<H> angle) {
-  const AngleSum<H> turned = exact_sum(WideDouble<H>(whole.head.v), -angle.head);
-  return {turned.head, turned.rest + (WideDouble<H>(whole.rest.v) - angle.rest)};
+  const AngleSum<H> reflected = exact_sum(WideDouble<H>(whole.head.v), -angle.head);
+  return {reflected.head, reflected.rest + (WideDouble<H>(whole.rest.v) - angle.rest)};
 }
-// The angle of (run, rise), neither negative, both away from the ends of the range.
+// The angle of (run, rise); neither is negative, and both are away from the ends of the range.
 template <int H>
 GYRE_INLINE AngleSum<H> angle_in_quadrant(WideDouble<H> rise, WideDouble<H> run) {
-  // atan(t) = atan(c) + atan((t - c) / (1 + t c)) with c the nearest of 0, 1/8, ... 1: the rest is at most 1/16.
+  // atan(t) = atan(c) + atan((t - c) / (1 + t c)) with c the nearest of 0, 1/8, ... 1; the argument of the second term
+  // is at most 1/16.
   constexpr double kHead[9] = {0.0,
                                0x1.fd5ba9aac2f6ep-4,
                                0x1.f5b75f92c80ddp-3,
@@ -72,11 +73,11 @@ GYRE_INLINE AngleSum<H> angle_in_quadrant(WideDouble<H> rise, WideDouble<H> run)
   AngleSum<H> base{0.0, 0.0};
   if (!all_at_most(eighth, 0.0)) {
     const WideDouble<H> c = 0.125 * eighth;
-    u = (low - c * high) / (high + c * low);  // where c is 0, t again
+    u = (low - c * high) / (high + c * low);  // where c is 0, this is t
     GYRE_UNROLL
     for (int i = 0; i < H; ++i) {
-      const int place = int(eighth[i]);
-      base.head.set(i, kHead[place]), base.rest.set(i, kRest[place]);
+      const int index = int(eighth[i]);
+      base.head.set(i, kHead[index]), base.rest.set(i, kRest[index]);
     }
   }
   const WideDouble<H> z = u * u;

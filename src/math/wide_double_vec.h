@@ -1,5 +1,5 @@
-// Vectors and quaternions of doubles side by side, as DVec3 and DQuat: for integrators that follow spinning bodies. Lane i has
-// the bits of those.
+// Vectors and quaternions of doubles side by side, for integrators of spinning bodies. Lane i has the bits of DVec3 and
+// DQuat.
 #pragma once
 
 #include "math/rotation.h"
@@ -57,7 +57,7 @@ template <int H>
 GYRE_INLINE WideDouble<H> dot(DQuatW<H> a, DQuatW<H> b) {
   return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
 }
-// `a` where the lane's number is above the other, `b` elsewhere.
+// `a` where `number` is above `other`, `b` elsewhere.
 template <int H>
 GYRE_INLINE DQuatW<H> select_above(WideDouble<H> number, WideDouble<H> other, DQuatW<H> a, DQuatW<H> b) {
   return {select_above(number, other, a.x, b.x), select_above(number, other, a.y, b.y),
@@ -68,8 +68,8 @@ template <int H>
 GYRE_INLINE DQuatW<H> normalized(DQuatW<H> q) {
   const WideDouble<H> zero(0.0), one(1.0);
   const WideDouble<H> square = dot(q, q), scale = one / sqrt(square);
-  const auto scaled = [&](WideDouble<H> part, WideDouble<H> none) {
-    return select_equal(square, zero, none, part * scale);
+  const auto scaled = [&](WideDouble<H> component, WideDouble<H> none) {
+    return select_equal(square, zero, none, component * scale);
   };
   return {scaled(q.x, zero), scaled(q.y, zero), scaled(q.z, zero), scaled(q.w, one)};
 }
@@ -84,7 +84,7 @@ GYRE_INLINE DVec3W<H> rotate_inverse(DQuatW<H> q, DVec3W<H> v) {
   return rotate(conjugate(q), v);
 }
 
-// The same one lane at a time, for what is seldom out of the ordinary.
+// exponential_map and logarithm_map one lane at a time, for rare cases.
 template <int H>
 __attribute__((noinline)) void exponential_map_by_lanes(const DVec3W<H>& v, DQuatW<H>& q) {
   GYRE_ROLLED
@@ -102,7 +102,7 @@ __attribute__((noinline)) void logarithm_map_by_lanes(const DQuatW<H>& q, DVec3W
   }
 }
 
-// As exponential_map of math/rotation.h: side by side where no lane turns by more than a radian.
+// As exponential_map of math/rotation.h: side by side if no lane rotates by more than a radian.
 template <int H>
 GYRE_INLINE DQuatW<H> exponential_map(DVec3W<H> v) {
   DQuatW<H> q;
@@ -116,7 +116,7 @@ GYRE_INLINE DQuatW<H> exponential_map(DVec3W<H> v) {
   }
   return q;
 }
-// As logarithm_map of math/rotation.h: side by side where every lane turns, and none is out of the ordinary.
+// As logarithm_map of math/rotation.h: side by side if every lane rotates and none is a special case.
 template <int H>
 GYRE_INLINE DVec3W<H> logarithm_map(DQuatW<H> q) {
   DVec3W<H> v{q.x, q.y, q.z};

@@ -1,5 +1,5 @@
-// Mask<W>, a truth value for each lane of Wide<W> (math/wide.h), and what comparisons make of lanes: on most CPUs a vector with all bits of
-// a lane set or none; a bit for each lane where those are what instructions give and take.
+// Mask<W>: a truth value for each lane of Wide<W> (math/wide.h), and comparisons. On most CPUs a lane is a vector
+// element with all bits set or none; with AVX-512 it is one bit.
 #pragma once
 
 #include "math/lanes.h"
@@ -19,7 +19,7 @@ struct Mask {
     return mask;
   }
   static GYRE_INLINE Mask splat(bool value) { return of((value ? -1 : 0) - Int{}); }
-  // Of the result of a comparison: a vector of 0 and -1, or a bool.
+  // From the result of a comparison: a vector of 0 and -1, or a bool.
   template <class T>
   static GYRE_INLINE Mask from(T compared) {
     if constexpr (W == 1) {
@@ -96,7 +96,7 @@ struct Mask {
 template <int W>
 constexpr bool kMasksAreBits = W == 16;
 
-// A bit for each lane, in a register of its own.
+// One bit for each lane, in a mask register.
 template <>
 struct Mask<16> {
   std::uint16_t v;
@@ -126,7 +126,7 @@ template <int W>
 constexpr bool kMasksAreBits = false;
 #endif
 
-// What two numbers of a lane are to each other.
+// Comparisons of two numbers.
 enum class Order : std::uint8_t { equal, less, at_most, unequal, at_least, more };
 
 template <int W, Order order, class Vector>
@@ -154,7 +154,7 @@ GYRE_INLINE typename Lanes<W>::Int to_lanes(Mask<W> mask) {
 }
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
-// The same on masks that are bits.
+// The same on masks of bits.
 template <int W, Order order>
 GYRE_INLINE Mask<16> compare(Lanes<16>::Float a, Lanes<16>::Float b) {
   constexpr int kPredicates[] = {_CMP_EQ_OQ, _CMP_LT_OS, _CMP_LE_OS, _CMP_NEQ_UQ, _CMP_GE_OS, _CMP_GT_OS};

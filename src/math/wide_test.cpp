@@ -20,7 +20,7 @@ struct Random : testing_random::Mixed {
   Random() : Mixed{0x94d049bb133111ebu} {}
 };
 
-// Numbers of all kinds; every eighth block of 16 is ordinary alone, so that ordinary results dominate somewhere.
+// Numbers of all kinds; every eighth block of 16 has only ordinary ones, so that ordinary results occur often.
 std::vector<float> numbers(int count) {
   const float infinity = std::numeric_limits<float>::infinity();
   const float special[] = {0.0f,
@@ -60,8 +60,8 @@ std::vector<float> numbers(int count) {
   return list;
 }
 
-// The payload of a NaN is not fixed by IEEE 754: all NaNs count as one. Integer results never look like this NaN by
-// intent, and if they do, both sides are changed alike.
+// The payload of a NaN is not fixed by IEEE 754, so all NaNs count as one. An integer result that looks like this NaN
+// is replaced on both sides alike.
 std::uint32_t comparable(std::uint32_t bits) {
   return (bits & 0x7fffffffu) > 0x7f800000u ? 0x7fc00000u : bits;
 }
@@ -115,7 +115,7 @@ TEST(Wide, NeonIsWidthOne) { expect_as_width_one("neon", run_wide_test_neon); }
 TEST(Wide, WasmIsWidthOne) { expect_as_width_one("wasm", run_wide_test_wasm); }
 #endif
 
-// Width 1 against the language's own operators: the reference of all the others.
+// Width 1 against the language's own operators: the reference for all other widths.
 TEST(Wide, WidthOneIsPlainArithmetic) {
   const std::vector<float> inputs = numbers(kCount);
   for (int i = 0; i < kCount; ++i) {
@@ -175,7 +175,7 @@ void expect_lanes() {
   }
 }
 
-// The wider ones are compared with these above.
+// The other widths are compared with these results.
 TEST(Wide, LanesLoadsMasks) {
   expect_lanes<1>();
   expect_lanes<4>();

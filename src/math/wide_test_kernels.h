@@ -2,8 +2,8 @@
 // wide_test_kernels_<kind>.cpp) and for each width in it; wide_test.cpp compares the bits with those of width 1.
 //
 // In: `count` numbers (a multiple of 16) in each of kWideTestInputs rows; out: `count` words of 32 bits in each of
-// kWideTestResults rows. The numbers serve once more as records to gather; the last kRecordFloats rows of the results are
-// one record for each of the `count` lanes, to scatter to.
+// kWideTestResults rows. The numbers also serve as records to gather. The last kRecordFloats rows of the results are a
+// record for each of the `count` lanes, as targets of scatters.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ void run_wide_test_wasm(int width, const float* inputs, int count, std::uint32_t
 
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Writes results of one block of W numbers into its place of each row.
-// Whether all that a mask tells agrees with its bits, in every lane.
+// Writes the results of one block of W numbers to its columns of each row. Checks that all queries of a mask agree with
+// its bits, in every lane.
 template <int W>
 GYRE_INLINE Mask<W> tells_its_bits(Mask<W> mask) {
   const std::uint32_t bits = to_bits(mask), all_bits = to_bits(Mask<W>::splat(true));
@@ -192,7 +192,7 @@ inline __attribute__((noinline)) void wide_test_vectors(WideTestRows<W>& out, Ve
   out.put(integrate_rotation(q, turn));
 }
 
-// Lanes gather from anywhere, some from no record, and scatter to the record of their own number.
+// Lanes gather from arbitrary records, some from none, and scatter to the record of their own number.
 template <int W>
 inline __attribute__((noinline)) void wide_test_moves(WideTestRows<W>& out, const float* from, float* to,
                                                       int first) {
@@ -207,7 +207,7 @@ inline __attribute__((noinline)) void wide_test_moves(WideTestRows<W>& out, cons
   gather8<W>(from, sources, half);
   for (int c = 0; c < 16; ++c) out.put(all[c]);
   for (int c = 0; c < 8; ++c) out.put(half[c]);
-  // Each piece of a record is written by another kind of scatter.
+  // Each block of a record is written by another kind of scatter.
   if ((first / 16) % 4 == 0) scatter<16, W>(to, targets, all);
   if ((first / 16) % 4 == 1) scatter<8, W>(to, targets, half);
   if ((first / 16) % 4 == 2) scatter<6, W>(to, targets, half);

@@ -1,6 +1,6 @@
-// Vectors, quaternions and matrices of Wide<W> numbers: W of each side by side, with the operations of <gyre/math.h> in the
-// same order of roundings, so that lane i has exactly the bits of the scalar operation. And the way between memory and
-// lanes: gather and scatter of records of 16 floats (64 bytes: one cache line, one body) by index.
+// Vectors, quaternions and matrices of Wide<W> numbers, with the operations of <gyre/math.h> in the same order of
+// roundings, so that lane i has exactly the bits of the scalar operation. Also gather and scatter by index between
+// lanes and records of 16 floats (64 bytes: one cache line, one body).
 //
 // Sources: the formulas are those of <gyre/math.h>; transposition of 4x4 blocks by unpacking pairs is folklore of every
 // SIMD manual.
@@ -23,15 +23,15 @@ template <int W, class Vector>
 GYRE_INLINE Vec3W<W> splat(const Vector& v) {
   return {v.x, v.y, v.z};
 }
-// Four vectors, one a lane.
+// Four vectors, one in each lane.
 template <class Vector>
 GYRE_INLINE Vec3W<4> side_by_side(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
-  // Not by way of an array: GCC would build that on the stack, part by part.
+  // Without an array, which GCC would build on the stack element by element.
   typedef float Quad __attribute__((vector_size(16)));
   return {Wide<4>::of(Quad{a.x, b.x, c.x, d.x}), Wide<4>::of(Quad{a.y, b.y, c.y, d.y}),
           Wide<4>::of(Quad{a.z, b.z, c.z, d.z})};
 }
-// Four lanes and four more.
+// Eight lanes from two times four.
 GYRE_INLINE Wide<8> join(Wide<4> low, Wide<4> high) {
   return Wide<8>::of(__builtin_shufflevector(low.v, high.v, 0, 1, 2, 3, 4, 5, 6, 7));
 }
@@ -285,9 +285,9 @@ GYRE_INLINE Sym3W<W> rotate_moments(const Mat3W<W>& r, Vec3W<W> moments) {
           a.x * r.x.z + b.x * r.y.z + c.x * r.z.z, a.y * r.x.z + b.y * r.y.z + c.y * r.z.z};
 }
 
-// Sine and cosine in float, within 2 units of the last place of 1 for |x| up to 8,000; beyond, ever fewer digits are
-// right, but sin^2 + cos^2 stays 1 until 10^6. Not the bits of sin_cos in <gyre/math.h>, which works in double.
-// Cody and Waite's reduction by pi/2 in three parts, then Taylor series.
+// Sine and cosine in float, within 2 units of the last place of 1 for |x| up to 8,000. Beyond, fewer and fewer digits
+// are right, but sin^2 + cos^2 stays 1 until 10^6. Not the bits of sin_cos in <gyre/math.h>, which works in double.
+// Cody and Waite's reduction by pi/2 as a sum of three, then Taylor series.
 template <int W>
 struct SinCosW {
   Wide<W> sin, cos;
@@ -312,18 +312,18 @@ GYRE_INLINE SinCosW<W> sin_cos(Wide<W> x) {
   return {from_bit_pattern(bit_pattern(s) ^ sine_sign), from_bit_pattern(bit_pattern(c) ^ cosine_sign)};
 }
 
-// `orientation` turned by the world rotation vector `turn` (rad): the float twin of integrate_rotation in
-// math/rotation.h, for whole blocks of bodies. As exact as the rounding of the angle to float, for turns below 10^4.
+// `orientation` rotated by the world rotation vector `rotation` (rad): the float twin of integrate_rotation in
+// math/rotation.h, for blocks of bodies. As exact as the rounding of the angle to float, for rotations below 10^4.
 template <int W>
-GYRE_INLINE QuatW<W> integrate_rotation(QuatW<W> orientation, Vec3W<W> turn) {
-  const Wide<W> z = 0.25f * dot(turn, turn);  // the half angle squared
+GYRE_INLINE QuatW<W> integrate_rotation(QuatW<W> orientation, Vec3W<W> rotation) {
+  const Wide<W> z = 0.25f * dot(rotation, rotation);  // the half angle squared
   // sin(a)/a and cos(a) by their series in a^2; good to a = 1.
   Wide<W> s =
       0.5f + z * (-1.0f / 12.0f + z * (1.0f / 240.0f + z * (-1.0f / 10080.0f + z * (1.0f / 725760.0f))));
   Wide<W> c =
       1.0f + z * (-0.5f + z * (1.0f / 24.0f +
                                z * (-1.0f / 720.0f + z * (1.0f / 40320.0f + z * (-1.0f / 3628800.0f)))));
-  // Fast spins take the long way; each lane by its own angle alone, so that its neighbours cannot change its bits.
+  // Fast spins use sin_cos, each lane by its own angle alone, so that its neighbours cannot change its bits.
   const Mask<W> fast = z > 1.0f;
   if (any(fast)) {
     const Wide<W> half = sqrt(select(fast, z, Wide<W>(1.0f)));
@@ -331,7 +331,7 @@ GYRE_INLINE QuatW<W> integrate_rotation(QuatW<W> orientation, Vec3W<W> turn) {
     s = select(fast, 0.5f * exact.sin / half, s);
     c = select(fast, exact.cos, c);
   }
-  const QuatW<W> q{s * turn.x, s * turn.y, s * turn.z, c};
+  const QuatW<W> q{s * rotation.x, s * rotation.y, s * rotation.z, c};
   return normalized(q * orientation);
 }
 
@@ -339,25 +339,25 @@ GYRE_INLINE QuatW<W> integrate_rotation(QuatW<W> orientation, Vec3W<W> turn) {
 
 constexpr int kRecordFloats = 16;
 
-// Where record `index` lies, or `otherwise` for a negative index. With bit operations instead of a branch: which lanes of
-// a block have no record is hard to predict.
+// The address of record `index`, or `otherwise` for a negative index; with bit operations instead of a branch, since
+// lanes without a record are hard to predict.
 template <int Stride>
-GYRE_INLINE std::uintptr_t record_place(std::uintptr_t base, std::int32_t index) {
+GYRE_INLINE std::uintptr_t record_address(std::uintptr_t base, std::int32_t index) {
   return base + std::uintptr_t(std::intptr_t(index)) * (Stride * 4u);
 }
 template <int Stride = kRecordFloats, class Number>
 GYRE_INLINE Number* record_or(Number* base, std::int32_t index, Number* otherwise) {
-  const std::uintptr_t record = record_place<Stride>(std::uintptr_t(base), index);
+  const std::uintptr_t record = record_address<Stride>(std::uintptr_t(base), index);
   const std::uintptr_t none = std::uintptr_t(std::intptr_t(index) >> (8 * sizeof(std::intptr_t) - 1));
   return reinterpret_cast<Number*>(record ^ ((record ^ std::uintptr_t(otherwise)) & none));
 }
-// The same for each lane, of records of `Stride` floats: where every lane has one, and where some may have none. Most blocks have a
-// record in every lane, and their lanes need not be asked one by one.
+// The addresses for each lane, of records of `Stride` floats: the first form needs a record in every lane, the second
+// does not. Most blocks have a record in every lane and skip the test of single lanes.
 template <int W, int Stride = kRecordFloats, class Number>
 GYRE_INLINE void locate_records(Number* base, const std::int32_t* indices, Number* (&record)[W]) {
   GYRE_UNROLL
   for (int i = 0; i < W; ++i)
-    record[i] = reinterpret_cast<Number*>(record_place<Stride>(std::uintptr_t(base), indices[i]));
+    record[i] = reinterpret_cast<Number*>(record_address<Stride>(std::uintptr_t(base), indices[i]));
 }
 template <int W, int Stride = kRecordFloats, class Number>
 GYRE_INLINE void locate_records(Number* base, const std::int32_t* indices, Number* otherwise,
@@ -370,8 +370,8 @@ GYRE_INLINE void locate_records(Number* base, const std::int32_t* indices, Numbe
   }
 }
 
-// Blocks of four floats of W records. Loaded so that 128-bit lane l of row j is record 4 l + j, a transposition of rows
-// and columns never crosses 128-bit lanes. Written without loops over rows, because GCC keeps unrolled arrays in memory.
+// Blocks of four floats of W records. 128-bit lane l of row j is record 4 l + j, so a transposition of rows and columns
+// never crosses 128-bit lanes. Written without loops over rows, because GCC keeps unrolled arrays in memory.
 template <int W>
 struct Rows {
   using Float = typename Lanes<W>::Float;
@@ -387,7 +387,7 @@ struct Rows {
       const Quad q0 = quad(record[j] + first), q1 = quad(record[4 + j] + first);
       const Quad q2 = quad(record[8 + j] + first), q3 = quad(record[12 + j] + first);
 #if defined(__AVX512F__)
-      // As they come from memory: that takes no shuffle.
+      // Inserted directly from memory, without a shuffle.
       __m512 row = _mm512_castps128_ps512((__m128)q0);
       row = _mm512_insertf32x4(row, (__m128)q1, 1);
       row = _mm512_insertf32x4(row, (__m128)q2, 2);
@@ -402,15 +402,15 @@ struct Rows {
   // Writes the first `Count` (1 to 4) floats of row j.
   template <int Count>
   static GYRE_INLINE void store(Float row, float* const (&record)[W], int j, int first) {
-    put<Count>(record[j] + first, part<0>(row));
-    if constexpr (W >= 8) put<Count>(record[4 + j] + first, part<1>(row));
+    store_quad<Count>(record[j] + first, quad_of<0>(row));
+    if constexpr (W >= 8) store_quad<Count>(record[4 + j] + first, quad_of<1>(row));
     if constexpr (W == 16) {
-      put<Count>(record[8 + j] + first, part<2>(row));
-      put<Count>(record[12 + j] + first, part<3>(row));
+      store_quad<Count>(record[8 + j] + first, quad_of<2>(row));
+      store_quad<Count>(record[12 + j] + first, quad_of<3>(row));
     }
   }
 
-  // Rows to columns and back: within each 128-bit lane, element i of row j and element j of row i change places.
+  // Transposes rows and columns: within each 128-bit lane, element i of row j and element j of row i change places.
   static GYRE_INLINE void transpose(Float& r0, Float& r1, Float& r2, Float& r3) {
     const Float a = unpack_low(r0, r1), b = unpack_high(r0, r1);
     const Float c = unpack_low(r2, r3), d = unpack_high(r2, r3);
@@ -420,7 +420,7 @@ struct Rows {
     r3 = high_pairs(b, d);
   }
 
-  // Columns first ... first + 3 of the records.
+  // Loads columns first ... first + 3 of the records.
   static GYRE_INLINE void gather(const float* const (&record)[W], int first, Wide<W>* out) {
     Float r0 = load(record, 0, first), r1 = load(record, 1, first);
     Float r2 = load(record, 2, first), r3 = load(record, 3, first);
@@ -430,7 +430,7 @@ struct Rows {
     out[2].v = r2;
     out[3].v = r3;
   }
-  // `Count` columns from `first` on.
+  // Stores `Count` columns from `first` on.
   template <int Count>
   static GYRE_INLINE void scatter(float* const (&record)[W], int first, const Wide<W>* in) {
     Float r0 = in[0].v, r1 = in[Count > 1 ? 1 : 0].v, r2 = in[Count > 2 ? 2 : 0].v,
@@ -447,9 +447,9 @@ struct Rows {
   static GYRE_INLINE typename Lanes<8>::Float join(Quad low, Quad high) {
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
   }
-  // 128-bit lane l of a row. Extractions are named, since what GCC makes of a shuffle does not go to memory at once.
+  // 128-bit lane l of a row. Extractions are named, since GCC does not store the result of a shuffle directly.
   template <int l>
-  static GYRE_INLINE Quad part(Float row) {
+  static GYRE_INLINE Quad quad_of(Float row) {
     if constexpr (W == 4) {
       return row;
     } else {
@@ -464,15 +464,15 @@ struct Rows {
     }
   }
   template <int Count>
-  static GYRE_INLINE void put(float* to, Quad part) {
+  static GYRE_INLINE void store_quad(float* to, Quad quad_value) {
     if constexpr (Count == 4) {
-      *reinterpret_cast<LooseQuad*>(to) = part;
+      *reinterpret_cast<LooseQuad*>(to) = quad_value;
     } else {
-      __builtin_memcpy(to, &part, Count * sizeof(float));
+      __builtin_memcpy(to, &quad_value, Count * sizeof(float));
     }
   }
 
-  // a0 b0 a1 b1 of each 128-bit lane; a2 b2 a3 b3; a0 a1 b0 b1; a2 a3 b2 b3.
+  // Of each 128-bit lane: a0 b0 a1 b1 (unpack_low); a2 b2 a3 b3; a0 a1 b0 b1; a2 a3 b2 b3.
   static GYRE_INLINE Float unpack_low(Float a, Float b) {
     if constexpr (W == 4) {
       return __builtin_shufflevector(a, b, 0, 4, 1, 5);
@@ -511,7 +511,7 @@ struct Rows {
   }
 };
 
-// Columns first ... first + Columns - 1 (a multiple of four) of W records: out[c] lane i is record[i][first + c].
+// Loads columns first ... first + Columns - 1 (a multiple of four) of W records: out[c] lane i is record[i][first + c].
 template <int Columns, int W>
 GYRE_INLINE void gather_columns(const float* const (&record)[W], int first, Wide<W>* out) {
   static_assert(Columns % 4 == 0 && Columns <= kRecordFloats);
@@ -545,11 +545,11 @@ GYRE_INLINE void scatter_columns(float* const (&record)[W], int first, const Wid
   }
 }
 
-// What lanes without a record read.
+// Read by lanes without a record.
 alignas(64) constexpr float kNoRecord[kRecordFloats] = {};
 
-// The first `Columns` floats of W records of 16 floats: out[c] lane i is base[16 indices[i] + c]. A negative index means no
-// record: its lanes are zero.
+// The first `Columns` floats of W records of 16 floats: out[c] lane i is base[16 indices[i] + c]. Lanes with a negative
+// index have no record and read zeros.
 template <int Columns, int W>
 GYRE_INLINE void gather(const float* base, const std::int32_t* indices, Wide<W>* out) {
   const float* record[W];
@@ -565,8 +565,8 @@ GYRE_INLINE void gather8(const float* base, const std::int32_t* indices, Wide<W>
   gather<8, W>(base, indices, out);
 }
 
-// Writes columns in[0 ... Columns) back to the records; lanes with a negative index write nothing. Two lanes must not
-// name the same record. No float beyond the first `Columns` of a record is touched.
+// Writes columns in[0 ... Columns) to the records; lanes with a negative index write nothing. Two lanes must not name
+// the same record. No float beyond the first `Columns` of a record is touched.
 template <int Columns, int W>
 GYRE_INLINE void scatter(float* base, const std::int32_t* indices, const Wide<W>* in) {
   if constexpr (W == 1) {

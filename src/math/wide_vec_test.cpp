@@ -1,4 +1,4 @@
-// Wide vectors have the bits of the scalar ones; gather and scatter move exactly the records they are asked to.
+// Wide vectors have the bits of the scalar ones; gather and scatter move exactly the given records.
 #include "math/wide_vec.h"
 
 #include "random.h"
@@ -34,7 +34,7 @@ TEST(WideVec, RotationVectorsAreThoseOfTheQuaternions) {
   Random random;
   const auto expect_same = [](Quat q) {
     const Vec3 wide = lane(to_rotation_vector(QuatW<4>{q.x, q.y, q.z, q.w}), 3), one = to_rotation_vector(q);
-    // Half a turn one way is half a turn the other way.
+    // A rotation by pi about an axis equals that about the opposite axis.
     const bool is_half = std::abs(q.w) < 1.0e-6f;
     const float apart = is_half ? std::min(length(wide - one), length(wide + one)) : length(wide - one);
     EXPECT_LT(apart, 2.0e-6f + 1.0e-6f * length(one)) << q.x << " " << q.y << " " << q.z << " " << q.w;
@@ -140,7 +140,7 @@ TEST(WideVec, IntegrationFollowsTheDoubleOne) {
   for (int round = 0; round < 4000; ++round) {
     const Quat q = normalized(
         Quat{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)});
-    // Tiny, ordinary and whole turns.
+    // Tiny, ordinary and full rotations.
     const float size = std::pow(10.0f, random.between(-12, 1.5f));
     const Vec3 turn = size * random.vector();
     const QuatW<1> found = integrate_rotation(QuatW<1>{q.x, q.y, q.z, q.w}, Vec3W<1>{turn.x, turn.y, turn.z});
@@ -231,7 +231,7 @@ void expect_moves() {
   expect_scatter<16, W>();
 }
 
-// The wider ones are compared with these in wide_test.cpp.
+// The other widths are compared with these in wide_test.cpp.
 TEST(WideVec, GatherAndScatterMoveTheirRecordsOnly) {
   expect_moves<1>();
   expect_moves<4>();

@@ -54,10 +54,10 @@ void CollisionBodies::look_at(std::uint32_t i) {
   body.center = mass.center;
   body.linear_velocity = motion.linear_velocity;
   body.angular_velocity = motion.angular_velocity;
-  body.reach = mass.reach;
+  body.bounding_radius = mass.reach;
   body.awake = may_move(w_, i);
   looks_[i] = make_collision_body(body, seconds_);
-  centers_[i] = {body.center, body.reach};
+  centers_[i] = {body.center, body.bounding_radius};
   awake_[i] = body.awake ? 1 : 0;
 }
 

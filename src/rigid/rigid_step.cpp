@@ -135,7 +135,7 @@ void freeze(RigidWorld& w, std::uint32_t body) {
 // Contacts of a body that woke after they were asked: what may stop it there.
 void collect_ccd_blockers(RigidWorld& w, std::uint32_t body) {
   for_each_contact_of_body(w, body, [&](std::uint32_t slot) {
-    if (blocks_fast_bodies(w.contacts.contacts[slot], w.shapes.proxies)) w.touches.may_stop.set(slot);
+    if (blocks_fast_bodies(w.contacts.contacts[slot], w.shapes.proxies)) w.touches.ccd_blockers.set(slot);
   });
 }
 
@@ -225,7 +225,7 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
   const CollideInput input{w.shapes.colliders, bodies.collision_bodies(), bodies.centers(), bodies.awake(),
                            w.shapes.proxies,   w.awake_links.contacts,    recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
-  remove_internal_edge_contacts(w.contacts, input, w.touches.beside_resting, arena, tasks, w.internal_edges);
+  remove_internal_edge_contacts(w.contacts, input, w.touches.on_static, arena, tasks, w.internal_edges);
 }
 
 void link_islands(RigidWorld& w) {

@@ -15,7 +15,7 @@ struct ContinuousScratch {
   Array<SavedMotion> kept;
   Array<std::uint32_t> found;
   Bitset listed;
-  Bitset near_stops;  // by shape
+  Bitset near_blockers;  // by shape
   ContinuousCollision collision;
   Array<GatePair> gates;
   Array<std::uint32_t> moved;  // bodies that follow others by joints

@@ -41,17 +41,18 @@ void choose_color(std::span<const ColoringPair> pairs, std::span<const std::uint
   if (b_moves) out.masks[b] |= bit(color);
 }
 
-// Neighbours by name that choose one after the other.
+// Constraints with neighbouring names that choose one after the other.
 constexpr std::uint32_t kRun = 32;
 
-// The order in which constraints choose: ascending, but in half of the runs, by lot, descending.
-void turn_runs(std::span<const std::uint32_t> names, std::span<std::uint32_t> order) {
+// The order in which constraints choose: ascending, but descending in a random half of the runs.
+void order_runs(std::span<const std::uint32_t> names, std::span<std::uint32_t> order) {
   for (std::size_t begin = 0; begin < names.size();) {
     const std::uint32_t run = names[begin] / kRun;
     std::size_t end = begin;
-    for (; end < names.size() && names[end] / kRun == run; ++end) order[end] = static_cast<std::uint32_t>(end);
-    const std::span<std::uint32_t> chosen = order.subspan(begin, end - begin);
-    if ((mix_bits(run) & 1) != 0) std::reverse(chosen.begin(), chosen.end());
+    for (; end < names.size() && names[end] / kRun == run; ++end)
+      order[end] = static_cast<std::uint32_t>(end);
+    const std::span<std::uint32_t> members = order.subspan(begin, end - begin);
+    if ((mix_bits(run) & 1) != 0) std::reverse(members.begin(), members.end());
     begin = end;
   }
 }
@@ -71,8 +72,8 @@ void group_by_color(int group_count, Coloring& out) {
 }  // namespace
 
 void color_constraints(std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
-                       std::uint32_t body_count, std::span<const std::uint64_t> is_static, const ColoringOptions& options,
-                       Coloring& out) {
+                       std::uint32_t body_count, std::span<const std::uint64_t> is_static,
+                       const ColoringOptions& options, Coloring& out) {
   GYRE_ASSERT(names.empty() || names.size() == pairs.size(), "each constraint has a name, or none has");
   GYRE_ASSERT(options.max_colors >= 1 && options.max_colors <= ColoringOptions::kMaxColors,
               "a body's used colours fit in 64 bits");
@@ -82,7 +83,7 @@ void color_constraints(std::span<const ColoringPair> pairs, std::span<const std:
   if (names.empty()) {
     for (std::uint32_t i = 0; i < pairs.size(); ++i) choose_color(pairs, is_static, options, i, out);
   } else {
-    turn_runs(names, out.order);
+    order_runs(names, out.order);
     for (const std::uint32_t i : out.order) choose_color(pairs, is_static, options, i, out);
   }
   group_by_color(options.max_colors + 1, out);
@@ -96,7 +97,7 @@ bool validate_coloring(std::span<const ColoringPair> pairs, std::uint32_t body_c
   if (coloring.group_count() != groups || coloring.offsets[0] != 0) return false;
   if (coloring.offsets.back() != pairs.size()) return false;
 
-  // Which group had the body last; groups count from one here.
+  // The last group with the body; groups count from one here.
   Array<std::uint32_t> seen;
   seen.resize(body_count);
   for (int g = 0; g < groups; ++g) {

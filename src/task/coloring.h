@@ -1,9 +1,10 @@
-// Graph colouring: puts constraints into groups in which no two share a moving body, so that a group can be solved by
-// many lanes and workers at once without their order mattering. Greedy, with one 64-bit mask of used
-// colours a body; a pure function of its input, nothing is kept from step to step.
+// Graph colouring: divides constraints into groups in which no two share a moving body, so that many lanes and workers
+// can solve a group at once in any order. Greedy, with one 64-bit mask of used colours a body. A pure function of its
+// input; nothing is kept between steps.
 //
-// Greedy colouring needs at most one colour more than the two bodies have other constraints together. Constraints that
-// find no colour free (a body with a great many contacts) form the overflow group, to be solved one after the other.
+// Greedy colouring needs at most one colour more than the two bodies have other constraints together. Constraints
+// without a free colour (of a body with very many contacts) form the overflow group, which is solved one after the
+// other.
 #pragma once
 
 #include "base/container/array.h"
@@ -14,8 +15,8 @@
 
 namespace gyre {
 
-// What a constraint acts on: two bodies (or particles, or whatever must not be written twice). kNone, or one that is
-// static, is only read and never conflicts.
+// The two bodies of a constraint, or other things that must not be written twice. kNone and static bodies are only read
+// and never conflict.
 struct ColoringPair {
   static constexpr std::uint32_t kNone = 0xffffffff;
 
@@ -27,15 +28,15 @@ struct ColoringOptions {
   static constexpr int kMaxColors = 64;
 
   int max_colors = 32;  // 1 to kMaxColors
-  // Constraints with just one moving body are coloured from the top colour downward, so they are solved last: contacts
-  // with the ground then have the last word, and the ground is what must not be sunk into.
+  // Constraints with one moving body are coloured from the top colour downward, so they are solved last: contacts with
+  // the ground have the last word, since nothing must sink into the ground.
   bool statics_last = false;
 };
 
 // The groups, and the memory to find them; kept by the caller so that a warm step allocates nothing.
 struct Coloring {
   Array<std::uint8_t> color;     // by constraint; max_colors is the overflow group
-  Array<std::uint32_t> order;    // constraints by group, in each ascending
+  Array<std::uint32_t> order;    // constraints by group, ascending in each
   Array<std::uint32_t> offsets;  // group g is order[offsets[g]] to before order[offsets[g + 1]]
   Array<std::uint64_t> masks;    // by body: colours used
 
@@ -47,19 +48,20 @@ struct Coloring {
   }
 };
 
-// `is_static`: bits by body, 64 to a word (Bitset::words()); bodies beyond its end move. Every body that is not kNone is
-// below body_count.
+// `is_static`: bits by body, 64 to a word (Bitset::words()); bodies beyond its end move. Every body that is not kNone
+// is below body_count.
 //
-// `names`: an ascending number for each constraint; none: constraints choose in input order. Colours are solved one after the other, and
-// what comes first bears a little more. In the order in which a wall was built each brick's left neighbour comes before its right one, and
-// the whole wall leans. So runs of neighbours by name choose forward or backward by lot (the first forward), which favours no direction,
-// and still goes from the ground up. A name must stay from step to step: impulses are carried over, and if their order changes they drive
-// what they should hold.
+// `names`: an ascending number for each constraint; if empty, constraints choose in input order. Colours are solved one
+// after the other, and early constraints bear a little more load. In the order in which a wall was built, each brick's
+// left neighbour comes before its right one, and the whole wall would lean. So runs of neighbouring names choose
+// forward or backward at random (the first run forward), which favours no direction and still goes from the ground up.
+// Names must not change between steps: in a new order the impulses that are carried over would drive bodies that they
+// should hold.
 void color_constraints(std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
                        std::uint32_t body_count, std::span<const std::uint64_t> is_static,
                        const ColoringOptions& options, Coloring& out);
 
-// Whether each constraint is in one group, groups are ascending, and no colour has a moving body twice.
+// True if each constraint is in one group, groups are ascending, and no colour has a moving body twice.
 bool validate_coloring(std::span<const ColoringPair> pairs, std::uint32_t body_count,
                        std::span<const std::uint64_t> is_static, const ColoringOptions& options,
                        const Coloring& coloring);

@@ -1,4 +1,4 @@
-// Colourings are valid for random graphs, use few colours where few are enough, and depend on the input alone.
+// Colourings are valid for random graphs, use few colours if few are enough, and depend on the input alone.
 #include "task/coloring.h"
 
 #include "base/container/bitset.h"
@@ -104,7 +104,7 @@ TEST(Coloring, ABusyBodyOverflows) {
 }
 
 TEST(Coloring, StaticsComeLast) {
-  // A pile: neighbours touch, and everyone touches the ground.
+  // A pile: neighbours touch, and all touch the ground.
   Pairs pairs;
   for (std::uint32_t i = 0; i < 50; ++i) {
     pairs.push_back({kNone, i});
@@ -123,7 +123,7 @@ TEST(Coloring, StaticsComeLast) {
   }
 }
 
-// A row of bricks on a row of bricks, each on two: which of these two chooses first.
+// A row of bricks on a row of bricks, each on two: counts those whose left contact chooses first.
 int bricks_with_left_before_right(std::span<const std::uint32_t> names_of_one_row, std::uint32_t rows) {
   const std::uint32_t width = static_cast<std::uint32_t>(names_of_one_row.size()) / 2;
   Pairs pairs;
@@ -139,7 +139,8 @@ int bricks_with_left_before_right(std::span<const std::uint32_t> names_of_one_ro
   EXPECT_TRUE(validate_coloring(pairs, (rows + 1) * (width + 1), {}, {}, coloring));
   EXPECT_LE(colors_used(coloring), 6);
   int left_first = 0;
-  for (std::size_t i = 0; i < pairs.size(); i += 2) left_first += coloring.color[i] < coloring.color[i + 1] ? 1 : 0;
+  for (std::size_t i = 0; i < pairs.size(); i += 2)
+    left_first += coloring.color[i] < coloring.color[i + 1] ? 1 : 0;
   return left_first;
 }
 
@@ -152,7 +153,7 @@ TEST(Coloring, RunsFavourNoDirection) {
 }
 
 TEST(Coloring, OtherConstraintsOfTheirOwnChangeNothing) {
-  // As where islands are solved together or each by itself: colours follow from names, not from places in the list.
+  // As for islands solved together or separately: colours follow from names, not from positions in the list.
   const std::uint32_t bodies = 40;
   const Pairs alone = random_pairs(300, bodies, 3);
   Pairs both;

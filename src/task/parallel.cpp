@@ -1,6 +1,6 @@
-// Each worker has a share of the blocks, the same part of them in every loop: what it has written in one loop over bodies or contacts
-// it finds in its own cache in the next, and takes its blocks from a counter that seldom leaves its core. Whoever is done takes
-// from the others' shares. See parallel.h.
+// Each worker has the same share of the blocks in every loop: it finds the data of its last loop over bodies or
+// contacts in its own cache, and its counter of blocks seldom leaves its core. A worker that is done takes blocks from
+// the shares of others. See parallel.h.
 #include "task/parallel.h"
 
 #include <atomic>
@@ -23,7 +23,7 @@ void run_blocks(TaskSystem& tasks, int blocks, FunctionRef<void(int block, int w
   tasks.run_claiming([&](int worker) {
     for (int i = 0; i < workers; ++i) {
       Share& share = shares[share_to_visit(worker, i, workers)];
-      // Looked at before it is written to: shares of others are mostly done.
+      // Read before it is written: shares of others are mostly done.
       while (share.next.load(std::memory_order_relaxed) < share.end) {
         const std::uint32_t block = share.next.fetch_add(1, std::memory_order_relaxed);
         if (block >= share.end) break;

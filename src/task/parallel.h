@@ -1,6 +1,6 @@
-// Loops in blocks. A block is a fixed number of items, never a share of a thread count, so what a block computes does not
-// depend on how many workers there are; and a block writes only its own results, so neither does their order. Blocks are
-// claimed one by one from a shared counter. Once warm, nothing here allocates.
+// Parallel loops in blocks. A block is a fixed number of items, so its result does not depend on the number of workers;
+// it writes only its own results, so their order does not matter either. Blocks are claimed one by one from a shared
+// counter. Once warm, nothing here allocates.
 #pragma once
 
 #include "base/check.h"
@@ -22,8 +22,8 @@ constexpr int count_blocks(int count, int block_size) {
   return count / block_size + (count % block_size != 0 ? 1 : 0);
 }
 
-// Calls fn(int begin, int end, int worker) for every block of [0, count). Serial with one worker or one block, and then
-// in ascending order.
+// Calls fn(int begin, int end, int worker) for every block of [0, count). With one worker or one block the calls are
+// serial, in ascending order.
 template <class Fn>
 void for_blocks(TaskSystem& tasks, int count, int block_size, Fn&& fn) {
   GYRE_ASSERT(count >= 0 && block_size > 0, "blocks have a positive size");
@@ -41,18 +41,18 @@ void for_blocks(TaskSystem& tasks, int count, int block_size, Fn&& fn) {
   run_blocks(tasks, blocks, run_block);
 }
 
-// Does pieces of work that have nothing to do with each other, and of which at most one uses what belongs to the thread that
-// starts work; with one worker one after the other.
+// Runs independent pieces of work in parallel. At most one of them may use data of the thread that starts work. With
+// one worker they run one after the other.
 template <class... Pieces>
 void run_parallel(TaskSystem& tasks, Pieces&&... pieces) {
-  for_blocks(tasks, static_cast<int>(sizeof...(pieces)), 1, [&](int wanted, int, int) {
+  for_blocks(tasks, static_cast<int>(sizeof...(pieces)), 1, [&](int index, int, int) {
     int piece = 0;
-    ((piece++ == wanted ? pieces() : void()), ...);
+    ((piece++ == index ? pieces() : void()), ...);
   });
 }
 
-// Combines map(int begin, int end, int worker) of every block into one value: combine(...combine(init, first)..., last),
-// in block order whatever the workers did, so that sums of floats have the same bits. T is plain data.
+// Combines map(int begin, int end, int worker) of every block into one value: combine(...combine(init, first)...,
+// last), always in block order, so that sums of floats have the same bits. T is plain data.
 template <class T, class Map, class Combine>
 T reduce_blocks(TaskSystem& tasks, int count, int block_size, T init, Map&& map, Combine&& combine) {
   static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kMemoryAlign,

@@ -1,4 +1,4 @@
-// Lists of those among many that something is to be done for, found by all workers.
+// Lists of the indices for which a test holds, found by all workers, in ascending order.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -13,49 +13,50 @@ namespace gyre {
 
 struct FilteredList {
   std::span<const std::uint32_t> list;  // ascending
-  std::size_t size = 0;                 // of all of them
+  std::size_t size = 0;                 // sum over the list
 };
 
-// In blocks of one word of bits each: which numbers of a block were chosen, and how large they are together.
+// The result of a block of 64 indices: the bits of those that passed, their number, and the sum of their sizes.
 struct FilteredBlock {
   std::uint64_t bits = 0;
-  std::uint32_t numbers = 0, size = 0;
+  std::uint32_t count = 0, size = 0;
 
   void add(int bit, std::uint32_t how_large) {
     if (how_large == 0) return;
     bits |= std::uint64_t{1} << bit;
-    ++numbers;
+    ++count;
     size += how_large;
   }
 };
 
-// choose_block(begin, end) tells which of a block's numbers are chosen. The list is of `arena`.
+// filter_block(begin, end) returns the result of a block. The list lies in `arena`.
 FilteredList filter_by_blocks(TaskSystem& tasks, Arena& arena, std::size_t count,
-                              FunctionRef<FilteredBlock(std::uint32_t, std::uint32_t)> choose_block);
+                              FunctionRef<FilteredBlock(std::uint32_t, std::uint32_t)> filter_block);
 
-// Those numbers below `count` whose size is not zero: size_of(number), asked of each once, may tell yes or no only. The list is of
-// `arena`.
+// The indices below `count` whose size is not zero. size_of(index) is called once for each and may return a bool. The
+// list lies in `arena`.
 template <class SizeOf>
 FilteredList parallel_filter(TaskSystem& tasks, Arena& arena, std::size_t count, SizeOf&& size_of) {
   return filter_by_blocks(tasks, arena, count, [&](std::uint32_t begin, std::uint32_t end) {
-    FilteredBlock chosen;
-    for (std::uint32_t i = begin; i < end; ++i) chosen.add(int(i - begin), size_of(i));
-    return chosen;
+    FilteredBlock block;
+    for (std::uint32_t i = begin; i < end; ++i) block.add(int(i - begin), size_of(i));
+    return block;
   });
 }
-// The same, of those in all of the sets; only they are asked.
+// The same for the indices in all of the sets; size_of is called for these only.
 template <class SizeOf, class... More>
 FilteredList parallel_filter_among(TaskSystem& tasks, Arena& arena, SizeOf&& size_of, const Bitset& set,
                                    const More&... more) {
   std::size_t size = set.size();
   ((size = more.size() < size ? more.size() : size), ...);
   return filter_by_blocks(tasks, arena, size, [&](std::uint32_t begin, std::uint32_t) {
-    FilteredBlock chosen;
-    for (std::uint64_t left = (set.words()[begin / 64] & ... & more.words()[begin / 64]); left != 0; left &= left - 1) {
+    FilteredBlock block;
+    for (std::uint64_t left = (set.words()[begin / 64] & ... & more.words()[begin / 64]); left != 0;
+         left &= left - 1) {
       const int bit = std::countr_zero(left);
-      chosen.add(bit, size_of(begin + std::uint32_t(bit)));
+      block.add(bit, size_of(begin + std::uint32_t(bit)));
     }
-    return chosen;
+    return block;
   });
 }
 

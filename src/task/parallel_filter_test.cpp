@@ -1,4 +1,4 @@
-// The same list for any number of workers, ascending, with the sizes of those that are in it.
+// The same list for any number of workers, ascending, with the sum of its sizes.
 #include "task/parallel_filter.h"
 
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@ TEST(Choose, SameListForAnyWorkers) {
     for (const int workers : {1, 2, 5}) {
       TaskSystem tasks(workers);
       Arena arena;
-      const FilteredList chosen =
+      const FilteredList block =
           parallel_filter(tasks, arena, count, [](std::uint32_t i) { return i % 7 % 3; });
-      EXPECT_EQ(std::vector<std::uint32_t>(chosen.list.begin(), chosen.list.end()), expected);
-      EXPECT_EQ(chosen.size, size);
+      EXPECT_EQ(std::vector<std::uint32_t>(block.list.begin(), block.list.end()), expected);
+      EXPECT_EQ(block.size, size);
     }
   }
 }

@@ -1,4 +1,4 @@
-// Blocks are the same whatever the number of workers, each is run once, and sums have the same bits.
+// Blocks are the same for any number of workers, each runs once, and sums have the same bits.
 #include "task/parallel.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,8 @@ TEST(ForBlocks, PlainWritesAreSeenAfterwards) {
   }
 }
 
-// A host that has one thread, and begins with the last worker: it does its own share first, then those of the others.
+// A host with one thread that begins with the last worker: each worker does its own share first, then those of the
+// others.
 TEST(ForBlocks, WorkersBeginWithTheirShareInEveryLoop) {
   const HostTasks host{.run =
                            [](void*, int count, void (*task)(void*, int), void* context) {

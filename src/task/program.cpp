@@ -1,11 +1,12 @@
-// The stage runner. The blocks of a stage are cut into one share per worker. A share is one atomic word: the stage it
-// belongs to and the next block of it; what is left of an earlier stage is a share that nobody has begun, and a worker that comes
-// late to a stage sees by the number that the share is not for it any more. Whoever finishes the last block of a stage does the
-// small stages that follow alone and lets the others go on. A barrier therefore waits for blocks, never for workers: one
-// that was not woken yet, or has lost its core between blocks, holds up nobody.
+// The stage runner. The blocks of a stage are divided into one share per worker. A share is one atomic word: the number
+// of its stage and its next block. A share of an earlier stage counts as not begun, and a worker that comes late to a
+// stage sees by the number that the share belongs to a later one. The worker that finishes the last block of a stage
+// also runs the small stages that follow and then releases the others. So a barrier waits for blocks, never for
+// workers: a worker that has not woken yet, or has lost its core between blocks, delays nobody.
 //
-// A line that another core wrote takes longer to come than a small block takes to do. So a stage's end is one word, which who comes last
-// changes and who waits sees, and a share's own worker finds it in its own cache.
+// A cache line written by another core takes longer to arrive than a small block takes to run. So the end of a stage is
+// one word, which the last worker changes and waiting workers read, and each worker finds its own share in its own
+// cache.
 #include "task/program.h"
 
 #include "base/float_mode.h"
@@ -27,8 +28,8 @@ void run_alone(const Stage& stage, int worker) {
   if (stage.block_count > 0) stage.kernel(stage.context, 0, stage.block_count, worker);
 }
 
-// How many blocks are taken at once of so many. Small ones are alike: half of them, so that a share is taken in few goes and
-// there is still something left for others if its worker is held up.
+// The number of blocks to claim at once. Small blocks are alike: half of them, so that a share needs few claims and
+// others can still help if its worker is delayed.
 std::uint64_t blocks_at_once(const Stage& stage, std::uint64_t left) {
   const std::uint64_t claim = static_cast<std::uint64_t>(claim_of(stage));
   if (claim == 1) return 1;
@@ -38,7 +39,7 @@ std::uint64_t blocks_at_once(const Stage& stage, std::uint64_t left) {
 
 class Runner {
  public:
-  // The first and the last stage are not small.
+  // The first and the last stage must not be small.
   Runner(std::span<const Stage> stages, const TaskSystem& tasks)
       : stages_(stages), worker_count_(tasks.worker_count()), patience_(tasks.spin_patience()) {
     for (int w = 0; w < worker_count_; ++w)
@@ -58,7 +59,7 @@ class Runner {
   }
 
  private:
-  // On a cache line of its own: stage number in the high half, next block in the low one.
+  // In a cache line of its own: the stage number in the high half, the next block in the low half.
   struct alignas(64) Share {
     std::atomic<std::uint64_t> next;
   };
@@ -80,7 +81,7 @@ class Runner {
     state_.store(pack(index, blocks), std::memory_order_release);
   }
 
-  // Takes blocks of a share until there are none; the number taken.
+  // Runs blocks of a share until none is left; returns their number.
   int run_share(std::uint32_t index, int owner, int worker) {
     const Stage& stage = stages_[index];
     const std::uint64_t first = pack(index, begin_of(stage, owner)),
@@ -89,17 +90,18 @@ class Runner {
     std::uint64_t now = next.load(std::memory_order_relaxed);
     int done = 0;
     for (;;) {
-      const std::uint64_t from = now < first ? first : now;  // nobody has begun it
+      const std::uint64_t from = now < first ? first : now;  // not begun
       if (from >= end) return done;
-      const std::uint64_t taken = blocks_at_once(stage, end - from);
-      if (!next.compare_exchange_weak(now, from + taken, std::memory_order_relaxed)) continue;
+      const std::uint64_t claimed = blocks_at_once(stage, end - from);
+      if (!next.compare_exchange_weak(now, from + claimed, std::memory_order_relaxed)) continue;
       const int block = static_cast<int>(from & 0xffffffff);
-      stage.kernel(stage.context, block, block + static_cast<int>(taken), worker);
-      done += static_cast<int>(taken);
+      stage.kernel(stage.context, block, block + static_cast<int>(claimed), worker);
+      done += static_cast<int>(claimed);
       now = next.load(std::memory_order_relaxed);
     }
   }
-  // So many blocks are done. Whether they were the last: then the small stages that follow are, too, and the next large one has begun.
+  // Records finished blocks. True if they were the last of the stage; the small stages that follow are then done too,
+  // and the next large one has begun.
   bool finish(std::uint32_t index, int done, int worker) {
     if (done == 0) return false;
     const std::uint64_t before =
@@ -121,7 +123,7 @@ class Runner {
   std::span<const Stage> stages_;
   int worker_count_;
   int patience_;
-  // The stage that is being done, and its blocks that are not done.
+  // The current stage and the number of its unfinished blocks.
   alignas(64) std::atomic<std::uint64_t> state_{0};
   Share shares_[TaskSystem::kMaxWorkers];
 };

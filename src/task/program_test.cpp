@@ -1,5 +1,5 @@
-// Stages in order, each block once, whatever the workers: with more workers than cores, with a host that runs tasks one
-// after the other, and with plain memory between stages, so that the thread sanitizer can judge the barrier.
+// Stages run in order and each block once, with more workers than cores, with a host that runs tasks one after the
+// other, and with plain memory between stages, so that the thread sanitizer can judge the barrier.
 #include "task/program.h"
 
 #include "base/memory/memory.h"
@@ -16,8 +16,8 @@
 namespace gyre {
 namespace {
 
-// Values that each stage makes from neighbours' values of the stage before: any block too early, too late, twice or
-// never changes the end, and every element is read by other workers than wrote it.
+// Each stage computes values from neighbours' values of the stage before. Any block too early, too late, twice or never
+// changes the end, and every element is read by other workers than wrote it.
 struct Wave {
   std::vector<std::uint32_t> from, to;
   std::uint32_t salt = 0;
@@ -91,7 +91,8 @@ TEST(Program, SameResultForAnyShares) {
   }
 }
 
-// A host that calls its workers one after the other shows which blocks each begins with: the first does its own share, then the others'.
+// A host that calls its workers one after the other shows the blocks with which each begins: its own share first, then
+// the others'.
 TEST(Program, SharesBeginWhereTheirBoundsSay) {
   const HostTasks host{
       .run = [](void*, int, void (*task)(void*, int), void* context) { task(context, 1), task(context, 0); },
@@ -135,7 +136,7 @@ TEST(Program, HostWithFewerThreadsThanWorkers) {
   }
 }
 
-// Counts calls per block, and notes the order of stages.
+// Counts calls per block, and records the order of stages.
 struct Ledger {
   std::vector<int> blocks;
   Ledger* before = nullptr;
@@ -175,7 +176,7 @@ TEST(Program, RandomTablesRunEachBlockOnceInOrder) {
         check.blocks.resize(1 + random() % 4);
         check.before = &work;
         stages.push_back({count_blocks_done, &work, blocks, static_cast<int>(random() % 9)});
-        // Several blocks in one claim: still one call on one worker.
+        // Several blocks in one claim are one call on one worker.
         stages.push_back({look_back, &check, static_cast<int>(check.blocks.size()), 4});
       }
       run_program(tasks, stages);
@@ -228,7 +229,7 @@ TEST(Program, OneWorkerMakesOneCallAStage) {
 
 void add_time(void* context, int begin, int end, int) {
   for (int i = begin; i < end; ++i) {
-    // One block is much longer than the others: the rest of its share must go to other workers.
+    // One block is much longer than the others: other workers must take the rest of its share.
     if (i == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     static_cast<std::atomic<int>*>(context)->fetch_add(1);
   }

@@ -1,8 +1,8 @@
-// How a worker waits for another without sleeping: pauses first, then gives its core away, so that more workers than
-// cores still get on.
+// Waiting without sleep: a worker pauses first and later yields its core, so that more workers than cores still make
+// progress.
 #pragma once
 
-// Whether the platform has threads at all.
+// Defined as 1 if the platform has threads.
 #if (defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)) || \
     (defined(__wasi__) && !defined(_REENTRANT))
 #define GYRE_HAS_THREADS 0
@@ -30,8 +30,8 @@ inline void cpu_pause() {
 #endif
 }
 
-// One wait: call pause() each time round. After `patience` pauses whoever is waited for has probably lost its core, so
-// each further one gives this core away.
+// Waits in a loop: call pause() in each iteration. After `patience` pauses the awaited worker has probably lost its
+// core, so each further call yields this core.
 class Spin {
  public:
   explicit Spin(int patience) : patience_(patience) {}

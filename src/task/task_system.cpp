@@ -1,6 +1,6 @@
-// The own pool: threads that wait for a job, spinning a little before they sleep, since the next stage of a step comes
-// soon. One atomic word, the gate, says which job there is, whether it still takes workers, and how many are in it, so
-// that a worker can never enter a job that its owner has left.
+// The engine's own pool: threads that wait for a job and spin a little before they sleep, since the next stage of a
+// step comes soon. One atomic word, the gate, holds the number of the job, whether it still admits workers, and how
+// many are in it, so that a worker can never enter a job that its owner has left.
 #include "task/task_system.h"
 
 #include "base/float_mode.h"
@@ -23,7 +23,7 @@ using WorkerFn = FunctionRef<void(int worker)>;
 
 namespace {
 
-// Some 20 to 100 microseconds, about what waking a thread takes; and almost nothing.
+// About 20 to 100 microseconds, as long as waking a thread takes; and almost nothing.
 constexpr int kPatient = 2000;
 constexpr int kImpatient = 20;
 
@@ -36,9 +36,9 @@ int machine_cores() {
 int machine_cores() { return 1; }
 #endif
 
-int clamp_workers(int wanted) {
-  if (!GYRE_HAS_THREADS || wanted < 1) return 1;
-  return wanted < TaskSystem::kMaxWorkers ? wanted : TaskSystem::kMaxWorkers;
+int clamp_workers(int count) {
+  if (!GYRE_HAS_THREADS || count < 1) return 1;
+  return count < TaskSystem::kMaxWorkers ? count : TaskSystem::kMaxWorkers;
 }
 
 int patience_of(int worker_count) { return worker_count <= machine_cores() ? kPatient : kImpatient; }
@@ -49,8 +49,8 @@ int patience_of(int worker_count) { return worker_count <= machine_cores() ? kPa
 
 namespace {
 
-// A core that is offered comes back at once, or later than this.
-constexpr std::chrono::microseconds kTaken{20};
+// A yielded core comes back at once, or later than this.
+constexpr std::chrono::microseconds kCoreTaken{20};
 
 // The gate: job number, open flag, workers inside.
 constexpr std::uint64_t kJob = std::uint64_t{1} << 32;
@@ -79,14 +79,14 @@ struct TaskSystem::Pool {
     for (std::thread& thread : threads) thread.join();
   }
 
-  // The owner: opens a job, takes part, closes it and waits for those inside.
+  // The owner: opens a job, takes part, closes it and waits for the workers inside.
   void run(const WorkerFn& fn, bool all) {
     job = fn;
     all_needed = all;
     if (all) finished.store(0, std::memory_order_relaxed);
     bool somebody_sleeps = false;
     {
-      // Under the lock, so that nobody falls asleep between looking at the gate and waiting.
+      // Under the lock, so that no worker falls asleep between its check of the gate and its wait.
       const std::lock_guard<std::mutex> lock(mutex);
       const std::uint64_t number = job_of(gate.load(std::memory_order_relaxed)) + 1;
       gate.store(number * kJob | kOpen, std::memory_order_release);
@@ -104,7 +104,7 @@ struct TaskSystem::Pool {
 
   static void no_work(int) {}
 
-  // A helper's whole life.
+  // The loop of a helper thread.
   void serve(int worker) {
     std::uint64_t seen = 0;
     for (;;) {
@@ -126,7 +126,7 @@ struct TaskSystem::Pool {
       const std::uint64_t number = job_of(gate.load(std::memory_order_acquire));
       if (number != seen) return number;
       if (spin.patient()) spin.pause();
-    } while (spin.patient() || may_wait_on());
+    } while (spin.patient() || should_stay_awake());
     std::unique_lock<std::mutex> lock(mutex);
     ++sleepers;
     std::uint64_t number = job_of(gate.load(std::memory_order_acquire));
@@ -138,16 +138,15 @@ struct TaskSystem::Pool {
     return number;
   }
 
-  // Whether a worker that lost its patience stays awake: within a step, and while nobody else wants its core, for who does has it for
-  // a while if it is offered.
-  bool may_wait_on() const {
+  // True if a worker without patience stays awake: within a step, while no other thread takes the yielded core.
+  bool should_stay_awake() const {
     if (!stay_awake.load(std::memory_order_relaxed)) return false;
     const auto offered = std::chrono::steady_clock::now();
     std::this_thread::yield();
-    return std::chrono::steady_clock::now() - offered < kTaken;
+    return std::chrono::steady_clock::now() - offered < kCoreTaken;
   }
 
-  // One more inside, unless the job has been closed meanwhile.
+  // Enters the job, unless it has been closed meanwhile.
   bool enter(std::uint64_t number) {
     std::uint64_t now = gate.load(std::memory_order_relaxed);
     while (job_of(now) == number && (now & kOpen) != 0) {
@@ -157,11 +156,11 @@ struct TaskSystem::Pool {
     return false;
   }
 
-  // Side by side, since a line that another core wrote takes longer to come than much of the work takes to do.
+  // In one cache line, since a line written by another core takes longer to arrive than much of the work takes.
   alignas(64) std::atomic<std::uint64_t> gate{0};
-  WorkerFn job = no_work;   // written before the gate opens, read inside
-  bool all_needed = false;  // as the job
-  alignas(64) std::atomic<int> finished{0};  // helpers that have done a job which all are needed for
+  WorkerFn job = no_work;                    // written before the gate opens, read inside
+  bool all_needed = false;                   // of the job
+  alignas(64) std::atomic<int> finished{0};  // helpers that have finished a job with all_needed
   alignas(64) std::atomic<bool> stay_awake{false};
   std::atomic<bool> stopping{false};
   const int patience;
@@ -196,8 +195,7 @@ TaskSystem::~TaskSystem() = default;
 
 void TaskSystem::stay_awake(bool yes) {
 #if GYRE_HAS_THREADS
-  if (pool_ != nullptr && spin_patience_ == kPatient)
-    pool_->stay_awake.store(yes, std::memory_order_relaxed);
+  if (pool_ != nullptr && spin_patience_ == kPatient) pool_->stay_awake.store(yes, std::memory_order_relaxed);
 #else
   (void)yes;
 #endif

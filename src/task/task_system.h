@@ -1,8 +1,8 @@
-// TaskSystem: the workers of a world. Either an own pool of threads, which sleep between steps, or the host
+// TaskSystem: the workers of a world. They are an own pool of threads, which sleep between steps, or the host
 // application's pool through its HostTasks; with one worker everything is a plain call. With an own pool the calling
-// thread is worker 0. What runs where never shows in a result: see parallel.h and program.h.
+// thread is worker 0. The assignment of work never shows in a result: see parallel.h and program.h.
 //
-// Each worker computes in FloatMode while it runs something. Where the platform has no threads there is one worker.
+// Each worker computes in FloatMode. On a platform without threads there is one worker.
 #pragma once
 
 #include "base/container/array.h"
@@ -17,7 +17,7 @@ namespace gyre {
 
 class TaskSystem {
  public:
-  // Anything that is kept for each worker needs at most this many.
+  // The largest number of workers, for arrays with one element each.
   static constexpr int kMaxWorkers = 64;
 
   // `threads` workers, the caller included, up to kMaxWorkers; 0 = as many as the machine has cores.
@@ -30,23 +30,23 @@ class TaskSystem {
 
   int worker_count() const { return worker_count_; }
 
-  // Pauses a waiting worker makes before it offers its core to others: few when workers outnumber cores.
+  // Pauses that a waiting worker makes before it yields its core: few if workers outnumber cores.
   int spin_patience() const { return spin_patience_; }
 
   // Calls fn(worker) once for each worker in [0, worker_count()) and returns when all are done. They may run at the same
   // time or one after the other (a host's pool may have fewer threads), so none may wait for another.
   void run_workers(FunctionRef<void(int worker)> fn);
 
-  // For an fn that takes work from a shared list until none is left: calls it as worker 0, and as other workers for as
-  // long as that call lasts. A worker that wakes too late is not waited for. Returns when all calls are done.
+  // For an fn that takes work from a shared list until none is left: calls it as worker 0, and as other workers while
+  // that call lasts. It does not wait for workers that wake too late. Returns when all calls are done.
   void run_claiming(FunctionRef<void(int worker)> fn);
 
-  // Memory for what blocks hand to the end of a loop: at least `bytes`, aligned to 64, kept until the next call. For
-  // the thread that starts work, outside of it.
+  // Memory for partial results of a loop: at least `bytes`, aligned to 64, valid until the next call. For the thread
+  // that starts work, outside of it.
   std::byte* scratch(std::size_t bytes);
 
-  // While one of these lives, workers that have come once wait for more work without going to sleep: waking one takes as long as
-  // many stages of a step. Where workers outnumber cores they sleep as ever.
+  // While an object lives, workers that have come once wait for more work without sleep, since waking one takes as long
+  // as many stages of a step. If workers outnumber cores, they sleep as usual.
   class Busy {
    public:
     explicit Busy(TaskSystem& tasks) : tasks_(tasks) { tasks_.stay_awake(true); }
@@ -73,11 +73,11 @@ class TaskSystem {
   Array<std::byte> scratch_;
 };
 
-// Where a worker's share of `count` things begins, if shares are equal; that of the worker behind the last is `count`.
+// The begin of a worker's share of `count` items, if shares are equal; for the worker after the last it is `count`.
 constexpr int share_begin(int count, int worker, int workers) {
   return static_cast<int>(static_cast<long long>(count) * worker / workers);
 }
-// Whose share a worker takes from when it has been through `visited` of them: first its own, then those of the workers after it.
+// The share that a worker takes from after `visited` others: first its own, then those of the workers after it.
 constexpr int share_to_visit(int worker, int visited, int workers) {
   return worker + visited < workers ? worker + visited : worker + visited - workers;
 }

@@ -37,7 +37,7 @@ TEST(TaskSystem, CountsWorkers) {
 TEST(TaskSystem, EveryWorkerOnce) {
   for (int count = 1; count <= 16; ++count) {
     TaskSystem tasks(count);
-    // Plain ints: the sanitizer sees whether the end of a job orders what workers wrote.
+    // Plain ints: the thread sanitizer sees whether the end of a job orders the workers' writes.
     std::vector<int> calls(static_cast<std::size_t>(count));
     for (int job = 1; job <= 100; ++job) {
       tasks.run_workers([&](int worker) { ++calls[static_cast<std::size_t>(worker)]; });
@@ -92,7 +92,7 @@ TEST(TaskSystem, ComesAndGoes) {
   }
 }
 
-// By computing: fegetround() asks the x87 unit on x86, which nothing here uses.
+// By arithmetic: fegetround() asks the x87 unit on x86, which is unused here.
 bool rounds_to_nearest() {
   volatile float one = 1.0f, three = 3.0f;
   volatile float third = one / three, minus_third = -one / three;
@@ -103,7 +103,7 @@ TEST(TaskSystem, WorkersComputeInFloatMode) {
   ASSERT_TRUE(rounds_to_nearest());
   if (std::fesetround(FE_DOWNWARD) != 0) GTEST_SKIP() << "one rounding only";
   const bool before = rounds_to_nearest();
-  // Made now, so that its threads inherit the wrong mode.
+  // Made after the mode changed, so that its threads inherit the wrong mode.
   TaskSystem tasks(4);
   int wrong = 0;
   std::atomic<int> wrong_workers{0};
@@ -117,7 +117,7 @@ TEST(TaskSystem, WorkersComputeInFloatMode) {
   EXPECT_FALSE(after) << "the host's mode comes back";
 }
 
-// A host that runs tasks one after the other, last one first: the worst that the contract allows.
+// A host that runs tasks one after the other, the last one first: the worst case of the contract.
 struct BackwardHost {
   int jobs = 0;
   HostTasks door(int workers) {

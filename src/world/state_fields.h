@@ -112,7 +112,7 @@ void for_each_field(T& r, F&& f) {
 template <Is<Contact> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.shape_a), f(r.shape_b), f(r.body_a), f(r.body_b), f(r.first_manifold), f(r.manifold_room), f(r.manifold_count);
-  f(r.sensor), f(r.touching), f(r.recycled), f(r.ended), f(r.looked), f(r.size);
+  f(r.sensor), f(r.touching), f(r.recycled), f(r.ended), f(r.cached_distance), f(r.size);
   for_each_field(r.surface, f), for_each_field(r.cache, f), for_each_field(r.seen_a_from_b, f);
 }
 template <Is<ContactPointState> T, class F>

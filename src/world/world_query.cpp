@@ -98,7 +98,7 @@ WorldShape world_shape(const AnyShape& shape, const Pose& pose) {
 WorldShape world_shape(const ShapePose& shape) { return world_shape(shape.shape, shape.pose); }
 WorldShape world_shape(const ShapeCast& cast) {
   WorldShape out = world_shape(cast.shape, cast.pose);
-  out.way = cast.translation;
+  out.translation = cast.translation;
   out.skin = cast.skin;
   return out;
 }

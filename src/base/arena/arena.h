@@ -1,8 +1,8 @@
-// Arena: bump memory that lives for one step or less. make() hands out uninitialised arrays; reset() takes all of them back
-// at once and keeps the memory, as one block large enough for what the last step needed and some more, so that after the first
-// steps nothing is allocated any more. A part of a step may take back what it used by itself (ArenaScope), so that the parts use
-// the same memory one after the other. What was not needed for long is given back. One per worker: nothing here is shared
-// between threads.
+// Arena: bump memory that lives for one step or less. make() returns uninitialised arrays. reset() takes all of them
+// back at once and keeps the memory as one block, large enough for the last step and some more, so that after the first
+// steps nothing is allocated. ArenaScope takes back the memory of one stage, so that stages use the same memory one
+// after the other. Memory that was not needed for long is released. Each worker has its own arena; nothing here is
+// shared between threads.
 #pragma once
 
 #include "base/arena/shrink_policy.h"
@@ -24,9 +24,9 @@ class Arena {
   Arena& operator=(Arena&& other) noexcept;
   ~Arena();
 
-  // `count` uninitialised elements, aligned to 64 bytes, valid until reset(). The memory is good for whole cache lines:
-  // wide loads may read (not use) beyond the end up to the next multiple of 64 bytes. Where asserts are active it is
-  // filled with 0xff, which is NaN in any float, so that reading before writing shows.
+  // `count` uninitialised elements, aligned to 64 bytes, valid until reset(). Wide loads may read (not use) beyond the
+  // end up to the next multiple of 64 bytes. With asserts the memory is filled with 0xff, which is NaN in any float, so
+  // that a read before a write shows.
   template <class T>
   std::span<T> make(std::size_t count) {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>,
@@ -38,12 +38,12 @@ class Arena {
 
   // Takes back all memory handed out.
   void reset();
-  // The most that was out at once since the last reset, and that at least so much will be needed after the next: for arenas of
-  // which any may be given the work of another.
+  // The most bytes in use at once since the last reset. expect() raises this peak, for arenas that may get each other's
+  // work.
   std::size_t peak() const { return peak_ < bytes_used() ? bytes_used() : peak_; }
   void expect(std::size_t bytes) { peak_ = peak_ < bytes ? bytes : peak_; }
 
-  // A place to go back to: release() takes back what was handed out since then.
+  // A mark; release() takes back everything handed out since then.
   struct Mark {
     const void* block = nullptr;
     std::size_t used = 0;
@@ -51,13 +51,13 @@ class Arena {
   Mark mark() const { return {current_, used_}; }
   void release(Mark mark);
 
-  // Bytes handed out and not taken back, with rounding to whole cache lines; the most that ever was; bytes held.
+  // Bytes in use, in whole cache lines; the largest peak so far; bytes of all blocks.
   std::size_t bytes_used() const { return used_before_ + used_; }
   std::size_t high_water() const { return high_water_ < peak() ? peak() : high_water_; }
-  std::size_t bytes_held() const { return held_; }
+  std::size_t capacity() const { return capacity_; }
 
  private:
-  // Sits at the start of each block and takes one cache line of it.
+  // The header of a block, in its first cache line.
   struct Block {
     Block* previous;
     std::size_t used_in_previous;  // when this one was added
@@ -70,17 +70,17 @@ class Arena {
   void free_newest();
   void free_blocks();
 
-  Block* current_ = nullptr;     // the newest; older ones hang behind it and are full
+  Block* current_ = nullptr;     // the newest; older blocks are linked behind it and full
   std::size_t used_ = 0;         // of the current block
   std::size_t used_before_ = 0;  // of all older blocks
-  std::size_t held_ = 0;         // capacity of all blocks
+  std::size_t capacity_ = 0;     // capacity of all blocks
   std::size_t peak_ = 0;         // of this step, at the last release
   std::size_t high_water_ = 0;
   ShrinkPolicy clock_;
   bool grew_ = false;  // when it last took another block
 };
 
-// Takes back, at the end of a block of code, what was handed out in it.
+// Takes back, at the end of a scope, what was handed out in it.
 class ArenaScope {
  public:
   explicit ArenaScope(Arena& arena) : arena_(arena), mark_(arena.mark()) {}

@@ -44,7 +44,7 @@ TEST(Arena, WarmStepsDoNotAllocate) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-TEST(Arena, CountsWhatItGave) {
+TEST(Arena, CountsBytesInUse) {
   Arena arena;
   EXPECT_EQ(arena.bytes_used(), 0u);
   EXPECT_TRUE(arena.make<int>(0).empty());
@@ -53,7 +53,7 @@ TEST(Arena, CountsWhatItGave) {
   arena.make<std::uint8_t>(1000000);
   const std::size_t used = arena.bytes_used();
   EXPECT_EQ(used, 64u + 1000000u);
-  EXPECT_GE(arena.bytes_held(), used);
+  EXPECT_GE(arena.capacity(), used);
   arena.reset();
   EXPECT_EQ(arena.bytes_used(), 0u);
   EXPECT_EQ(arena.high_water(), used);
@@ -61,7 +61,7 @@ TEST(Arena, CountsWhatItGave) {
   EXPECT_EQ(arena.high_water(), used);
 }
 
-TEST(Arena, AScopeGivesItsMemoryToTheNext) {
+TEST(Arena, ScopesReuseMemory) {
   Arena arena;
   const auto step = [&arena] {
     arena.make<std::uint8_t>(1000);
@@ -81,7 +81,7 @@ TEST(Arena, AScopeGivesItsMemoryToTheNext) {
   step();
   EXPECT_EQ(arena.high_water(), 1024u + 100032u + 200000u);
   arena.reset();
-  EXPECT_LE(arena.bytes_held(), arena.high_water() / 16 * 17 + 128);
+  EXPECT_LE(arena.capacity(), arena.high_water() / 16 * 17 + 128);
   const std::uint64_t before = allocation_count();
   for (int i = 0; i < 5; ++i) {
     step();
@@ -90,17 +90,17 @@ TEST(Arena, AScopeGivesItsMemoryToTheNext) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-TEST(Arena, GivesBackWhatWasNotNeededForLong) {
+TEST(Arena, ReleasesMemoryUnusedForLong) {
   Arena arena;
   arena.make<std::uint8_t>(1 << 20);
   for (int i = 0; i < 200; ++i) {
     arena.reset();
     arena.make<std::uint8_t>(20000);
   }
-  EXPECT_LT(arena.bytes_held(), 30000u);
+  EXPECT_LT(arena.capacity(), 30000u);
 }
 
-TEST(Arena, GivesAllMemoryBack) {
+TEST(Arena, ReleasesAllMemory) {
   const std::uint64_t before = total_bytes();
   {
     Arena arena;

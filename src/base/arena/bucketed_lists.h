@@ -1,5 +1,5 @@
-// Lists of numbers of which all are found in one order and wanted by list: first it is counted how many each gets, then they are
-// filled in, and keep that order within each list.
+// Lists of numbers that are found in one order and needed by list: a counting sort. The first pass counts the items of
+// each list, the second fills the lists; each list keeps the order of its items.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -15,19 +15,19 @@ class BucketedLists {
     for (std::uint32_t& end : ends_) end = 0;
   }
   void count(std::uint32_t list) { ++ends_[list]; }
-  // After all were counted: where they are to stand.
+  // After all counts: allocates the items.
   void make_room(Arena& arena) { items_ = arena.make<std::uint32_t>(start_lists()); }
-  // The same where there is room already, for all of them or more.
+  // The same with memory of the caller, for all items or more.
   void make_room(std::span<std::uint32_t> room) { items_ = room.first(start_lists()); }
   void add(std::uint32_t list, std::uint32_t item) { items_[ends_[list]++] = item; }
-  // After all were added.
+  // After all items were added.
   std::span<const std::uint32_t> of(std::size_t list) const {
     const std::uint32_t begin = list == 0 ? 0 : ends_[list - 1];
     return items_.subspan(begin, ends_[list] - begin);
   }
 
  private:
-  // From here on each list's end is where its next item goes. Returns how many items there are.
+  // Turns each count into the index of the list's next item. Returns the number of items.
   std::uint32_t start_lists() {
     std::uint32_t sum = 0;
     for (std::uint32_t& end : ends_) {

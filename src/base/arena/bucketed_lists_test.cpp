@@ -1,4 +1,4 @@
-// Lists that are counted first hold what was added, in its order.
+// Lists that are counted first keep what was added, in the order of its addition.
 #include "base/arena/bucketed_lists.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::vector<std::uint32_t> items_of(const BucketedLists& lists, std::size_t list
   return {items.begin(), items.end()};
 }
 
-TEST(BucketedLists, HoldWhatWasAddedInItsOrder) {
+TEST(BucketedLists, KeepTheOrderOfAddition) {
   using Items = std::vector<std::uint32_t>;
   const std::uint32_t list_of[] = {2, 0, 2, 4, 0, 2};
   Arena arena;

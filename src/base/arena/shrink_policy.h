@@ -1,5 +1,5 @@
-// ShrinkPolicy: tells when memory that is kept from step to step was far too large for long, so that it can be given back. Only
-// large memory counts: a small world never gives anything back and so never has to take it again.
+// ShrinkPolicy: decides when memory that is kept between steps was far too large for long and should be released. It
+// ignores small memory, so a small world never releases any and never allocates it again.
 #pragma once
 
 #include "base/container/array.h"
@@ -11,44 +11,44 @@ namespace gyre {
 
 class ShrinkPolicy {
  public:
-  // To be called once a step, with the bytes that the step needed and those that are held: whether for kSteps steps no more
-  // than a quarter of them was needed. max_needed() then tells how much was.
-  bool rests(std::size_t needed, std::size_t held) {
-    if (held < kWorthGivingBack || needed > held / 4) {
+  // To be called once a step, with the bytes that the step needed and those allocated. True if for kSteps steps no more
+  // than a quarter was needed; max_needed() then gives the most.
+  bool should_shrink(std::size_t needed, std::size_t capacity) {
+    if (capacity < kWorthGivingBack || needed > capacity / 4) {
       steps_ = 0;
-      most_ = 0;
+      max_needed_ = 0;
       return false;
     }
-    most_ = most_ < needed ? needed : most_;
+    max_needed_ = max_needed_ < needed ? needed : max_needed_;
     if (++steps_ < kSteps) return false;
     steps_ = 0;
     return true;
   }
-  // Bytes; of the steps that the last rests() looked back on.
-  std::size_t max_needed() const { return most_; }
+  // Bytes, over the steps before the last should_shrink().
+  std::size_t max_needed() const { return max_needed_; }
 
-  // The same for an array that held `needed` elements in this step and is empty now: it gives back what it does not need.
+  // The same for an array that held `needed` elements in this step and is empty now; trims it.
   template <class T>
   void trim(Array<T>& array, std::size_t needed) {
-    if (!rests(needed * sizeof(T), array.bytes())) return;
-    array.trim(2 * most_ / sizeof(T));
+    if (!should_shrink(needed * sizeof(T), array.bytes())) return;
+    array.trim(2 * max_needed_ / sizeof(T));
   }
 
-  // The same for two arrays that change places every step, of which `next` is empty.
+  // The same for two arrays that are swapped every step, of which `next` is empty.
   template <class T>
-  void trim(Array<T>& next, Array<T>& shown) {
-    if (!rests(shown.size() * sizeof(T), next.bytes() + shown.bytes())) return;
+  void trim(Array<T>& next, Array<T>& current) {
+    if (!should_shrink(current.size() * sizeof(T), next.bytes() + current.bytes())) return;
     next = Array<T>();
-    if (shown.empty()) shown = Array<T>();
+    if (current.empty()) current = Array<T>();
   }
 
  private:
   static constexpr std::size_t kWorthGivingBack = 64 * 1024;  // bytes
-  // Odd, so that of two arrays that change places every step each has its turn.
+  // Odd, so that each of two arrays that are swapped every step has its turn.
   static constexpr std::uint32_t kSteps = 63;
 
   std::uint32_t steps_ = 0;
-  std::size_t most_ = 0;
+  std::size_t max_needed_ = 0;
 };
 
 }  // namespace gyre

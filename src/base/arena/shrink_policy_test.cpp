@@ -1,4 +1,4 @@
-// Memory is given back after it was too large for long, and not before.
+// Memory is released after it was too large for long, and not before.
 #include "base/arena/shrink_policy.h"
 
 #include <gtest/gtest.h>
@@ -10,18 +10,19 @@ constexpr int kSteps = 63;
 
 TEST(ShrinkPolicy, RestsAfterManyStepsOfLittleUse) {
   ShrinkPolicy clock;
-  const std::size_t held = 1 << 20;
-  for (int i = 0; i < kSteps - 1; ++i) EXPECT_FALSE(clock.rests(held / 8, held));
-  // One busy step and the count begins anew.
-  EXPECT_FALSE(clock.rests(held / 2, held));
-  for (int i = 0; i < kSteps - 1; ++i) EXPECT_FALSE(clock.rests(i == 20 ? held / 4 : 100, held));
-  EXPECT_TRUE(clock.rests(100, held));
-  EXPECT_EQ(clock.max_needed(), held / 4);
+  const std::size_t allocated = 1 << 20;
+  for (int i = 0; i < kSteps - 1; ++i) EXPECT_FALSE(clock.should_shrink(allocated / 8, allocated));
+  // After one busy step the count starts again.
+  EXPECT_FALSE(clock.should_shrink(allocated / 2, allocated));
+  for (int i = 0; i < kSteps - 1; ++i)
+    EXPECT_FALSE(clock.should_shrink(i == 20 ? allocated / 4 : 100, allocated));
+  EXPECT_TRUE(clock.should_shrink(100, allocated));
+  EXPECT_EQ(clock.max_needed(), allocated / 4);
 }
 
 TEST(ShrinkPolicy, LeavesSmallMemoryAlone) {
   ShrinkPolicy clock;
-  for (int i = 0; i < 10 * kSteps; ++i) EXPECT_FALSE(clock.rests(0, 10000));
+  for (int i = 0; i < 10 * kSteps; ++i) EXPECT_FALSE(clock.should_shrink(0, 10000));
 }
 
 TEST(ShrinkPolicy, TrimsAnArray) {

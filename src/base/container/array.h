@@ -1,6 +1,6 @@
-// Array<T>: the growable array everything is kept in. Storage is aligned to 64 bytes so that wide loads never straddle
-// a line at its start, counted by base/memory/memory, and kept by clear(), so that a world at its working size no longer
-// allocates. Where elements may be moved as bytes a large array keeps its pages when it grows.
+// Array<T>: the growable array of the engine. Storage is aligned to 64 bytes, so that wide loads never straddle a line
+// at its start, and counted by base/memory/memory. clear() keeps it, so a world at its working size no longer
+// allocates. A large array of trivially copyable elements keeps its pages when it grows.
 #pragma once
 
 #include "base/check.h"
@@ -56,7 +56,7 @@ class Array {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   std::size_t capacity() const { return capacity_; }
-  // Bytes of storage held, used or not.
+  // Bytes of storage, used or not.
   std::size_t bytes() const { return capacity_ * sizeof(T); }
 
   T* data() { return data_; }
@@ -66,7 +66,7 @@ class Array {
   const T* begin() const { return data_; }
   const T* end() const { return data_ + size_; }
 
-  // Any integer type may index; a negative one is out of range like any other.
+  // Any integer type may index; a negative index is out of range like any other.
   template <class Index>
   requires std::is_integral_v<Index> T& operator[](Index i) {
     GYRE_ASSERT(static_cast<std::size_t>(i) < size_, "index is inside the array");
@@ -83,7 +83,7 @@ class Array {
   T& back() { return (*this)[size_ - 1]; }
   const T& back() const { return (*this)[size_ - 1]; }
 
-  // Converts to std::span<T> and std::span<const T> by itself too: span's own constructor takes data() and size().
+  // Array also converts to std::span<T> and std::span<const T>, whose own constructor takes data() and size().
   std::span<T> view() { return {data_, size_}; }
   std::span<const T> view() const { return {data_, size_}; }
 
@@ -91,10 +91,10 @@ class Array {
   void reserve(std::size_t count) {
     if (count > capacity_) change_room(count);
   }
-  // Before elements are added one by one until there are about `count`: if that takes more memory, it is taken at once, and an
-  // eighth more as ever.
+  // To be called before about `count` elements are added one by one: allocates for them at once, with the usual eighth
+  // more.
   void expect(std::size_t count) { grow_to(count); }
-  // Gives back what is held beyond room for `count` elements, which must be no fewer than there are.
+  // Releases storage beyond `count` elements, which must be no fewer than there are.
   void trim(std::size_t count) {
     GYRE_ASSERT(count >= size_, "there is room for all elements");
     if (count < capacity_) change_room(count);
@@ -117,13 +117,13 @@ class Array {
     shrink_to(count);
     size_ = count;
   }
-  // New elements are left as the memory was: for those about to be written.
+  // New elements are not initialised: for elements about to be written.
   void resize_uninitialized(std::size_t count) {
     static_assert(std::is_trivially_copyable_v<T>, "only plain data may be left unwritten");
     grow_to(count);
     size_ = count;
   }
-  // Forgets the elements and keeps the storage.
+  // Removes all elements and keeps the storage.
   void clear() {
     destroy(data_, size_);
     size_ = 0;
@@ -147,20 +147,20 @@ class Array {
     destroy(data_ + size_, 1);
   }
 
-  // Removes element i in constant time: the last one takes its place.
+  // Removes element i in constant time: the last element moves to its index.
   void swap_remove(std::size_t i) {
     GYRE_ASSERT(i < size_, "index is inside the array");
     if (i + 1 < size_) data_[i] = std::move(data_[size_ - 1]);
     pop_back();
   }
 
-  // Inserts before element i; those after move up by one.
+  // Inserts before element i; later elements move up by one.
   void insert_at(std::size_t i, T value) {
     GYRE_ASSERT(i <= size_, "index is inside the array or at its end");
     emplace_back(std::move(value));
     for (std::size_t k = size_ - 1; k > i; --k) std::swap(data_[k], data_[k - 1]);
   }
-  // Removes element i; those after move down by one.
+  // Removes element i; later elements move down by one.
   void erase_at(std::size_t i) {
     GYRE_ASSERT(i < size_, "index is inside the array");
     for (std::size_t k = i + 1; k < size_; ++k) data_[k - 1] = std::move(data_[k]);
@@ -211,15 +211,15 @@ class Array {
     }
   }
 
-  // From one cache line up, doubling while small. A large array grows by an eighth: each element is then copied eight
-  // times on the way there, which is little, and no more than an eighth of its memory waits for elements to come.
+  // Starts at one cache line and doubles while small. A large array grows by an eighth: each element is then copied
+  // eight times in all, which is little, and at most an eighth of the memory is unused.
   std::size_t next_capacity(std::size_t needed) const {
     constexpr std::size_t kLarge = 16 * 1024;  // bytes
-    const std::size_t least = sizeof(T) < kMemoryAlign ? kMemoryAlign / sizeof(T) : 1;
+    const std::size_t min_capacity = sizeof(T) < kMemoryAlign ? kMemoryAlign / sizeof(T) : 1;
     const std::size_t more = bytes() < kLarge ? capacity_ : capacity_ / 8;
     const std::size_t enlarged = more < SIZE_MAX - capacity_ ? capacity_ + more : SIZE_MAX;
-    const std::size_t wanted = enlarged < least ? least : enlarged;
-    return wanted < needed ? needed : wanted;
+    const std::size_t grown = enlarged < min_capacity ? min_capacity : enlarged;
+    return grown < needed ? needed : grown;
   }
 
   template <class... Args>
@@ -241,11 +241,11 @@ class Array {
   }
 
   void change_room(std::size_t room) {
-    const std::size_t wanted = bytes_of(room);
+    const std::size_t new_bytes = bytes_of(room);
     if constexpr (std::is_trivially_copyable_v<T>) {
-      data_ = static_cast<T*>(reallocate(data_, bytes(), wanted, size_ * sizeof(T)));
+      data_ = static_cast<T*>(reallocate(data_, bytes(), new_bytes, size_ * sizeof(T)));
     } else {
-      T* const storage = static_cast<T*>(allocate(wanted));
+      T* const storage = static_cast<T*>(allocate(new_bytes));
       for (std::size_t i = 0; i < size_; ++i) {
         new (storage + i) T(std::move(data_[i]));
         data_[i].~T();
@@ -261,10 +261,9 @@ class Array {
   std::size_t capacity_ = 0;
 };
 
-// The index of an item that is not in use: the last of those given back in `free`, or of a new one. What it holds is the caller's to
-// set.
+// The index of an unused item: the last free one, or a new one. The caller sets its content.
 template <class T>
-std::uint32_t take_place(Array<T>& items, Array<std::uint32_t>& free) {
+std::uint32_t take_slot(Array<T>& items, Array<std::uint32_t>& free) {
   if (free.empty()) {
     items.emplace_back();
     return std::uint32_t(items.size() - 1);

@@ -1,4 +1,4 @@
-// Array against std::vector under random calls, for plain and for owning elements; storage promises.
+// Array against std::vector under random calls, for plain and for owning elements; alignment and reuse of storage.
 #include "base/container/array.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,8 @@ TEST(Array, GrowthIsGeometric) {
   Array<std::uint64_t> numbers;
   const std::uint64_t before = allocation_count();
   for (std::uint64_t i = 0; i < 1000000; ++i) numbers.push_back(i);
-  // Doubled up to 16 KiB, then an eighth more each time: 8 MB are reached in a bounded number of moves, with little to spare.
+  // Capacity doubles up to 16 KiB and then grows by an eighth: 8 MB are reached in a bounded number of moves, with
+  // little to spare.
   EXPECT_LE(allocation_count() - before, 75u);
   EXPECT_LE(numbers.capacity(), numbers.size() / 8 * 9 + 8);
   for (std::uint64_t i = 0; i < 1000000; ++i) ASSERT_EQ(numbers[i], i);
@@ -70,7 +71,7 @@ TEST(Array, TakesItsOwnElements) {
   Array<std::string> names{"a long enough name to be on the heap"};
   for (int i = 0; i < 100; ++i) names.push_back(names[0]);
   for (const std::string& name : names) ASSERT_EQ(name, names[0]);
-  Array<std::uint64_t> numbers{7};  // plain ones, through the sizes at which the heap changes the block
+  Array<std::uint64_t> numbers{7};  // plain elements, through the sizes at which the heap changes the block
   for (int i = 0; i < 100'000; ++i) numbers.push_back(numbers[0]);
   for (const std::uint64_t number : numbers) ASSERT_EQ(number, 7u);
   names.resize(names.capacity() + 1, names[0]);
@@ -94,7 +95,7 @@ TEST(Array, ExpectsManyAtOnce) {
   EXPECT_EQ(numbers.size(), 100'000u);
 }
 
-TEST(Array, GivesBackWhatItDoesNotNeed) {
+TEST(Array, TrimReleasesMemory) {
   const auto trims = [](auto& items, std::size_t kept) {
     const auto last = items[kept - 1];
     items.resize(kept);

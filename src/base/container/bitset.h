@@ -1,5 +1,5 @@
-// Bitset: one bit for each id, walked in ascending order. Workers mark what they saw in bitsets of their own; these are
-// united and then walked, so the order of events never depends on which worker saw what.
+// Bitset: one bit for each id, visited in ascending order. Workers set bits in bitsets of their own, which are united
+// and then visited, so the order of events never depends on the workers.
 #pragma once
 
 #include "base/container/array.h"
@@ -18,7 +18,7 @@ class Bitset {
 
   std::size_t size() const { return size_; }
 
-  // Bits that come in are clear; those beyond the new size are forgotten.
+  // New bits are clear; those beyond the new size are dropped.
   void resize(std::size_t size) {
     words_.resize((size + 63) / 64);
     if (size < size_ && size % 64 != 0) words_.back() &= (std::uint64_t{1} << size % 64) - 1;
@@ -34,10 +34,11 @@ class Bitset {
     words_[i / 64] &= ~(std::uint64_t{1} << i % 64);
   }
   void assign(std::size_t i, bool value) { value ? set(i) : clear(i); }
-  // False beyond the size, so that a set need not grow before it is asked.
+  // False beyond the size, so that a set need not grow before a test.
   bool test(std::size_t i) const { return i < size_ && (words_[i / 64] >> i % 64 & 1) != 0; }
 
-  // Bits 64 * word to 64 * word + 63 at once; those beyond the size must be clear. Words may be written side by side.
+  // Bits 64 * word to 64 * word + 63 at once; those beyond the size must be clear. Workers may write different words at
+  // once.
   void put_word(std::size_t word, std::uint64_t bits) { words_[word] = bits; }
 
   // Sets all bits up to the size.
@@ -80,8 +81,8 @@ class Bitset {
     return w * 64 + static_cast<std::size_t>(std::countr_zero(word));
   }
 
-  // Calls fn(std::size_t) for each set bit, ascending. fn may set and clear bits up to the one it was called with; other
-  // changes may or may not be seen.
+  // Calls fn(std::size_t) for each set bit, ascending. fn may set and clear bits up to its own; later changes may or
+  // may not be seen.
   template <class Fn>
   void for_each_set(Fn&& fn) const {
     for (std::size_t w = 0; w < words_.size(); ++w) {
@@ -91,7 +92,7 @@ class Bitset {
     }
   }
 
-  // The bits, 64 to a word from the lowest up; those beyond size() are clear. For saving and hashing.
+  // The bits, 64 to a word from the lowest up; those beyond size() are clear. For snapshots and hashes.
   std::span<const std::uint64_t> words() const { return words_; }
   std::size_t bytes() const { return words_.bytes(); }
 

@@ -1,4 +1,4 @@
-// Bitset against std::vector<bool>, and the borders of words.
+// Bitset against std::vector<bool>, and the ends of words.
 #include "base/container/bitset.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(Bitset, WordBorders) {
   }
 }
 
-TEST(Bitset, ForgetsWhatIsCutOff) {
+TEST(Bitset, DropsBitsBeyondTheSize) {
   Bitset bits(200);
   for (std::size_t i = 0; i < 200; ++i) bits.set(i);
   bits.resize(70);

@@ -1,5 +1,5 @@
-// Which of many things belong together: sets that are united again and again (B. A. Galler, M. J. Fischer, "An improved equivalence
-// algorithm", Comm. ACM 7, 1964), each named by its lowest member.
+// Disjoint sets (union-find), each named by its lowest member (B. A. Galler, M. J. Fischer, "An improved equivalence
+// algorithm", Comm. ACM 7, 1964).
 #pragma once
 
 #include <cstdint>

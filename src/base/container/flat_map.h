@@ -1,7 +1,8 @@
-// FlatMap<V>: from 64-bit keys to values. Entries lie densely in an array, and only that array can be walked, so no
-// order of a hash table can ever leak into a result. A table of (hash, entry) pairs with linear probing finds them.
+// FlatMap<V>: a map from 64-bit keys to values. Entries lie densely in an array, and only that array can be visited, so
+// the order of a hash table never leaks into a result. A table of (hash, entry) pairs with linear probing finds them.
 //
-// Order: insertion order, except that erase() moves the last entry into the gap. So it is a function of the calls alone.
+// Order: insertion order, except that erase() moves the last entry into the gap. So it is a function of the calls
+// alone.
 #pragma once
 
 #include "base/container/array.h"
@@ -28,15 +29,15 @@ class FlatMap {
   // The value of a key, or null. Valid until the next insert or erase.
   V* find(std::uint64_t key) {
     const std::size_t cell = find_cell(key);
-    return cell != kNowhere ? &entries_[cells_[cell].entry].value : nullptr;
+    return cell != kNotFound ? &entries_[cells_[cell].entry].value : nullptr;
   }
   const V* find(std::uint64_t key) const {
     const std::size_t cell = find_cell(key);
-    return cell != kNowhere ? &entries_[cells_[cell].entry].value : nullptr;
+    return cell != kNotFound ? &entries_[cells_[cell].entry].value : nullptr;
   }
-  bool contains(std::uint64_t key) const { return find_cell(key) != kNowhere; }
+  bool contains(std::uint64_t key) const { return find_cell(key) != kNotFound; }
 
-  // Sets the value of a key, new or not. An old one keeps its place in the order.
+  // Sets the value of a key. An existing key keeps its position in the order.
   V& insert(std::uint64_t key, V value) {
     if (V* const old = find(key)) {
       *old = std::move(value);
@@ -45,16 +46,16 @@ class FlatMap {
     return add(key, std::move(value));
   }
 
-  // The value of a key; `fallback` is put in first if there is none.
+  // The value of a key; inserts `fallback` if there is none.
   V& find_or_insert(std::uint64_t key, V fallback = V()) {
     if (V* const old = find(key)) return *old;
     return add(key, std::move(fallback));
   }
 
-  // Removes a key; the last entry takes its place in the order. False if it was not there.
+  // Removes a key; the last entry takes its position in the order. False if it was not there.
   bool erase(std::uint64_t key) {
     const std::size_t cell = find_cell(key);
-    if (cell == kNowhere) return false;
+    if (cell == kNotFound) return false;
     const std::uint32_t gone = cells_[cell].entry;
     const std::uint32_t last = static_cast<std::uint32_t>(entries_.size() - 1);
     if (gone != last) cells_[cell_of_entry(last)].entry = gone;
@@ -63,7 +64,7 @@ class FlatMap {
     return true;
   }
 
-  // Forgets all entries and keeps the memory.
+  // Removes all entries and keeps the memory.
   void clear() {
     entries_.clear();
     for (Cell& cell : cells_) cell = Cell{};
@@ -72,9 +73,9 @@ class FlatMap {
   // Makes room for `count` entries in all.
   void reserve(std::size_t count) {
     entries_.reserve(count);
-    std::size_t wanted = kMinCells;
-    while (wanted / 4 * 3 < count) wanted *= 2;
-    if (wanted > cells_.size()) rebuild_cells(wanted);
+    std::size_t cells = kMinCells;
+    while (cells / 4 * 3 < count) cells *= 2;
+    if (cells > cells_.size()) rebuild_cells(cells);
   }
 
   // All entries, in order.
@@ -93,10 +94,10 @@ class FlatMap {
 
  private:
   static constexpr std::uint32_t kEmpty = 0xffffffff;
-  static constexpr std::size_t kNowhere = SIZE_MAX;
+  static constexpr std::size_t kNotFound = SIZE_MAX;
   static constexpr std::size_t kMinCells = 16;
 
-  // Half of the hash is kept: it gives the home cell, and tells most other keys apart without looking at the entry.
+  // Half of the hash: it gives the home cell, and excludes most other keys without a read of the entry.
   struct Cell {
     std::uint32_t hash = 0;
     std::uint32_t entry = kEmpty;
@@ -106,11 +107,11 @@ class FlatMap {
   std::size_t mask() const { return cells_.size() - 1; }
 
   std::size_t find_cell(std::uint64_t key) const {
-    if (cells_.empty()) return kNowhere;
+    if (cells_.empty()) return kNotFound;
     const std::uint32_t hash = hash_of(key);
     for (std::size_t i = hash & mask();; i = (i + 1) & mask()) {
       const Cell& cell = cells_[i];
-      if (cell.entry == kEmpty) return kNowhere;
+      if (cell.entry == kEmpty) return kNotFound;
       if (cell.hash == hash && entries_[cell.entry].key == key) return i;
     }
   }
@@ -127,11 +128,11 @@ class FlatMap {
     if (entries_.size() + 1 > cells_.size() / 4 * 3) {
       rebuild_cells(cells_.empty() ? kMinCells : cells_.size() * 2);
     }
-    place({hash_of(key), static_cast<std::uint32_t>(entries_.size())});
+    put_cell({hash_of(key), static_cast<std::uint32_t>(entries_.size())});
     return entries_.push_back(Entry{key, std::move(value)}).value;
   }
 
-  void place(Cell cell) {
+  void put_cell(Cell cell) {
     std::size_t i = cell.hash & mask();
     while (cells_[i].entry != kEmpty) i = (i + 1) & mask();
     cells_[i] = cell;
@@ -140,11 +141,11 @@ class FlatMap {
   void rebuild_cells(std::size_t count) {
     cells_.assign(count, Cell{});
     for (std::size_t i = 0; i < entries_.size(); ++i) {
-      place({hash_of(entries_[i].key), static_cast<std::uint32_t>(i)});
+      put_cell({hash_of(entries_[i].key), static_cast<std::uint32_t>(i)});
     }
   }
 
-  // Empties a cell. Each later one of the run that could stand nearer its home moves into the gap, so no search ends
+  // Empties a cell. Each later cell of the run that could stand nearer its home moves into the gap, so no search ends
   // too early and no tombstones pile up (Knuth, The Art of Computer Programming 3, 6.4, algorithm R).
   void close_gap(std::size_t gap) {
     for (std::size_t i = (gap + 1) & mask(); cells_[i].entry != kEmpty; i = (i + 1) & mask()) {

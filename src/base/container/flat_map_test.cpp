@@ -1,4 +1,4 @@
-// FlatMap against std::map and against its stated order.
+// FlatMap against std::map, and against its documented order.
 #include "base/container/flat_map.h"
 
 #include <gtest/gtest.h>

@@ -1,14 +1,13 @@
-// InternedColumn<T>: a column of records of which many are the same (the masses of a thousand equal boxes): equal ones are kept
-// once, and each element costs the four bytes that tell which. It reads like an array; writing goes through set().
+// InternedColumn<T>: a column that stores equal records once, such as the masses of a thousand equal boxes; each
+// element costs the four bytes of an index. It reads like an array; set() writes.
 //
-// Equal means the same bits. What is to be kept this way tells its bits by interning_key(record): an array of words, without
-// padding, that is the same only for the same records. The order in which records are kept is a function of the calls
-// alone, and nothing can walk it.
+// Records are equal if interning_key(record) is: an array of words, without padding, that is the same only for the same
+// records. The order of stored records is a function of the calls alone, and nothing can visit it.
 #pragma once
 
 #include "base/container/array.h"
-#include "base/hash.h"
 #include "base/container/slot_table.h"
+#include "base/hash.h"
 
 #include <array>
 #include <cstddef>
@@ -20,73 +19,73 @@ namespace gyre {
 template <class T>
 class InternedColumn {
  public:
-  std::size_t size() const { return places_.size(); }
+  std::size_t size() const { return indices_.size(); }
   std::size_t bytes() const {
-    return places_.bytes() + records_.bytes() + keys_.bytes() + users_.bytes() + free_.bytes() +
+    return indices_.bytes() + records_.bytes() + keys_.bytes() + users_.bytes() + free_.bytes() +
            table_.bytes();
   }
-  // How many different records there are.
+  // The number of different records.
   std::size_t distinct() const { return table_.size(); }
 
   // Valid until the next set() or resize().
   template <class Index>
   const T& operator[](Index i) const {
-    return records_[places_[i]];
+    return records_[indices_[i]];
   }
   template <class Index>
   void set(Index i, const T& record) {
-    const std::uint32_t place = take(record);
-    give(places_[i]);
-    places_[i] = place;
+    const std::uint32_t index = acquire(record);
+    release(indices_[i]);
+    indices_[i] = index;
   }
   // New elements are as T().
   void resize(std::size_t count) {
-    while (places_.size() > count) {
-      give(places_.back());
-      places_.pop_back();
+    while (indices_.size() > count) {
+      release(indices_.back());
+      indices_.pop_back();
     }
-    if (places_.size() == count) return;
-    const std::uint32_t place = take(T());
-    users_[place] += static_cast<std::uint32_t>(count - places_.size()) - 1;
-    places_.resize(count, place);
+    if (indices_.size() == count) return;
+    const std::uint32_t index = acquire(T());
+    users_[index] += static_cast<std::uint32_t>(count - indices_.size()) - 1;
+    indices_.resize(count, index);
   }
 
-  // For loops that must know where records are: element i is records()[places()[i]].
+  // For loops over the storage: element i is records()[indices()[i]].
   const T* records() const { return records_.data(); }
-  const std::uint32_t* places() const { return places_.data(); }
+  const std::uint32_t* indices() const { return indices_.data(); }
 
  private:
-  // The place of a record, which has one user more.
-  std::uint32_t take(const T& record) {
+  // The index of a record, which gets one user more.
+  std::uint32_t acquire(const T& record) {
     const auto bits = interning_key(record);
     std::uint64_t key = hash_bytes(bits.data(), sizeof bits);
-    const auto key_of = [this](std::uint32_t place) { return keys_[place]; };
-    std::uint32_t place = table_.find(key, key_of);
-    // Another record with the same hash: the next key is as good.
-    while (place != SlotTable::kNone && interning_key(records_[place]) != bits)
-      place = table_.find(++key, key_of);
-    if (place == SlotTable::kNone) {
-      place = make_place();
-      records_[place] = record;
-      keys_[place] = key;
-      users_[place] = 0;
-      table_.insert(key, place, key_of);
+    const auto key_of = [this](std::uint32_t index) { return keys_[index]; };
+    std::uint32_t index = table_.find(key, key_of);
+    // A different record with the same hash uses the next key.
+    while (index != SlotTable::kNone && interning_key(records_[index]) != bits)
+      index = table_.find(++key, key_of);
+    if (index == SlotTable::kNone) {
+      index = make_record();
+      records_[index] = record;
+      keys_[index] = key;
+      users_[index] = 0;
+      table_.insert(key, index, key_of);
     }
-    ++users_[place];
-    return place;
+    ++users_[index];
+    return index;
   }
 
-  void give(std::uint32_t place) {
-    if (--users_[place] > 0) return;
-    table_.erase(keys_[place], [this](std::uint32_t other) { return keys_[other]; });
-    free_.push_back(place);
+  void release(std::uint32_t index) {
+    if (--users_[index] > 0) return;
+    table_.erase(keys_[index], [this](std::uint32_t other) { return keys_[other]; });
+    free_.push_back(index);
   }
 
-  std::uint32_t make_place() {
+  std::uint32_t make_record() {
     if (!free_.empty()) {
-      const std::uint32_t place = free_.back();
+      const std::uint32_t index = free_.back();
       free_.pop_back();
-      return place;
+      return index;
     }
     records_.emplace_back();
     keys_.push_back(0);
@@ -94,15 +93,15 @@ class InternedColumn {
     return static_cast<std::uint32_t>(records_.size() - 1);
   }
 
-  Array<std::uint32_t> places_;  // by element
+  Array<std::uint32_t> indices_;  // by element
   Array<T> records_;
-  Array<std::uint64_t> keys_;   // by record: its hash, or the next that was free
+  Array<std::uint64_t> keys_;   // by record: its hash, or the next free key
   Array<std::uint32_t> users_;  // by record
   Array<std::uint32_t> free_;   // records without users
   SlotTable table_;
 };
 
-// Helper for interning_key: the words of fields that have no padding, one after the other.
+// Helper for interning_key: the words of fields without padding, one after the other.
 template <class... Fields>
 auto words_of(const Fields&... fields) {
   constexpr std::size_t kBytes = (sizeof(Fields) + ...);

@@ -1,4 +1,4 @@
-// A column of shared records reads like the array that it stands for, whatever was written.
+// An interned column reads like a plain array, whatever was written.
 #include "base/container/interned_column.h"
 
 #include <gtest/gtest.h>

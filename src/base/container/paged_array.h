@@ -1,6 +1,5 @@
-// PagedArray<T, N>: an array in pages of N elements each, for large records of which there are many. It grows by a page at a
-// time: no more than a page lies unused, and nothing is moved, so a pointer into it stays good. Elements of one page lie one
-// after the other.
+// PagedArray<T, N>: an array in pages of N elements, for many large records. It grows by a page at a time: at most a
+// page is unused, and elements never move, so pointers stay valid. Elements of one page are contiguous.
 #pragma once
 
 #include "base/container/array.h"
@@ -42,7 +41,7 @@ class PagedArray {
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  // Bytes of memory held, used or not.
+  // Bytes of memory, used or not.
   std::size_t bytes() const { return pages_.bytes() + pages_.size() * N * sizeof(T); }
 
   T& operator[](std::size_t i) {
@@ -55,7 +54,7 @@ class PagedArray {
   }
   void set(std::size_t i, const T& value) { (*this)[i] = value; }
 
-  // New elements are as T(). Pages that are no longer needed are given back.
+  // New elements are as T(). Unused pages are released.
   void resize(std::size_t count) {
     set_page_count(pages_of(count));
     for (std::size_t i = size_; i < count; ++i) pages_[i / N][i % N] = T();
@@ -72,7 +71,7 @@ class PagedArray {
     }
     while (pages_.size() < count) {
       T* const page = static_cast<T*>(allocate(N * sizeof(T)));
-      // What lies beyond the end is copied with its page: it must be something.
+      // Elements beyond the end are copied with their page, so they must be initialised.
       std::memset(static_cast<void*>(page), 0, N * sizeof(T));
       pages_.push_back(page);
     }

@@ -1,4 +1,4 @@
-// An array in pages is an array whose elements stay where they are.
+// A paged array behaves as an array whose elements never move.
 #include "base/container/paged_array.h"
 
 #include <gtest/gtest.h>

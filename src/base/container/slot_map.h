@@ -1,9 +1,9 @@
-// IdPool: which slots of a dense storage are in use, and by which owner. acquire() always gives the lowest free slot, so
-// slots are a function of the history of calls alone.
+// IdPool: tracks which slots of a dense storage are in use, and by which owner. acquire() always returns the lowest
+// free slot, so slots are a function of the history of calls alone.
 //
-// Generations: a slot's number grows by one when it is acquired and again when it is released, so live ones are odd and
-// 0 is never live: the all-zero id is null. They fit in 16 bits, as public ids have them. A slot that has used them up
-// is retired and never handed out again, so an id that outlived its object can never refer to another.
+// Generations: a slot's number grows by one when it is acquired and again when it is released. Live ones are odd, and 0
+// is never live: the all-zero id is null. They fit in 16 bits, as in public ids. A slot whose numbers are used up is
+// retired and never handed out again, so an id that outlived its object can never refer to another.
 #pragma once
 
 #include "base/container/array.h"
@@ -48,17 +48,17 @@ class IdPool {
     if (index < lowest_free_) lowest_free_ = index;
   }
 
-  // Whether the slot still belongs to the owner that got this generation.
+  // True if the slot still belongs to the owner with this generation.
   bool alive(std::uint32_t index, std::uint32_t generation) const {
     return index < generations_.size() && generations_[index] == generation && (generation & 1) != 0;
   }
-  // Whether the slot has an owner at all.
+  // True if the slot has an owner.
   bool live(std::uint32_t index) const {
     return index < generations_.size() && (generations_[index] & 1) != 0;
   }
   std::uint32_t generation(std::uint32_t index) const { return generations_[index]; }
 
-  // Slots in use; slots that ever were (indices are below this).
+  // The number of slots in use; the number of slots that ever were (indices are below it).
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return generations_.size(); }
   std::size_t bytes() const { return generations_.bytes() + free_.bytes(); }
@@ -84,7 +84,7 @@ class IdPool {
   std::span<const std::uint32_t> generations() const { return generations_; }
   const Bitset& free_slots() const { return free_; }
 
-  // Takes over a saved state. False, and nothing changes, if a generation is larger than kRetired.
+  // Restores a saved state. False, without a change, if a generation is larger than kRetired.
   bool restore(std::span<const std::uint32_t> generations) {
     for (const std::uint32_t generation : generations) {
       if (generation > kRetired) return false;
@@ -104,7 +104,7 @@ class IdPool {
  private:
   Array<std::uint32_t> generations_;
   Bitset free_;
-  std::size_t lowest_free_ = 0;  // no free slot is below; acquire looks from here on
+  std::size_t lowest_free_ = 0;  // no free slot is below; acquire starts here
   std::size_t size_ = 0;
 };
 

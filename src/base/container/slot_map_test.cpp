@@ -1,4 +1,4 @@
-// Lowest slot first, stale ids stay dead for ever, and a restored pool goes on as if nothing had happened.
+// The lowest slot comes first, stale ids never come back, and a restored pool continues as the original.
 #include "base/container/slot_map.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-// SlotTable: finds the slot of a record by the record's 64-bit key. Only slots are kept, four bytes each; the keys stay in
-// the records, and whoever calls tells how to read them: key_of(slot). Open addressing with linear probing; there is no
-// order to walk, so none can leak into a result.
+// SlotTable: finds the slot of a record by the record's 64-bit key. It stores only slots, four bytes each; the keys
+// stay in the records, and the caller reads them with key_of(slot). Open addressing with linear probing; it cannot be
+// iterated, so no order leaks into a result.
 #pragma once
 
 #include "base/container/array.h"
@@ -18,7 +18,7 @@ class SlotTable {
   std::size_t size() const { return size_; }
   std::size_t bytes() const { return cells_.bytes(); }
 
-  // The slot of a key; kNone if it is not there.
+  // The slot of a key, or kNone.
   template <class KeyOf>
   std::uint32_t find(std::uint64_t key, const KeyOf& key_of) const {
     if (cells_.empty()) return kNone;
@@ -27,23 +27,23 @@ class SlotTable {
     }
   }
 
-  // The slot where the search for a key begins, often the one that is found; kNone if none is there.
+  // The slot where the search for a key begins, often the right one; kNone if that cell is empty.
   std::uint32_t first_tried(std::uint64_t key) const { return cells_.empty() ? kNone : cells_[home(key)]; }
 
-  // The key must be new, and key_of must tell the slot's key already.
+  // The key must be new, and key_of(slot) must return it already.
   template <class KeyOf>
   void insert(std::uint64_t key, std::uint32_t slot, const KeyOf& key_of) {
     if (size_ + 1 > cells_.size() / 4 * 3) enlarge(cells_.empty() ? kMinCells : 2 * cells_.size(), key_of);
-    place(key, slot);
+    put_slot(key, slot);
     ++size_;
   }
 
-  // The key must be there, and key_of must tell it still.
+  // The key must exist, and key_of must still return it.
   template <class KeyOf>
   void erase(std::uint64_t key, const KeyOf& key_of) {
     std::size_t gap = home(key);
     while (key_of(cells_[gap]) != key) gap = next(gap);
-    // Each later one of the run that could stand nearer its home moves into the gap (Knuth, The Art of Computer
+    // Each later slot of the run that could stand nearer its home moves into the gap (Knuth, The Art of Computer
     // Programming 3, 6.4, algorithm R).
     for (std::size_t i = next(gap); cells_[i] != kNone; i = next(i)) {
       const std::size_t from_home = (i - home(key_of(cells_[i]))) & mask();
@@ -55,7 +55,7 @@ class SlotTable {
     --size_;
   }
 
-  // Forgets all slots and keeps the memory.
+  // Removes all slots and keeps the memory.
   void clear() {
     for (std::uint32_t& cell : cells_) cell = kNone;
     size_ = 0;
@@ -68,7 +68,7 @@ class SlotTable {
   std::size_t home(std::uint64_t key) const { return static_cast<std::size_t>(mix_bits(key) >> 32) & mask(); }
   std::size_t next(std::size_t i) const { return (i + 1) & mask(); }
 
-  void place(std::uint64_t key, std::uint32_t slot) {
+  void put_slot(std::uint64_t key, std::uint32_t slot) {
     std::size_t i = home(key);
     while (cells_[i] != kNone) i = next(i);
     cells_[i] = slot;
@@ -81,7 +81,7 @@ class SlotTable {
     cells_.reserve(count);
     cells_.resize(count, kNone);
     for (const std::uint32_t slot : old) {
-      if (slot != kNone) place(key_of(slot), slot);
+      if (slot != kNone) put_slot(key_of(slot), slot);
     }
   }
 

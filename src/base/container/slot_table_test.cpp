@@ -1,4 +1,4 @@
-// A table that keeps no keys finds what a map with keys finds, whatever comes and goes.
+// A table without keys finds what a map with keys finds, under insertions and removals.
 #include "base/container/slot_table.h"
 
 #include <gtest/gtest.h>
@@ -31,9 +31,9 @@ TEST(SlotTable, AgreesWithAMap) {
       expected[key] = slot;
     }
     ASSERT_EQ(table.size(), expected.size());
-    const std::uint64_t asked = 1 + random() % 700;
-    const auto found = expected.find(asked);
-    ASSERT_EQ(table.find(asked, key_of), found == expected.end() ? SlotTable::kNone : found->second);
+    const std::uint64_t query = 1 + random() % 700;
+    const auto found = expected.find(query);
+    ASSERT_EQ(table.find(query, key_of), found == expected.end() ? SlotTable::kNone : found->second);
   }
   for (const auto& [key, slot] : expected) EXPECT_EQ(table.find(key, key_of), slot);
   table.clear();

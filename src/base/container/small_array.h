@@ -1,5 +1,5 @@
-// SmallArray<T, N>: a list that has room for N elements in itself and takes memory only for more: one body has one shape
-// and no joint, mostly, and there are many bodies.
+// SmallArray<T, N>: a list with room for N elements inside, which allocates only for more. Most bodies have one shape
+// and no joint, and there are many bodies.
 #pragma once
 
 #include "base/check.h"
@@ -50,7 +50,7 @@ class SmallArray {
   }
   const T& front() const { return (*this)[0]; }
 
-  // Inserts before element i; those after move up by one.
+  // Inserts before element i; later elements move up by one.
   void insert_at(std::size_t i, T item) {
     GYRE_ASSERT(i <= size_, "index is inside the list or at its end");
     if (size_ == capacity_) enlarge();
@@ -60,14 +60,14 @@ class SmallArray {
     ++size_;
   }
   void push_back(const T& item) { insert_at(size_, item); }
-  // Removes element i; those after move down by one.
+  // Removes element i; later elements move down by one.
   void erase_at(std::size_t i) {
     GYRE_ASSERT(i < size_, "index is inside the list");
     T* const items = own();
     std::memmove(static_cast<void*>(items + i), items + i + 1, (size_ - i - 1) * sizeof(T));
     --size_;
   }
-  // Forgets the elements and gives their memory back.
+  // Removes all elements and frees their memory.
   void clear() {
     free_storage();
     size_ = 0;

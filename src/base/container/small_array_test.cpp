@@ -1,4 +1,4 @@
-// A small list is a list, and takes memory only when it is no longer small.
+// A small array behaves as a vector, and allocates only beyond its own room.
 #include "base/container/small_array.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ TEST(SmallArray, AgreesWithAVector) {
   std::vector<std::uint32_t> expected;
   for (std::uint32_t round = 0; round < 3000; ++round) {
     const std::size_t at = random() % (expected.size() + 1);
-    // Longer and longer in the first half, shorter and shorter in the second.
+    // Grows in the first half and shrinks in the second.
     if (random() % 3000 > round || at == expected.size()) {
       list.insert_at(at, round);
       expected.insert(expected.begin() + std::ptrdiff_t(at), round);
@@ -33,7 +33,7 @@ TEST(SmallArray, AgreesWithAVector) {
   EXPECT_EQ(copy.size(), moved.size() + 1);
 }
 
-TEST(SmallArray, TakesMemoryForMoreThanItHoldsOnly) {
+TEST(SmallArray, AllocatesOnlyBeyondItsRoom) {
   const std::uint64_t before = total_bytes();
   {
     SmallArray<std::uint32_t, 2> list;

@@ -1,6 +1,6 @@
-// Own sorts, so that the order of equal items is the same with every standard library. Radix sort (least significant
-// byte first; bytes that are the same in all keys are skipped) for integer keys, merge sort for all else. Both are
-// stable. The caller gives the scratch memory, at least as many elements as there are items.
+// Sorts whose order of equal items is the same with every standard library: radix sort (least significant byte first;
+// bytes that are the same in all keys are skipped) for integer keys, merge sort for all else. Both are stable. The
+// caller provides the scratch memory, at least as many elements as there are items.
 #pragma once
 
 #include "base/check.h"
@@ -14,11 +14,11 @@ namespace gyre {
 
 namespace sort_detail {
 
-// Below this, insertion beats counting.
+// Below this, insertion sort is faster.
 constexpr std::size_t kFewKeys = 48;
 constexpr std::size_t kRun = 16;
 
-// How often each value of each byte occurs.
+// The number of occurrences of each value of each byte.
 struct ByteCounts {
   std::uint32_t count[8][256];
 
@@ -28,7 +28,7 @@ struct ByteCounts {
     }
   }
 
-  // Turns the counts of one byte into where each value starts. False if all keys have the same value there.
+  // Turns the counts of one byte into the start of each value. False if all keys have the same value there.
   bool make_starts(int byte, std::uint64_t any_key, std::size_t total) {
     std::uint32_t* const counts = count[byte];
     if (counts[any_key >> 8 * byte & 0xff] == total) return false;
@@ -52,7 +52,7 @@ void insertion_sort(T* items, std::size_t count, const Less& less) {
   }
 }
 
-// Two sorted neighbours, [begin, middle) and [middle, end), into one at the same place of `to`.
+// Merges two sorted neighbours, [begin, middle) and [middle, end), into the same range of `to`.
 template <class T, class Less>
 void merge(T* from, T* to, std::size_t begin, std::size_t middle, std::size_t end, const Less& less) {
   std::size_t left = begin;
@@ -87,7 +87,7 @@ inline void radix_sort_u64(std::span<std::uint64_t> keys, std::span<std::uint64_
   for (std::size_t i = 0; i < count; ++i) keys[i] = from[i];
 }
 
-// Sorts keys ascending and takes each key's value along; equal keys keep their order.
+// Sorts keys ascending together with their values; equal keys keep their order.
 inline void radix_sort_pairs(std::span<std::uint64_t> keys, std::span<std::uint32_t> values,
                              std::span<std::uint64_t> scratch_keys, std::span<std::uint32_t> scratch_values) {
   using namespace sort_detail;
@@ -105,9 +105,9 @@ inline void radix_sort_pairs(std::span<std::uint64_t> keys, std::span<std::uint3
     if (!counts.make_starts(byte, from[0], count)) continue;
     std::uint32_t* const next = counts.count[byte];
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t place = next[from[i] >> 8 * byte & 0xff]++;
-      to[place] = from[i];
-      to_values[place] = from_values[i];
+      const std::uint32_t index = next[from[i] >> 8 * byte & 0xff]++;
+      to[index] = from[i];
+      to_values[index] = from_values[i];
     }
     std::swap(from, to);
     std::swap(from_values, to_values);

@@ -1,4 +1,4 @@
-// Own sorts against the standard ones, including stability and keys that differ in few bytes.
+// The sorts against the standard ones, including stability and keys that differ in few bytes.
 #include "base/container/sort.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Blocks in large pages keep what they hold in every size, wherever they lie, and the system is asked for large pages.
+// Blocks in large pages keep their content in every size, wherever they move, and the system is asked for large pages.
 #include "base/memory/large_pages.h"
 
 #include <gtest/gtest.h>
@@ -25,16 +25,16 @@ unsigned char pattern(std::size_t i) { return static_cast<unsigned char>(i * 11 
 void fill(void* memory, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; ++i) static_cast<unsigned char*>(memory)[i] = pattern(i);
 }
-// The first byte that is another; `bytes` if none is.
+// The first byte with another value; `bytes` if there is none.
 std::size_t first_fault(const void* memory, std::size_t bytes) {
   std::size_t i = 0;
   while (i < bytes && static_cast<const unsigned char*>(memory)[i] == pattern(i)) ++i;
   return i;
 }
 
-// What is mapped behind the block in half of the sizes is in its way, so that it must go elsewhere.
-TEST_F(LargePages, EverySizeKeepsWhatItHeld) {
-  std::vector<void*> in_the_way;
+// In half of the sizes something is mapped behind the block, so that it must move.
+TEST_F(LargePages, EverySizeKeepsTheContent) {
+  std::vector<void*> behind;
   std::size_t bytes = 1;
   void* block = map_large_pages(bytes);
   ASSERT_NE(block, nullptr);
@@ -43,7 +43,7 @@ TEST_F(LargePages, EverySizeKeepsWhatItHeld) {
   for (const std::size_t wanted :
        {kLargePage, kLargePage + 1, 3 * kLargePage, 5 * kLargePage - 1, kLargePage / 2, 9 * kLargePage,
         4 * kLargePage, std::size_t{100}, 2 * kLargePage}) {
-    if (in_the_way.size() < 5) in_the_way.push_back(map_large_pages(1));
+    if (behind.size() < 5) behind.push_back(map_large_pages(1));
     void* const next = remap_large_pages(block, bytes, wanted);
     ASSERT_NE(next, nullptr);
     moved = moved || next != block;
@@ -54,9 +54,9 @@ TEST_F(LargePages, EverySizeKeepsWhatItHeld) {
     bytes = wanted;
     fill(block, bytes);
   }
-  EXPECT_TRUE(moved) << "nothing was ever in the way";
+  EXPECT_TRUE(moved) << "nothing was ever mapped behind";
   unmap_large_pages(block, bytes);
-  for (void* const other : in_the_way) unmap_large_pages(other, 1);
+  for (void* const other : behind) unmap_large_pages(other, 1);
 }
 
 TEST_F(LargePages, BeginAsZeroAlsoAfterTheyGrew) {
@@ -84,39 +84,39 @@ TEST_F(LargePages, MoreThanThereIsIsRefusedAndNothingLost) {
   unmap_large_pages(block, kLargePage);
 }
 
-// What the process has mapped, used or not, in small pages; 0 where the system does not tell.
+// Small pages that the process has mapped, used or not; 0 if the system does not tell.
 std::size_t mapped_pages() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   return pages;
 }
 
-// Places are cut out of larger ones, and moves leave one behind.
+// Blocks are cut out of larger ranges, and moves leave a range behind.
 TEST_F(LargePages, NothingStaysMapped) {
   if (mapped_pages() == 0) GTEST_SKIP() << "this system does not tell";
   const std::size_t before = mapped_pages();
   constexpr std::size_t kRounds = 50;
   for (std::size_t i = 0; i < kRounds; ++i) {
     void* block = map_large_pages(1);
-    void* const in_the_way = map_large_pages(1);
+    void* const behind = map_large_pages(1);
     block = remap_large_pages(block, 1, 4 * kLargePage);
     block = remap_large_pages(block, 4 * kLargePage, 2 * kLargePage);
     ASSERT_NE(block, nullptr);
     unmap_large_pages(block, 2 * kLargePage);
-    unmap_large_pages(in_the_way, 1);
+    unmap_large_pages(behind, 1);
   }
   // Less than a large page a round: the test's own heap may grow meanwhile.
   EXPECT_LT(mapped_pages(), before + kRounds * kLargePage / 4096 / 4);
 }
 
-// The first line of the place in the system's list that begins with `memory`, and its flags; empty if there is none.
-std::string flags_of_place(const void* memory) {
+// The first line and the flags of the range in the system's list that begins with `memory`; empty if there is none.
+std::string flags_of_range(const void* memory) {
   char begin[32];
   std::snprintf(begin, sizeof begin, "%lx-",
                 static_cast<unsigned long>(reinterpret_cast<std::uintptr_t>(memory)));
-  std::ifstream places("/proc/self/smaps");
+  std::ifstream ranges("/proc/self/smaps");
   bool found = false;
-  for (std::string line; std::getline(places, line);) {
+  for (std::string line; std::getline(ranges, line);) {
     if (line.compare(0, std::strlen(begin), begin) == 0) found = true;
     if (found && line.compare(0, 8, "VmFlags:") == 0) return line + ' ';
   }
@@ -127,15 +127,15 @@ TEST_F(LargePages, TheSystemIsAskedForThem) {
   if (!std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled")) GTEST_SKIP() << "this system has none";
   void* block = map_large_pages(3 * kLargePage);
   ASSERT_NE(block, nullptr);
-  const std::string flags = flags_of_place(block);
+  const std::string flags = flags_of_range(block);
   if (flags.empty()) GTEST_SKIP() << "this system does not tell";
   EXPECT_NE(flags.find(" hg "), std::string::npos) << flags;
-  void* const in_the_way = map_large_pages(1);
+  void* const behind = map_large_pages(1);
   block = remap_large_pages(block, 3 * kLargePage, 7 * kLargePage);
   ASSERT_NE(block, nullptr);
-  EXPECT_NE(flags_of_place(block).find(" hg "), std::string::npos) << "lost on the way";
+  EXPECT_NE(flags_of_range(block).find(" hg "), std::string::npos) << "lost by the move";
   unmap_large_pages(block, 7 * kLargePage);
-  unmap_large_pages(in_the_way, 1);
+  unmap_large_pages(behind, 1);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Counts blocks and hands them through to the hooks; the default is C's heap, which changes the size of large blocks without a copy
-// where the system can (operator new cannot), and for the largest the system itself (large_pages.h).
+// Counts blocks and forwards to the hooks. The default is C's heap, which resizes large blocks without a copy if the
+// system can (operator new cannot), and for the largest blocks the system itself (large_pages.h).
 #include "base/memory/memory.h"
 
 #include "base/check.h"
@@ -16,10 +16,11 @@ namespace gyre {
 
 namespace {
 
-// Less than this is copied: heaps move what is small, and forget its alignment.
+// Smaller blocks are copied: heaps move small blocks and lose their alignment.
 constexpr std::size_t kLargeBlock = 128 * 1024;  // bytes
 
-// WebAssembly has one flat memory without pages: there every move is a copy, and realloc() would only make modules larger.
+// WebAssembly has one flat memory without pages: every move there is a copy, and realloc() would only make modules
+// larger.
 #if defined(__wasm__)
 constexpr bool kMovesPages = false;
 #else
@@ -42,12 +43,12 @@ void* default_reallocate(void* memory, std::size_t, std::size_t bytes, std::size
 
 #else
 
-// From here on a block has large pages of its own. Why not half or twice as much: docs/decisions/memory.md.
+// Larger blocks have large pages of their own. Why not half or twice as much: docs/decisions/memory.md.
 constexpr std::size_t kPagedBlock = kLargePage / 4;  // bytes
 
 bool is_paged(std::size_t bytes) { return kHasLargePages && bytes >= kPagedBlock; }
 
-// In whole alignments, as C asks; null where that is more than there are numbers for.
+// Rounded up to whole alignments, as C requires; null if the result does not fit.
 void* default_allocate(std::size_t bytes, std::size_t align, void*) {
   if (is_paged(bytes)) return map_large_pages(bytes);
   if (bytes > SIZE_MAX - align) return nullptr;
@@ -83,16 +84,16 @@ constexpr AllocatorHooks kDefaultHooks{default_allocate, default_deallocate,
                                        kMovesPages ? default_reallocate : nullptr, nullptr};
 AllocatorHooks hooks = kDefaultHooks;
 
-// Statistics only: nothing is ordered by them.
+// Statistics only; they order nothing.
 std::atomic<std::uint64_t> bytes_out{0};
 std::atomic<std::uint64_t> blocks_ever{0};
 
 }  // namespace
 
-bool set_allocator(const AllocatorHooks& wanted) {
+bool set_allocator(const AllocatorHooks& new_hooks) {
   if (total_bytes() != 0) return false;
-  const bool complete = wanted.allocate != nullptr && wanted.deallocate != nullptr;
-  hooks = complete ? wanted : kDefaultHooks;
+  const bool complete = new_hooks.allocate != nullptr && new_hooks.deallocate != nullptr;
+  hooks = complete ? new_hooks : kDefaultHooks;
   return true;
 }
 
@@ -103,7 +104,7 @@ void* allocate(std::size_t bytes, std::size_t align) {
   if (bytes == 0) return nullptr;
   void* const memory = hooks.allocate(bytes, kMemoryAlign, hooks.user);
   if (memory == nullptr) out_of_memory(bytes);
-  GYRE_ASSERT(is_aligned(memory, kMemoryAlign), "the allocator hook honours the alignment asked for");
+  GYRE_ASSERT(is_aligned(memory, kMemoryAlign), "the allocator hook honours the alignment");
   bytes_out.fetch_add(bytes, std::memory_order_relaxed);
   blocks_ever.fetch_add(1, std::memory_order_relaxed);
   return memory;
@@ -115,20 +116,20 @@ void deallocate(void* memory, std::size_t bytes) {
   hooks.deallocate(memory, bytes, hooks.user);
 }
 
-void* reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t kept) {
-  GYRE_ASSERT(kept <= old_bytes && kept <= bytes, "what is kept is in both");
+void* reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t preserved) {
+  GYRE_ASSERT(preserved <= old_bytes && preserved <= bytes, "both sizes contain the preserved bytes");
   if (!kMovesPages || hooks.reallocate == nullptr || old_bytes < kLargeBlock || bytes < kLargeBlock) {
-    // Never both at once where there is nothing to copy.
-    if (kept == 0) deallocate(memory, old_bytes);
+    // Without anything to copy, the two blocks never exist at once.
+    if (preserved == 0) deallocate(memory, old_bytes);
     void* const moved = allocate(bytes);
-    if (kept == 0) return moved;
-    std::memcpy(moved, memory, kept);
+    if (preserved == 0) return moved;
+    std::memcpy(moved, memory, preserved);
     deallocate(memory, old_bytes);
     return moved;
   }
   void* const moved = hooks.reallocate(memory, old_bytes, bytes, kMemoryAlign, hooks.user);
   if (moved == nullptr) out_of_memory(bytes);
-  GYRE_ASSERT(is_aligned(moved, kMemoryAlign), "the allocator hook honours the alignment asked for");
+  GYRE_ASSERT(is_aligned(moved, kMemoryAlign), "the allocator hook honours the alignment");
   bytes_out.fetch_add(bytes - old_bytes, std::memory_order_relaxed);
   blocks_ever.fetch_add(1, std::memory_order_relaxed);
   return moved;

@@ -1,4 +1,4 @@
-// Blocks are aligned and counted, hooks see every block with its size, and are not changed while blocks are out.
+// Blocks are aligned and counted, and hooks see every block with its size and cannot change while blocks exist.
 #include "base/memory/memory.h"
 
 #include "base/container/array.h"
@@ -47,12 +47,12 @@ bool holds(const void* memory, std::size_t bytes) {
 }
 
 // From and to sizes that are copied, sizes that the heap changes and sizes in large pages.
-TEST(Memory, AnotherSizeKeepsWhatItHeld) {
+TEST(Memory, ReallocationKeepsTheContent) {
   const std::uint64_t bytes_before = total_bytes();
   std::size_t bytes = 1;
   void* memory = allocate(bytes);
   fill(memory, bytes);
-  void* const between = allocate(100'000);  // what follows in the heap is not free
+  void* const between = allocate(100'000);  // the memory behind it is in use
   for (const std::size_t wanted : {100u, 5000u, 200'001u, 3'000'000u, 150'000u, 1'000'064u, 9'000'000u,
                                    5'000'000u, 64u, 700'000u, 700'000u}) {
     const std::size_t kept = std::min(bytes, wanted);
@@ -72,7 +72,7 @@ TEST(Memory, AnotherSizeKeepsWhatItHeld) {
   EXPECT_EQ(total_bytes(), bytes_before);
 }
 
-// A block of the heap's own begins a large page by chance alone.
+// Blocks of the heap begin a large page only by chance.
 TEST(Memory, LargeBlocksBeginALargePageAndSmallOnesDoNot) {
   if (!kHasLargePages) GTEST_SKIP() << "no large pages here";
   const auto begins_a_page = [](void* memory) {
@@ -94,8 +94,8 @@ TEST(Memory, LargeBlocksBeginALargePageAndSmallOnesDoNot) {
   for (void* const block : small) deallocate(block, kFrom - 1);
 }
 
-// A heap that has given back something large keeps what is smaller in one piece of memory, moves it there byte by byte, and
-// knows nothing of alignment. What lies between and behind the blocks is of odd sizes and stays.
+// After a large block was freed, the heap keeps smaller blocks in one range, moves them there byte by byte, and loses
+// alignment. The blocks between and behind have odd sizes and stay.
 TEST(Memory, StaysAlignedWhereTheHeapMovesIt) {
   const std::uint64_t bytes_before = total_bytes();
   void* volatile large = std::malloc(24'000'000);
@@ -164,7 +164,7 @@ TEST(Memory, HooksSeeEveryBlock) {
   EXPECT_EQ(meter.taken, taken) << "the default heap is back";
 }
 
-// A hook that changes sizes is asked for large blocks alone; without one they are taken, copied and given back.
+// The hook resizes large blocks only; without one they are allocated, copied and freed.
 TEST(Memory, HooksMayChangeSizes) {
   for (const bool changes : {false, true}) {
     Meter meter;

@@ -1,4 +1,4 @@
-// Times of stages by the steady clock; results are shown through two small arrays that are filled when asked for.
+// Times of stages by the steady clock. Results are copied into two small arrays on request.
 #include "base/profile/profile.h"
 
 #include <chrono>

@@ -1,10 +1,10 @@
-// StageProfile: how long each stage of a step took, and counters beside it, for the last step and in all. Stages and
-// counters are indices into tables of names that the owner gives. Used by the thread that runs the step. Off, a zone
-// costs one test of a flag.
+// StageProfile: the time of each stage of a step, and counters, for the last step and in all. Stages and counters are
+// indices into the owner's tables of names. Used by the thread that runs the step. When disabled, a zone costs one test
+// of a flag.
 #pragma once
 
-#include "base/container/array.h"
 #include "base/check.h"
+#include "base/container/array.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +29,7 @@ class StageProfile {
   explicit StageProfile(std::span<const char* const> stage_names,
                         std::span<const char* const> counter_names = {});
 
-  // Off at first. Zones that are open when this changes are dropped.
+  // Off at first. A change drops the zones that are open.
   void set_enabled(bool enabled);
   bool enabled() const { return enabled_; }
 
@@ -37,8 +37,8 @@ class StageProfile {
   void begin_step() {
     if (enabled_) start_step();
   }
-  // A zone of a stage. One stage may have many zones in a step (they add up), and zones of different stages may nest
-  // (each then counts its own whole time).
+  // A zone of a stage. A stage may have many zones in a step, which add up. Zones of different stages may nest; each
+  // counts its own whole time.
   void begin(int stage) {
     if (enabled_) open(stage);
   }
@@ -49,7 +49,8 @@ class StageProfile {
     if (enabled_) add(counter, amount);
   }
 
-  // The step that began last; one entry per stage or counter, in table order. Valid until the next call of anything here.
+  // The step that began last; one entry per stage or counter, in table order. Valid until the next call of any function
+  // here.
   std::span<const StageTime> step_times() const;
   std::span<const StageCount> step_counts() const;
   // All steps since the start or the last clear().
@@ -60,7 +61,7 @@ class StageProfile {
   std::uint64_t total_nanoseconds(int stage) const { return stages_[stage].total; }
   std::uint64_t step_count() const { return steps_; }
 
-  // Forgets all times, counters and steps.
+  // Resets all times, counters and steps.
   void clear();
 
  private:
@@ -83,8 +84,8 @@ class StageProfile {
 
   Array<Stage> stages_;
   Array<Counter> counters_;
-  mutable Array<StageTime> times_;    // what the last *_times() showed
-  mutable Array<StageCount> counts_;  // what the last *_counts() showed
+  mutable Array<StageTime> times_;    // result of the last *_times()
+  mutable Array<StageCount> counts_;  // result of the last *_counts()
   std::uint64_t steps_ = 0;
   bool enabled_ = false;
 };

@@ -1,4 +1,4 @@
-// Zones add up per step and in all; switched off, nothing is counted.
+// Zones add up per step and in all; a disabled profile counts nothing.
 #include "base/profile/profile.h"
 
 #include <gtest/gtest.h>

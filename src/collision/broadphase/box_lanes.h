@@ -1,4 +1,4 @@
-// Eight boxes side by side, so that one loop tests them all: what the nodes of trees and the buckets of grids hold.
+// Eight boxes side by side, tested by one loop: the nodes of trees and the buckets of grids.
 #pragma once
 
 #include "math/wide.h"
@@ -28,7 +28,7 @@ inline void set_lane_box(BoxLanes& lanes, int lane, const Aabb& box) {
   }
 }
 
-// A box that nothing overlaps, for a lane without one.
+// A box that nothing overlaps, for an unused lane.
 inline void clear_lane_box(BoxLanes& lanes, int lane) {
   constexpr float kNever = std::numeric_limits<float>::infinity();
   set_lane_box(lanes, lane, {{kNever, kNever, kNever}, {-kNever, -kNever, -kNever}});
@@ -36,7 +36,7 @@ inline void clear_lane_box(BoxLanes& lanes, int lane) {
 
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// A box to be held against many lanes, W of them at once.
+// Tests one box against many lanes, W at once.
 template <int W>
 class OverlapLanes {
  public:
@@ -52,12 +52,12 @@ class OverlapLanes {
   GYRE_INLINE unsigned mask(const BoxLanes& lanes) const {
     unsigned bits = 0;
     GYRE_UNROLL
-    for (int first = 0; first < BoxLanes::kWidth; first += W) bits |= part(lanes, first) << first;
+    for (int first = 0; first < BoxLanes::kWidth; first += W) bits |= group_mask(lanes, first) << first;
     return bits;
   }
 
  private:
-  GYRE_INLINE unsigned part(const BoxLanes& lanes, int first) const {
+  GYRE_INLINE unsigned group_mask(const BoxLanes& lanes, int first) const {
     const auto load = [first](const float* from) { return Wide<W>::load(from + first); };
     const Mask<W> x = (load(lanes.low[0]) <= high_x_) & (load(lanes.high[0]) >= low_x_);
     const Mask<W> y = (load(lanes.low[1]) <= high_y_) & (load(lanes.high[1]) >= low_y_);

@@ -1,4 +1,4 @@
-// Building, changing and keeping up the wide tree. See box_tree.h.
+// Builds, changes and maintains the wide tree. See box_tree.h.
 #include "collision/broadphase/box_tree.h"
 
 #include <limits>
@@ -6,13 +6,14 @@
 namespace gyre {
 namespace {
 
-// Children of a node when it is built: room is left for those that come later.
+// Children of a new node; the remaining lanes are for later children.
 constexpr std::size_t kFill = 6;
 
-// A tree that was refitted serves until its nodes have this many times the surface, against their items, that they were built with.
-constexpr float kWorn = 1.2f;
+// After refits the tree is rebuilt once the surface of its nodes, relative to that of their items, has grown by this
+// factor.
+constexpr float kMaxLooseness = 1.2f;
 
-// Items below a node of this level, when it is built.
+// Items below a node of this level when it is built.
 std::size_t room_of(int level) {
   std::size_t room = kFill;
   for (int i = 0; i < level; ++i) room *= kFill;
@@ -49,12 +50,12 @@ float cost_of_groups(std::span<const Entry> entries, std::span<const std::size_t
   return cost;
 }
 
-// Few entries are parted along the axis that leaves the smallest surfaces, many along the longest.
-constexpr std::size_t kFew = 64;
+// Up to this many entries are split along the axis with the smallest surfaces, more along the longest axis.
+constexpr std::size_t kFewEntries = 64;
 
 // Orders the entries so that each group is one run, all of nearly the same size. At most eight groups.
 template <class Entry>
-void part_into_groups(std::span<Entry> entries, int groups, std::size_t* sizes) {
+void split_into_groups(std::span<Entry> entries, int groups, std::size_t* sizes) {
   if (groups == 1) {
     *sizes = entries.size();
     return;
@@ -62,20 +63,20 @@ void part_into_groups(std::span<Entry> entries, int groups, std::size_t* sizes) 
   const int left = groups / 2;
   const std::size_t middle = entries.size() * std::size_t(left) / std::size_t(groups);
   int best_axis = longest_axis<Entry>(entries);
-  if (entries.size() <= kFew) {
-    float least = std::numeric_limits<float>::infinity();
+  if (entries.size() <= kFewEntries) {
+    float min_cost = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
       partition_by_center(entries, middle, axis);
       const float cost = area_of<Entry>(entries.first(middle)) + area_of<Entry>(entries.subspan(middle));
-      if (cost < least) {
-        least = cost;
+      if (cost < min_cost) {
+        min_cost = cost;
         best_axis = axis;
       }
     }
   }
   partition_by_center(entries, middle, best_axis);
-  part_into_groups(entries.first(middle), left, sizes);
-  part_into_groups(entries.subspan(middle), groups - left, sizes + left);
+  split_into_groups(entries.first(middle), left, sizes);
+  split_into_groups(entries.subspan(middle), groups - left, sizes + left);
 }
 
 }  // namespace
@@ -87,7 +88,7 @@ Aabb BoxTree::bounds_of(const Node& node) {
 }
 
 std::uint32_t BoxTree::make_node(int level) {
-  const std::uint32_t index = take_place(nodes_, free_);
+  const std::uint32_t index = take_slot(nodes_, free_);
   Node& node = nodes_[index];
   for (int lane = 0; lane < kWidth; ++lane) {
     clear_lane_box(node, lane);
@@ -109,7 +110,7 @@ void BoxTree::free_node(std::uint32_t index) {
 void BoxTree::clear() {
   nodes_.clear();
   free_.clear();
-  for (std::uint32_t& place : places_) place = kNowhere;
+  for (std::uint32_t& slot : slots_) slot = kNowhere;
   root_ = kNowhere;
   next_improved_ = 0;
   size_ = 0;
@@ -120,7 +121,7 @@ void BoxTree::set_child(std::uint32_t node, int lane, const Entry& entry) {
   set_lane_box(n, lane, entry.box);
   n.child[lane] = entry.child;
   if (n.level == 0) {
-    places_[entry.child] = node * kWidth + std::uint32_t(lane);
+    slots_[entry.child] = node * kWidth + std::uint32_t(lane);
   } else {
     nodes_[entry.child].parent = node;
     nodes_[entry.child].lane = std::uint8_t(lane);
@@ -140,7 +141,7 @@ void BoxTree::remove_lane(std::uint32_t node, int lane) {
   n.child[last] = kNowhere;
 }
 
-// Makes the boxes that ancestors keep of `node` exact again, as far up as they change.
+// Makes the boxes of `node` in its ancestors exact again, as far up as they change.
 void BoxTree::refit_up(std::uint32_t node) {
   while (nodes_[node].parent != kNowhere) {
     const Aabb box = bounds_of(nodes_[node]);
@@ -164,8 +165,8 @@ void BoxTree::shorten_root() {
 // ------------------------------------------------------------------------------------------------ one at a time
 
 void BoxTree::insert(std::uint32_t item, const Aabb& box) {
-  if (places_.size() <= item) places_.resize(std::size_t(item) + 1, kNowhere);
-  GYRE_ASSERT(places_[item] == kNowhere, "the item is not in the tree yet");
+  if (slots_.size() <= item) slots_.resize(std::size_t(item) + 1, kNowhere);
+  GYRE_ASSERT(slots_[item] == kNowhere, "the item is not in the tree yet");
   insert_entry({box, item});
   ++size_;
 }
@@ -175,7 +176,7 @@ void BoxTree::insert_entry(const Entry& entry) {
   std::uint32_t index = root_;
   while (nodes_[index].level > 0) {
     Node& node = nodes_[index];
-    // The child that grows least in surface; among equals the smallest.
+    // The child whose surface grows least; among equals the smallest.
     int best = 0;
     float min_growth = std::numeric_limits<float>::infinity(), min_area = min_growth;
     for (int lane = 0; lane < node.count; ++lane) {
@@ -214,22 +215,22 @@ void BoxTree::add_or_split(std::uint32_t node, Entry entry) {
   }
 }
 
-// Shares the children of a full node and one more between it and a new sibling, which is returned.
+// Divides the children of a full node and one more between the node and a new sibling, which is returned.
 std::uint32_t BoxTree::split(std::uint32_t node, const Entry& extra) {
   constexpr int kCount = kWidth + 1;
   Entry by_axis[3][kCount];
-  float least = std::numeric_limits<float>::infinity();
+  float min_cost = std::numeric_limits<float>::infinity();
   int best_axis = 0, best_left = kCount / 2;
   for (int axis = 0; axis < 3; ++axis) {
     Entry* const sorted = by_axis[axis];
     for (int i = 0; i < kCount; ++i) {
       const Entry entry = i < kWidth ? Entry{lane_box(nodes_[node], i), nodes_[node].child[i]} : extra;
       const float key = entry.box.low[axis] + entry.box.high[axis];
-      int place = i;
-      for (; place > 0 && key < sorted[place - 1].box.low[axis] + sorted[place - 1].box.high[axis]; --place) {
-        sorted[place] = sorted[place - 1];
+      int k = i;
+      for (; k > 0 && key < sorted[k - 1].box.low[axis] + sorted[k - 1].box.high[axis]; --k) {
+        sorted[k] = sorted[k - 1];
       }
-      sorted[place] = entry;
+      sorted[k] = entry;
     }
     float right_area[kCount];
     Aabb right = sorted[kCount - 1].box;
@@ -242,8 +243,8 @@ std::uint32_t BoxTree::split(std::uint32_t node, const Entry& extra) {
       left = merge(left, sorted[count - 1].box);
       if (count < kMinInHalf || kCount - count < kMinInHalf) continue;
       const float cost = float(count) * half_area(left) + float(kCount - count) * right_area[count];
-      if (cost < least) {
-        least = cost;
+      if (cost < min_cost) {
+        min_cost = cost;
         best_axis = axis;
         best_left = count;
       }
@@ -257,9 +258,9 @@ std::uint32_t BoxTree::split(std::uint32_t node, const Entry& extra) {
 
 void BoxTree::remove(std::uint32_t item) {
   GYRE_ASSERT(contains(item), "the item is in the tree");
-  std::uint32_t node = places_[item] / kWidth;
-  int lane = int(places_[item] % kWidth);
-  places_[item] = kNowhere;
+  std::uint32_t node = slots_[item] / kWidth;
+  int lane = int(slots_[item] % kWidth);
+  slots_[item] = kNowhere;
   --size_;
   for (;;) {
     remove_lane(node, lane);
@@ -279,7 +280,7 @@ void BoxTree::remove(std::uint32_t item) {
 
 void BoxTree::move(std::uint32_t item, const Aabb& box) {
   GYRE_ASSERT(contains(item), "the item is in the tree");
-  const std::uint32_t index = places_[item] / kWidth;
+  const std::uint32_t index = slots_[item] / kWidth;
   Node& node = nodes_[index];
   bool stays = node.parent == kNowhere;
   if (!stays) {
@@ -288,7 +289,7 @@ void BoxTree::move(std::uint32_t item, const Aabb& box) {
     stays = gyre::contains(home, {middle, middle});
   }
   if (stays) {
-    set_lane_box(node, int(places_[item] % kWidth), box);
+    set_lane_box(node, int(slots_[item] % kWidth), box);
     refit_up(index);
   } else {
     remove(item);
@@ -308,7 +309,7 @@ void BoxTree::finish_build() {
   if (entries_.empty()) return;
   std::uint32_t highest = 0;
   for (const Entry& entry : entries_) highest = max(highest, entry.child);
-  if (places_.size() <= highest) places_.resize(std::size_t(highest) + 1, kNowhere);
+  if (slots_.size() <= highest) slots_.resize(std::size_t(highest) + 1, kNowhere);
   size_ = entries_.size();
   int level = 0;
   while (size_ > room_of(level)) ++level;
@@ -316,9 +317,10 @@ void BoxTree::finish_build() {
   looseness_ = refit_nodes();
 }
 
-bool BoxTree::refit() { return refit_nodes() <= kWorn * looseness_; }
+bool BoxTree::refit() { return refit_nodes() <= kMaxLooseness * looseness_; }
 
-// Makes the boxes that nodes keep of their children exact, from the bottom up. Returns their surface over that of the items.
+// Makes the boxes of children in all nodes exact, from the bottom up. Returns their surface divided by that of the
+// items.
 float BoxTree::refit_nodes() {
   if (root_ == kNowhere) return 0.0f;
   float items = 0.0f, inner = 0.0f;
@@ -344,7 +346,7 @@ std::uint32_t BoxTree::build_node(std::span<Entry> entries, int level, int lowes
   const std::size_t room = room_of(level - 1);
   std::size_t sizes[kWidth];
   const int groups = int((entries.size() + room - 1) / room);
-  part_into_groups<Entry>(entries, groups, sizes);
+  split_into_groups<Entry>(entries, groups, sizes);
   for (int i = 0; i < groups; ++i) {
     const std::uint32_t child = build_node(entries.first(sizes[i]), level - 1, lowest);
     append_child(node, {bounds_of(nodes_[child]), child});
@@ -357,7 +359,7 @@ void BoxTree::improve(std::size_t changes) {
   if (root_ == kNowhere) return;
   constexpr std::size_t kChangesPerNode = 256;
   int nodes = int(1 + changes / kChangesPerNode);
-  // Most nodes lie on level 0 and have nothing to regroup: they are passed by, a bounded number of them.
+  // Most nodes are on level 0 and have nothing to regroup: a bounded number of them is skipped.
   for (int passed = 0; nodes > 0 && passed < 16 * nodes + 64; ++passed) {
     if (next_improved_ >= nodes_.size()) next_improved_ = 0;
     const std::uint32_t index = next_improved_++;
@@ -380,20 +382,20 @@ void BoxTree::regroup(std::uint32_t index) {
   }
   const int groups = int(min((count + kFill - 1) / kFill, std::size_t(kWidth)));
   std::size_t sizes[kWidth];
-  part_into_groups<Entry>({entries, count}, groups, sizes);
+  split_into_groups<Entry>({entries, count}, groups, sizes);
   const float cost = cost_of_groups(std::span<const Entry>(entries, count), {sizes, std::size_t(groups)});
-  // Fewer groups are taken at any price: empty places cost walks, too.
+  // Fewer groups are always better: empty lanes cost traversal time, too.
   if (groups >= groups_before && cost >= cost_before) return;
   while (nodes_[index].count > 0) {
     const int lane = nodes_[index].count - 1;
     free_node(nodes_[index].child[lane]);
     remove_lane(index, lane);
   }
-  std::span<Entry> rest(entries, count);
+  std::span<Entry> left(entries, count);
   for (int i = 0; i < groups; ++i) {
-    const std::uint32_t child = build_node(rest.first(sizes[i]), level - 1, level - 1);
+    const std::uint32_t child = build_node(left.first(sizes[i]), level - 1, level - 1);
     append_child(index, {bounds_of(nodes_[child]), child});
-    rest = rest.subspan(sizes[i]);
+    left = left.subspan(sizes[i]);
   }
   refit_up(index);
   shorten_root();
@@ -434,8 +436,7 @@ const char* BoxTree::find_fault(std::uint32_t index, std::size_t& items) const {
     }
     if (node.level == 0) {
       ++items;
-      if (places_[node.child[lane]] != index * kWidth + std::uint32_t(lane))
-        return "an item's place is wrong";
+      if (slots_[node.child[lane]] != index * kWidth + std::uint32_t(lane)) return "an item's slot is wrong";
       continue;
     }
     const Node& child = nodes_[node.child[lane]];

@@ -1,23 +1,23 @@
-// A wide tree of moving boxes: eight boxes a node, side by side, so that one loop tests them all. All leaves lie at the
-// same depth, as in a B-tree, so the tree cannot degenerate whatever is inserted and removed.
+// A bounding volume hierarchy of moving boxes with eight boxes a node, side by side, so that one loop tests them all.
+// All leaves lie at the same depth, as in a B-tree, so the tree cannot degenerate under any insertions and removals.
 //
-// In: items (small indices) with boxes. Out: walks over the items whose boxes overlap a box. A box that stays inside its
-// node's is changed in place; others are taken out and put in again. Nodes that overflow are split where the two halves'
-// surfaces are smallest. Each improve() regroups the grandchildren of a few nodes, in turn, so quality is kept up by
-// bounded work a step. Many items at once are built from the top by halving along the longest side; where many of them move, but
-// little against each other, nodes are only made to fit again.
+// In: items (small indices) with boxes. Out: the items whose boxes overlap a box or a cast. A box that stays inside its
+// node's box changes in place; others are removed and inserted. Overfull nodes are split so that the surfaces of both
+// halves are smallest. Each improve() regroups the grandchildren of a few nodes, in turn, which maintains the quality
+// at a bounded cost a step. Many items at once are built from the top by halving along the longest side. If many boxes
+// move but little against each other, the nodes are only refitted.
 //
-// Which items a walk finds never depends on the tree's shape, only their order does.
+// The set of items found never depends on the shape of the tree, only their order does.
 //
-// Sources: A. Guttman, "R-Trees", 1984; N. Beckmann et al., "The R*-Tree", 1990 (choice of split by surface);
-// I. Wald et al., "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs", 2008.
+// Sources: A. Guttman, "R-Trees", 1984; N. Beckmann et al., "The R*-Tree", 1990 (choice of split by surface); I. Wald
+// et al., "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs", 2008.
 #pragma once
 
 #include "base/arena/shrink_policy.h"
 #include "base/container/array.h"
 #include "collision/broadphase/box_lanes.h"
-#include "collision/broadphase/box_sweep.h"
 #include "collision/broadphase/box_walk.h"
+#include "collision/broadphase/cast_box.h"
 
 #include <gyre/math.h>
 
@@ -29,37 +29,37 @@ namespace gyre {
 class BoxTree {
  public:
   static constexpr int kWidth = BoxLanes::kWidth;
-  static constexpr std::size_t kRebuildShare = 4;  // building is cheaper when more than a quarter changes
+  static constexpr std::size_t kRebuildShare = 4;  // a build is cheaper if more than a quarter changes
 
   std::size_t size() const { return size_; }
-  bool contains(std::uint32_t item) const { return item < places_.size() && places_[item] != kNowhere; }
+  bool contains(std::uint32_t item) const { return item < slots_.size() && slots_[item] != kNowhere; }
 
   void clear();
-  // Forgets everything and builds anew: items[i] has boxes[i].
+  // Rebuilds the whole tree: items[i] has boxes[i].
   void build(std::span<const std::uint32_t> items, std::span<const Aabb> boxes);
-  // The same for items that come one by one: begin_build(), add_to_build() for each, finish_build().
+  // The same for items one by one: begin_build(), add_to_build() for each, finish_build().
   void begin_build() {
     clear();
     entries_.clear();
   }
   void add_to_build(std::uint32_t item, const Aabb& box) { entries_.push_back({box, item}); }
   void finish_build();
-  // To be called once a step: what a build needed is given back when none came for long.
+  // To be called once a step: releases the memory of builds if there was no build for long.
   void trim() {
     clock_.trim(entries_, entries_.size());
     entries_.clear();
   }
   void insert(std::uint32_t item, const Aabb& box);
   void remove(std::uint32_t item);
-  // Gives an item that is in the tree another box.
+  // Changes the box of an item in the tree.
   void move(std::uint32_t item, const Aabb& box);
-  // Many boxes at once, nothing in or out: place() for each, and then refit() before anything is asked. False once the nodes have
-  // grown so much against the boxes in them that the tree should be built anew.
-  void place(std::uint32_t item, const Aabb& box) {
-    set_lane_box(nodes_[places_[item] / kWidth], int(places_[item] % kWidth), box);
+  // Changes many boxes at once without insertions or removals: set_box() for each, then refit() before any query.
+  // refit() returns false once the nodes are so loose that the tree should be rebuilt.
+  void set_box(std::uint32_t item, const Aabb& box) {
+    set_lane_box(nodes_[slots_[item] / kWidth], int(slots_[item] % kWidth), box);
   }
   bool refit();
-  // Regroups the children of a few inner nodes, going round the tree from call to call: one, and more after many changes.
+  // Regroups the children of a few inner nodes, in turn: one node, and more after many changes.
   void improve(std::size_t changes);
 
   // Calls visit(item) for each item whose box overlaps `box`.
@@ -73,13 +73,13 @@ class BoxTree {
     } while (walk.depth > 0);
   }
 
-  // Calls visit(item, reach) for each item whose box the sweep may touch from t = 0 to `reach`, roughly from near to far; it
-  // returns the new reach, below 0 to end the walk. Returns the last one.
+  // Calls visit(item, max_fraction) for each item whose box the cast may touch from t = 0 to `max_fraction`, roughly
+  // from near to far. visit returns the new max_fraction, below 0 to end. Returns the last one.
   template <class Visit>
-  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
-    if (size_ == 0) return reach;
+  float for_each_along(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
+    if (size_ == 0) return max_fraction;
     static_assert(kMaxLevels * kWidth <= RayTraversal::kRoom);
-    RayTraversal walk(sweep.line(), root_, reach);
+    RayTraversal walk(cast_test.line(), root_, max_fraction);
     while (walk_line_(nodes_.data(), walk)) {
       walk.max_fraction = visit(walk.leaf, walk.reach);
       if (walk.max_fraction < 0.0f) break;
@@ -89,7 +89,7 @@ class BoxTree {
 
   // The box of an item that is in the tree.
   Aabb box_of(std::uint32_t item) const {
-    return lane_box(nodes_[places_[item] / kWidth], int(places_[item] % kWidth));
+    return lane_box(nodes_[slots_[item] / kWidth], int(slots_[item] % kWidth));
   }
   // Calls visit(box, depth) for every node, from the root (depth 0) down.
   template <class Visit>
@@ -106,11 +106,11 @@ class BoxTree {
     }
   }
 
-  // Null if all nodes hold what they should, otherwise what is wrong. Walks everything: for tests and debug builds.
+  // Null if all nodes are right, otherwise the fault in words. Visits everything: for tests and debug builds.
   const char* find_fault() const;
-  // Sum over inner nodes of their boxes' surface over the root's: how many nodes a walk meets, roughly.
+  // Sum of the surfaces of inner nodes over the root's: roughly the number of nodes that a query visits.
   double cost() const;
-  std::size_t bytes() const { return nodes_.bytes() + places_.bytes() + free_.bytes() + entries_.bytes(); }
+  std::size_t bytes() const { return nodes_.bytes() + slots_.bytes() + free_.bytes() + entries_.bytes(); }
 
  private:
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
@@ -119,7 +119,7 @@ class BoxTree {
 
   using Node = BoxTreeNode;
 
-  // A child on its way from node to node.
+  // A child between two nodes.
   struct Entry {
     Aabb box;
     std::uint32_t child;
@@ -146,17 +146,17 @@ class BoxTree {
   RayTraversalKernel<BoxTreeNode> walk_line_ = select_box_ray_traversal();
   Array<Node> nodes_;
   Array<std::uint32_t> free_;
-  Array<std::uint32_t> places_;  // by item: kWidth * node + lane, or kNowhere
-  Array<Entry> entries_;         // of the present build
+  Array<std::uint32_t> slots_;  // by item: kWidth * node + lane, or kNowhere
+  Array<Entry> entries_;        // of the present build
   ShrinkPolicy clock_;
   std::uint32_t root_ = kNowhere;
   std::uint32_t next_improved_ = 0;
-  float looseness_ = 0.0f;  // when it was built: surface of the nodes over that of the boxes
+  float looseness_ = 0.0f;  // surface of the nodes over that of the boxes when it was built
   std::size_t size_ = 0;
 };
 
-// Puts the entries that belong into the lower `middle` places there, by their boxes' centres along `axis`: quickselect,
-// median of three. The result is a function of the input alone.
+// Moves the entries with the lowest centres along `axis` into the first `middle` positions: quickselect, median of
+// three. The result is a function of the input alone.
 template <class Entry>
 void partition_by_center(std::span<Entry> entries, std::size_t middle, int axis) {
   const auto key = [axis](const Entry& entry) { return entry.box.low[axis] + entry.box.high[axis]; };
@@ -173,7 +173,8 @@ void partition_by_center(std::span<Entry> entries, std::size_t middle, int axis)
       entries[i++] = entries[k];
       entries[k--] = swapped;
     }
-    // [low, i) is not above the pivot, [i, high) not below it; between them may stand one equal to it.
+    // Entries in [low, i) are not above the pivot, those in [i, high) not below it; one equal to it may stand between
+    // them.
     const std::size_t cut = i == low ? low + 1 : i;
     if (middle < cut) {
       high = cut;

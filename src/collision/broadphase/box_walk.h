@@ -1,8 +1,8 @@
-// The walk over a wide tree of boxes that most of a search for pairs is spent in: which items' boxes overlap a box. And that of
-// casts: which items' boxes lie on the way of one (geometry/tree/ray_traversal.h).
+// The traversals of a wide tree of boxes: the overlap test, in which the search for pairs spends most of its time, and
+// that of casts (geometry/tree/ray_traversal.h).
 //
-// In: nodes, eight boxes side by side in each. Out: items, by the handful: whoever walks looks at what was found and goes on. It is
-// a kernel, since a processor with eight lanes tests a node by a third of the instructions.
+// In: nodes with eight boxes each. Out: items, a few at a time; the caller handles them and calls again. The traversals
+// are kernels: eight lanes test a node with a third fewer instructions.
 #pragma once
 
 #include "collision/broadphase/box_lanes.h"
@@ -22,16 +22,16 @@ struct alignas(64) BoxTreeNode : BoxLanes {
   std::uint8_t used;   // 0: the node is on the free list
 };
 
-// A walk on its way: over when nothing waits any more.
+// The state of a traversal; it is over when no node waits.
 struct BoxWalk {
-  // Nodes hold three or more children when they are made, so 3^24 items at least.
+  // New nodes have three or more children, so this is enough for 3^24 items.
   static constexpr int kMaxLevels = 24;
   static constexpr int kRoom = 64;
 
   const Aabb box;
   int found_count = 0;
   int depth = 1;
-  // Not cleared: only the counted ones are ever read.
+  // Not cleared: only counted ones are read.
   union {
     std::uint32_t found[kRoom];
   };
@@ -42,10 +42,10 @@ struct BoxWalk {
   BoxWalk(const Aabb& of, std::uint32_t root) : box(of) { waiting[0] = root; }
 };
 
-// Goes on until nothing waits or `found`, which is emptied before, has no room for another node.
+// Continues until no node waits or `found`, which is emptied first, has no room for another node.
 using WalkBoxes = void (*)(const BoxTreeNode* nodes, BoxWalk& walk);
 
-// The one that this machine runs best.
+// The kernels that this machine runs best.
 WalkBoxes select_box_walk();
 RayTraversalKernel<BoxTreeNode> select_box_ray_traversal();
 

@@ -1,4 +1,4 @@
-// Walks over trees of boxes for one kind of CPU, in a namespace of its own so that the linker can never mix it with others'.
+// Traversals of box trees for one kind of CPU, in their own namespace so that the linker cannot mix kinds.
 #define GYRE_TARGET_NAMESPACE target_avx2
 #include "collision/broadphase/box_walk_lanes.h"
 

@@ -1,4 +1,4 @@
-// The walk over a wide tree with W lanes at once. See box_walk.h.
+// The overlap traversal of a wide tree with W lanes at once. See box_walk.h.
 #pragma once
 
 #include "collision/broadphase/box_walk.h"
@@ -14,7 +14,8 @@ GYRE_INLINE std::uint32_t leaf_mark(const BoxTreeNode& node) {
   return node.level == 0 ? StaticNode::kLeafBit : 0;
 }
 
-// Two nodes at once, so that neither waits for the other, and without asking which of their children it is that overlap.
+// Tests two nodes at once, so that neither waits for the other, and packs the children that overlap without a branch
+// for each.
 template <int W>
 void walk_boxes(const BoxTreeNode* nodes, BoxWalk& walk) {
   const OverlapLanes<W> test(walk.box);
@@ -29,12 +30,12 @@ void walk_boxes(const BoxTreeNode* nodes, BoxWalk& walk) {
   };
   while (top != walk.waiting && found <= full) {
     const BoxTreeNode& first = nodes[*--top];
-    // If nothing else waits, what did before stands for it.
+    // Without a second node an old entry is read in its place and its result ignored.
     const bool is_alone = top == walk.waiting;
     top -= is_alone ? 0 : 1;
     const BoxTreeNode& second = nodes[*top];
     const unsigned first_lanes = test.mask(first), second_lanes = is_alone ? 0 : test.mask(second);
-    // The one below goes first, so that of each level no more than the children of two wait.
+    // The lower one goes first, so that each level holds no more than the children of two nodes.
     put(second, second_lanes);
     put(first, first_lanes);
   }

@@ -1,4 +1,4 @@
-// Walks over trees at every width against plain loops over all boxes, with more found than fits at once.
+// Traversals of trees at every width against plain loops over all boxes, with more results than fit at once.
 #include "collision/broadphase/box_walk.h"
 
 #include "collision/broadphase/box_walk_lanes.h"
@@ -18,16 +18,16 @@ struct Tree {
   std::vector<BoxTreeNode> nodes;
   std::vector<Aabb> boxes;
 
-  explicit Tree(Random& random, std::uint32_t least = 1) : least_(least) {
+  explicit Tree(Random& random, std::uint32_t min_children = 1) : min_children_(min_children) {
     nodes.resize(1), fill(0, kLevel, random);
   }
 
   static constexpr int kLevel = 3;  // of the root
 
  private:
-  // Some of the node's lanes, and all below them; returns the box around these.
+  // Fills some lanes of the node and all nodes below; returns their bounds.
   Aabb fill(std::size_t index, int level, Random& random) {
-    const std::uint32_t count = least_ + random.next(BoxLanes::kWidth + 1 - least_);
+    const std::uint32_t count = min_children_ + random.next(BoxLanes::kWidth + 1 - min_children_);
     nodes[index].level = std::uint8_t(level);
     for (int lane = 0; lane < BoxLanes::kWidth; ++lane) clear_lane_box(nodes[index], lane);
     Aabb around;
@@ -50,11 +50,11 @@ struct Tree {
     return around;
   }
 
-  std::uint32_t least_;  // children of a node
+  std::uint32_t min_children_;  // children of a node
 };
 
 std::vector<std::uint32_t> walk_all(WalkBoxes walk_boxes, const Tree& tree, const Aabb& box) {
-  // Of each level below the root no more than the children of two nodes.
+  // For each level below the root, no more than the children of two nodes.
   constexpr int kMaxWaiting = 2 * Tree::kLevel * BoxLanes::kWidth;
   std::vector<std::uint32_t> all;
   BoxWalk walk(box, 0);
@@ -68,9 +68,9 @@ std::vector<std::uint32_t> walk_all(WalkBoxes walk_boxes, const Tree& tree, cons
   return all;
 }
 
-TEST(BoxWalk, FindsWhatOverlaps) {
+TEST(BoxWalk, FindsOverlaps) {
   Random random(7);
-  std::size_t most = 0;
+  std::size_t max_found = 0;
   for (int round = 0; round < 200; ++round) {
     const Tree tree(random);
     const Vec3 low = random.vector(-7, 7);
@@ -83,9 +83,9 @@ TEST(BoxWalk, FindsWhatOverlaps) {
     EXPECT_EQ(walk_all(walk_boxes<4>, tree, box), expected);
     EXPECT_EQ(walk_all(walk_boxes<8>, tree, box), expected);
     EXPECT_EQ(walk_all(select_box_walk(), tree, box), expected);
-    most = std::max(most, expected.size());
+    max_found = std::max(max_found, expected.size());
   }
-  EXPECT_GT(most, std::size_t(BoxWalk::kRoom)) << "no walk went on after its room was full";
+  EXPECT_GT(max_found, std::size_t(BoxWalk::kRoom)) << "no walk went on after its room was full";
 }
 
 TEST(BoxWalk, FindsAllOfFullNodes) {

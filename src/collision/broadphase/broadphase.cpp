@@ -6,7 +6,7 @@
 #include "collision/broadphase/broadphase_bvh.h"
 #include "collision/broadphase/broadphase_grid.h"
 #include "collision/broadphase/broadphase_kdtree.h"
-#include "collision/broadphase/broadphase_sweep.h"
+#include "collision/broadphase/broadphase_sap.h"
 #include "collision/broadphase/loose_tree.h"
 
 namespace gyre {
@@ -37,7 +37,7 @@ std::unique_ptr<Broadphase> make_broadphase(BroadPhaseKind kind) {
     case BroadPhaseKind::bsp_tree:
       return std::make_unique<BroadphaseBase<BspTree>>();
     case BroadPhaseKind::sweep_and_prune:
-      return std::make_unique<BroadphaseSweep>();
+      return std::make_unique<BroadphaseSap>();
     case BroadPhaseKind::brute_force:
       return std::make_unique<BroadphaseBrute>();
   }

@@ -1,15 +1,15 @@
-// What all broad phases but brute force have in common: two indices of boxes, one of fixed and one of moving proxies, so
-// that what never moves costs nothing and is asked only by what moves. Proxies without bounds (planes) lie in a list of
-// their own: in an index they would overlap every query and swell every box above them.
+// The common base of all broad phases but brute force: two indices of boxes, one of fixed and one of moving proxies.
+// Fixed proxies cost nothing, and only moving ones query them. Proxies without bounds (planes) have a list of their
+// own; in an index they would overlap every query and swell every box above them.
 //
-// The index is what a broad phase is named after. It holds items (small numbers) with boxes, and has
+// The index names the broad phase. It contains items (small numbers) with boxes, and has
 //   insert(item, box), remove(item), move(item, box), clear(), begin_build(), add_to_build(item, box), finish_build(),
-//   kRebuildShare         when more than one in so many changes at once, building is cheaper
-//   place(item, box), refit()    if it has these: many boxes changed at once; refit() is false where building is better
-//   improve(changes)      upkeep after so many changes, before anything is asked; not called after a build
-//   for_each_overlap(box, visit), for_each_along(sweep, reach, visit), for_each_node(visit)
+//   kRebuildShare                building is cheaper if more than one in so many changes at once
+//   set_box(item, box), refit()  optional: many boxes changed at once; refit() is false if building is better
+//   improve(changes)             upkeep after so many changes, before any query; not called after a build
+//   for_each_overlap(box, visit), for_each_along(cast_test, max_fraction, visit), for_each_node(visit)
 //   contains(item), box_of(item), size(), bytes(), trim(), find_fault()
-// Walks may visit more items than overlap, but each at most once: every candidate is looked at again here.
+// An index may visit items that do not overlap, but each at most once: this class tests every candidate again.
 #pragma once
 
 #include "base/container/sort.h"
@@ -27,7 +27,7 @@ class BroadphaseBase : public Broadphase {
   void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
                   TaskSystem& tasks, Array<std::uint64_t>& pairs) override;
   void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const override;
-  float cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
+  float cast(std::span<const Proxy> proxies, const CastBox& cast_box, float max_fraction,
              CastVisit visit) const override;
   void trim() override;
   std::size_t bytes() const override;
@@ -45,8 +45,8 @@ class BroadphaseBase : public Broadphase {
   PairCollector collector_;
 
  private:
-  // When this many and the index's own share of its items change at once, it is built anew instead of changed.
-  static constexpr std::size_t kManyChanges = 64;
+  // If more than this many and the index's own share of its items change at once, it is rebuilt.
+  static constexpr std::size_t kMinRebuildChanges = 64;
 
   static Home home_of(const Proxy& proxy) {
     if (proxy.motion == ProxyMotion::none) return kNoHome;
@@ -59,17 +59,17 @@ class BroadphaseBase : public Broadphase {
   void add(std::uint32_t index, const Proxy& proxy, Home home);
   void remove(std::uint32_t index);
   void change(std::span<const Proxy> proxies, std::uint32_t index, const bool* build);
-  // Many boxes of the index changed, none came or went.
+  // Sets many boxes of the index, without insertions or removals.
   static constexpr bool kRefits = requires(Index & index) { index.refit(); };
-  void place_all(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed, Home home);
+  void set_boxes(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed, Home home);
 };
 
-namespace parted_detail {
+namespace sorted_list {
 
 inline void insert_sorted(Array<std::uint32_t>& list, std::uint32_t index) {
-  std::size_t place = 0;
-  while (place < list.size() && list[place] < index) ++place;
-  list.insert_at(place, index);
+  std::size_t k = 0;
+  while (k < list.size() && list[k] < index) ++k;
+  list.insert_at(k, index);
 }
 
 inline void erase_sorted(Array<std::uint32_t>& list, std::uint32_t index) {
@@ -81,7 +81,7 @@ inline void erase_sorted(Array<std::uint32_t>& list, std::uint32_t index) {
   }
 }
 
-}  // namespace parted_detail
+}  // namespace sorted_list
 
 template <class Index>
 void BroadphaseBase<Index>::build_index(std::span<const Proxy> proxies, Home home) {
@@ -107,19 +107,19 @@ void BroadphaseBase<Index>::rebuild(std::span<const Proxy> proxies) {
 template <class Index>
 void BroadphaseBase<Index>::add(std::uint32_t index, const Proxy& proxy, Home home) {
   homes_[index] = home;
-  if (home == kUnboundedList) parted_detail::insert_sorted(unbounded_, index);
+  if (home == kUnboundedList) sorted_list::insert_sorted(unbounded_, index);
   if (has_index(home)) indices_[home].insert(index, proxy.fat_box);
 }
 
 template <class Index>
 void BroadphaseBase<Index>::remove(std::uint32_t index) {
   const Home home = homes_[index];
-  if (home == kUnboundedList) parted_detail::erase_sorted(unbounded_, index);
+  if (home == kUnboundedList) sorted_list::erase_sorted(unbounded_, index);
   if (has_index(home)) indices_[home].remove(index);
   homes_[index] = kNoHome;
 }
 
-// `build`: which indices are to be built anew; they are empty now.
+// `build`: the indices to be rebuilt; they are empty now.
 template <class Index>
 void BroadphaseBase<Index>::change(std::span<const Proxy> proxies, std::uint32_t index, const bool* build) {
   const Home old = homes_[index];
@@ -137,13 +137,13 @@ void BroadphaseBase<Index>::change(std::span<const Proxy> proxies, std::uint32_t
 }
 
 template <class Index>
-void BroadphaseBase<Index>::place_all(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed,
+void BroadphaseBase<Index>::set_boxes(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed,
                                       Home home) {
   if constexpr (kRefits) {
     std::size_t count = 0;
     for (const std::uint32_t index : changed) {
       if (homes_[index] != home) continue;
-      indices_[home].place(index, proxies[index].fat_box);
+      indices_[home].set_box(index, proxies[index].fat_box);
       ++count;
     }
     if (indices_[home].refit()) {
@@ -169,10 +169,10 @@ void BroadphaseBase<Index>::update(std::span<const Proxy> proxies, std::span<con
   bool build[2];
   for (const Home home : {kFixed, kMoving}) {
     build[home] =
-        changes[home] > kManyChanges && changes[home] > indices_[home].size() / Index::kRebuildShare;
+        changes[home] > kMinRebuildChanges && changes[home] > indices_[home].size() / Index::kRebuildShare;
     if (kRefits && build[home] && stay[home]) continue;
     stay[home] = false;
-    // An index that is to be built anew is emptied first, so that no change below touches it.
+    // An index to be rebuilt is emptied first, so that no change below touches it.
     if (build[home]) indices_[home].clear();
   }
   for (const std::uint32_t index : changed) {
@@ -181,7 +181,7 @@ void BroadphaseBase<Index>::update(std::span<const Proxy> proxies, std::span<con
   }
   for (const Home home : {kFixed, kMoving}) {
     if (stay[home]) {
-      place_all(proxies, changed, home);
+      set_boxes(proxies, changed, home);
     } else if (build[home]) {
       build_index(proxies, home);
     } else if (changes[home] > 0) {
@@ -223,28 +223,28 @@ void BroadphaseBase<Index>::query(std::span<const Proxy> proxies, const Aabb& bo
 }
 
 template <class Index>
-float BroadphaseBase<Index>::cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
+float BroadphaseBase<Index>::cast(std::span<const Proxy> proxies, const CastBox& cast_box, float max_fraction,
                                   CastVisit visit) const {
-  const SweepTest test(sweep);
-  const auto look_at = [&](std::uint32_t index, float so_far) {
-    return meets(sweep, so_far, proxies[index].fat_box) ? visit(index, so_far) : so_far;
+  const CastTest test(cast_box);
+  const auto visit_if_met = [&](std::uint32_t index, float so_far) {
+    return meets(cast_box, so_far, proxies[index].fat_box) ? visit(index, so_far) : so_far;
   };
   for (const std::uint32_t index : unbounded_) {
-    if (reach >= 0.0f) reach = look_at(index, reach);
+    if (max_fraction >= 0.0f) max_fraction = visit_if_met(index, max_fraction);
   }
-  const bool still = sweep.way == Vec3{};
+  const bool still = cast_box.translation == Vec3{};
   for (const Home home : {kMoving, kFixed}) {
-    if (reach < 0.0f) return reach;
+    if (max_fraction < 0.0f) return max_fraction;
     if (still) {
-      // What a box meets that goes nowhere is what it overlaps.
+      // A box at rest meets what it overlaps.
       indices_[home].for_each_overlap(test.box_of({}), [&](std::uint32_t index) {
-        if (reach >= 0.0f) reach = look_at(index, reach);
+        if (max_fraction >= 0.0f) max_fraction = visit_if_met(index, max_fraction);
       });
     } else {
-      reach = indices_[home].for_each_along(test, reach, look_at);
+      max_fraction = indices_[home].for_each_along(test, max_fraction, visit_if_met);
     }
   }
-  return reach;
+  return max_fraction;
 }
 
 template <class Index>

@@ -1,4 +1,4 @@
-// The brute-force broad phase keeps nothing: the proxies themselves are its only data.
+// The brute-force broad phase has no data of its own but the proxies.
 #include "collision/broadphase/broadphase_brute.h"
 
 namespace gyre {
@@ -21,13 +21,13 @@ void BroadphaseBrute::query(std::span<const Proxy> proxies, const Aabb& box,
   }
 }
 
-float BroadphaseBrute::cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
+float BroadphaseBrute::cast(std::span<const Proxy> proxies, const CastBox& cast_box, float max_fraction,
                             CastVisit visit) const {
-  for (std::uint32_t i = 0; i < proxies.size() && reach >= 0.0f; ++i) {
-    if (proxies[i].motion != ProxyMotion::none && meets(sweep, reach, proxies[i].fat_box))
-      reach = visit(i, reach);
+  for (std::uint32_t i = 0; i < proxies.size() && max_fraction >= 0.0f; ++i) {
+    if (proxies[i].motion != ProxyMotion::none && meets(cast_box, max_fraction, proxies[i].fat_box))
+      max_fraction = visit(i, max_fraction);
   }
-  return reach;
+  return max_fraction;
 }
 
 }  // namespace gyre

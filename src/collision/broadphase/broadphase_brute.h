@@ -1,4 +1,4 @@
-// All pairs, one by one: the oracle that every other broad phase must equal.
+// Tests all pairs, one by one: the oracle for every other broad phase.
 #pragma once
 
 #include "collision/broadphase/broadphase.h"
@@ -13,7 +13,7 @@ class BroadphaseBrute final : public Broadphase {
   void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
                   TaskSystem& tasks, Array<std::uint64_t>& pairs) override;
   void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const override;
-  float cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
+  float cast(std::span<const Proxy> proxies, const CastBox& cast_box, float max_fraction,
              CastVisit visit) const override;
   void trim() override { collector_.trim(); }
   std::size_t bytes() const override { return collector_.bytes(); }

@@ -1,4 +1,4 @@
-// Which plane parts a node of the BSP tree. See broadphase_bsp.h.
+// Chooses the plane of a node of the BSP tree. See broadphase_bsp.h.
 #include "collision/broadphase/broadphase_bsp.h"
 
 #include "collision/broadphase/split_tree_build.h"
@@ -7,14 +7,14 @@ namespace gyre {
 namespace {
 
 constexpr std::size_t kPlaneSample = 24;
-// A box that a plane cuts costs so much against one that it leaves on the larger side.
+// The cost of a box that the plane cuts, relative to one on the larger side.
 constexpr float kCutCost = 1.5f;
 constexpr float kNoCost = 1.0e9f;
 
 void insert_sorted(float* values, std::size_t count, float value) {
-  std::size_t place = count;
-  for (; place > 0 && value < values[place - 1]; --place) values[place] = values[place - 1];
-  values[place] = value;
+  std::size_t k = count;
+  for (; k > 0 && value < values[k - 1]; --k) values[k] = values[k - 1];
+  values[k] = value;
 }
 
 struct Choice {
@@ -22,7 +22,7 @@ struct Choice {
   float cost;
 };
 
-// The best plane across one direction: just beyond where one of the sample ends.
+// The best plane across one direction: just beyond the end of a sample box.
 void choose_along(int direction, std::span<const BoxEntry> sample, Choice& best) {
   float lows[kPlaneSample], highs[kPlaneSample];
   for (std::size_t i = 0; i < sample.size(); ++i) {
@@ -31,7 +31,7 @@ void choose_along(int direction, std::span<const BoxEntry> sample, Choice& best)
   }
   std::size_t started = 0;
   for (std::size_t i = 0; i + 1 < sample.size(); ++i) {
-    // Half-way to the next start, if that lies ahead: then the plane touches neither.
+    // Half-way to the next start if that lies ahead; the plane then touches neither box.
     while (started < sample.size() && lows[started] <= highs[i]) ++started;
     if (started == sample.size()) break;
     const float next = min(lows[started], highs[i + 1]);
@@ -46,7 +46,7 @@ void choose_along(int direction, std::span<const BoxEntry> sample, Choice& best)
 
 }  // namespace
 
-bool BspSplitter::parallel_filter(std::span<BoxEntry> entries, Split& split) {
+bool BspSplitter::choose_split(std::span<BoxEntry> entries, Split& split) {
   BoxEntry sample[kPlaneSample];
   const std::size_t stride = (entries.size() + kPlaneSample - 1) / kPlaneSample;
   std::size_t count = 0;

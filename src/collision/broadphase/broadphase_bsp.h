@@ -1,10 +1,10 @@
-// A binary space partition: each node parts its boxes by a plane, which may be tilted, into those behind it, those before
-// it, and those that it cuts, which make a third group that other planes part further. The plane is the one of 13
-// directions and a few places each that cuts few and leaves two sides of like size; a sample of the boxes decides. Looking
-// for good planes takes its time: this is for worlds in which little moves.
+// A binary space partition: each node has a plane, which may be tilted, and three groups of boxes: behind it, before
+// it, and cut by it; other planes divide each group further. The plane has one of 13 directions and comes from a sample
+// of the boxes; it cuts few boxes and leaves two sides of similar size. The search for planes takes long, so this broad
+// phase suits worlds in which little moves.
 //
-// Sources: H. Fuchs, Z. Kedem, B. Naylor, "On Visible Surface Generation by A Priori Tree Structures", 1980; C. Ericson,
-// "Real-Time Collision Detection", 2005, chapter 8 (what cuts and balance cost).
+// Sources: H. Fuchs, Z. Kedem, B. Naylor, "On Visible Surface Generation by A Priori Tree Structures", 1980; C.
+// Ericson, "Real-Time Collision Detection", 2005, chapter 8 (costs of cuts and balance).
 #pragma once
 
 #include "collision/broadphase/split_tree.h"
@@ -20,7 +20,7 @@ struct BspSplitter {
     if (SplitDirections::high(box, split.direction) < split.value) return 0;
     return SplitDirections::low(box, split.direction) > split.value ? 2 : 1;
   }
-  static bool parallel_filter(std::span<BoxEntry> entries, Split& split);
+  static bool choose_split(std::span<BoxEntry> entries, Split& split);
 };
 
 using BspTree = SplitTree<BspSplitter>;

@@ -1,4 +1,4 @@
-// The default broad phase: two wide trees of bounding volumes, one of fixed and one of moving proxies.
+// The default broad phase: two bounding volume hierarchies with wide nodes, one of fixed and one of moving proxies.
 #pragma once
 
 #include "collision/broadphase/box_tree.h"

@@ -1,4 +1,4 @@
-// Filling the hashed grid. See broadphase_grid.h.
+// Fills the hashed grid. See broadphase_grid.h.
 #include "collision/broadphase/broadphase_grid.h"
 
 #include "base/container/sort.h"
@@ -8,12 +8,12 @@
 namespace gyre {
 namespace {
 
-// Cells are this many times as large as a box that three quarters of all do not exceed: larger ones hold too many boxes,
-// smaller ones make boxes lie in too many cells.
+// Size of a cell over the size that three quarters of all boxes do not exceed. Larger cells hold too many boxes,
+// smaller ones put boxes into too many cells.
 constexpr float kCellsPerBox = 2.5f;
 constexpr std::size_t kSideSample = 512;
-// The grid is built anew when it holds this many times as much, or as little, as when it was built.
-constexpr std::size_t kOutgrown = 4;
+// The grid is rebuilt when its number of items has changed by this factor since the last build.
+constexpr std::size_t kRebuildRatio = 4;
 constexpr std::size_t kSmall = 64;
 
 }  // namespace
@@ -24,9 +24,9 @@ Aabb HashedGrid::box_of_cell(const Cell& cell) const {
   for (int axis = 0; axis < 3; ++axis) {
     const int at = cell.at[axis];
     const float a = float(at) * cell_size_, b = float(at + 1) * cell_size_;
-    // Which cell a place counts to is rounded.
-    low[axis] = at <= -kFarthest ? -kEnd : a - 1.0e-6f * (absolute(a) + cell_size_);
-    high[axis] = at >= kFarthest ? kEnd : b + 1.0e-6f * (absolute(b) + cell_size_);
+    // The cell of a position is rounded.
+    low[axis] = at <= -kMaxCoordinate ? -kEnd : a - 1.0e-6f * (absolute(a) + cell_size_);
+    high[axis] = at >= kMaxCoordinate ? kEnd : b + 1.0e-6f * (absolute(b) + cell_size_);
   }
   return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
@@ -36,12 +36,12 @@ void HashedGrid::clear() {
   buckets_.clear();
   for (Where& where : where_) where = kAbsent;
   large_ = kNone;
-  reach_ = {{{0, 0, 0}}, {{-1, -1, -1}}};
+  occupied_range_ = {{{0, 0, 0}}, {{-1, -1, -1}}};
   size_ = 0;
   size_when_built_ = 0;
 }
 
-// From a sample of the entries.
+// Uses a sample of the entries.
 void HashedGrid::choose_cell_size() {
   float sides[kSideSample], scratch[kSideSample];
   const std::size_t stride = (entries_.size() + kSideSample - 1) / kSideSample;
@@ -50,7 +50,7 @@ void HashedGrid::choose_cell_size() {
     sides[count++] = largest(entries_[i].box.high - entries_[i].box.low);
   }
   merge_sort(std::span(sides, count), std::span(scratch, count), [](float a, float b) { return a < b; });
-  // Boxes without any size still need cells that have one.
+  // Boxes without size still need cells with one.
   cell_size_ = max(kCellsPerBox * sides[count * 3 / 4], 1.0e-6f);
   inverse_size_ = 1.0f / cell_size_;
 }
@@ -67,15 +67,17 @@ void HashedGrid::put(std::uint32_t item, const Aabb& box) {
   boxes_[item] = box;
   const Cells cells = cells_of(box);
   if (cells.count() > kMaxCells) {
-    places_[item] = buckets_.add(large_, item, box);
+    slots_[item] = buckets_.add(large_, item, box);
     where_[item] = kInLarge;
     return;
   }
   where_[item] = kInCells;
-  const bool first = reach_.low.at[0] > reach_.high.at[0];
+  const bool first = occupied_range_.low.at[0] > occupied_range_.high.at[0];
   for (int axis = 0; axis < 3; ++axis) {
-    reach_.low.at[axis] = first ? cells.low.at[axis] : min(reach_.low.at[axis], cells.low.at[axis]);
-    reach_.high.at[axis] = first ? cells.high.at[axis] : max(reach_.high.at[axis], cells.high.at[axis]);
+    occupied_range_.low.at[axis] =
+        first ? cells.low.at[axis] : min(occupied_range_.low.at[axis], cells.low.at[axis]);
+    occupied_range_.high.at[axis] =
+        first ? cells.high.at[axis] : max(occupied_range_.high.at[axis], cells.high.at[axis]);
   }
   for_each_cell(cells, [&](const Cell& cell) {
     buckets_.add(occupied_.find_or_insert(key_of(cell), kNone), item, box);
@@ -84,8 +86,8 @@ void HashedGrid::put(std::uint32_t item, const Aabb& box) {
 
 void HashedGrid::take(std::uint32_t item) {
   if (where_[item] == kInLarge) {
-    const std::uint32_t moved = buckets_.remove(large_, places_[item]);
-    if (moved != kNone) places_[moved] = places_[item];
+    const std::uint32_t moved = buckets_.remove(large_, slots_[item]);
+    if (moved != kNone) slots_[moved] = slots_[item];
   } else {
     for_each_cell(cells_of(boxes_[item]), [&](const Cell& cell) {
       std::uint32_t& head = *occupied_.find(key_of(cell));
@@ -100,7 +102,7 @@ void HashedGrid::insert(std::uint32_t item, const Aabb& box) {
   if (where_.size() <= item) {
     where_.resize(std::size_t(item) + 1, kAbsent);
     boxes_.resize(std::size_t(item) + 1);
-    places_.resize(std::size_t(item) + 1, kNone);
+    slots_.resize(std::size_t(item) + 1, kNone);
   }
   GYRE_ASSERT(where_[item] == kAbsent, "the item is not in the grid yet");
   put(item, box);
@@ -118,7 +120,7 @@ void HashedGrid::move(std::uint32_t item, const Aabb& box) {
   const Cells cells = cells_of(box);
   if (where_[item] == kInLarge && cells.count() > kMaxCells) {
     boxes_[item] = box;
-    buckets_.set_box(places_[item], box);
+    buckets_.set_box(slots_[item], box);
   } else if (where_[item] == kInCells && cells == cells_of(boxes_[item])) {
     boxes_[item] = box;
     for_each_cell(cells, [&](const Cell& cell) {
@@ -132,7 +134,7 @@ void HashedGrid::move(std::uint32_t item, const Aabb& box) {
 
 void HashedGrid::improve(std::size_t) {
   const std::size_t more = max(size_, size_when_built_), less = min(size_, size_when_built_);
-  if (more <= kSmall || more <= kOutgrown * less) return;
+  if (more <= kSmall || more <= kRebuildRatio * less) return;
   entries_.clear();
   for (std::uint32_t item = 0; item < where_.size(); ++item) {
     if (where_[item] != kAbsent) entries_.push_back({boxes_[item], item});
@@ -154,7 +156,7 @@ const char* HashedGrid::find_fault() const {
     if ((cells.count() > kMaxCells) != (where_[item] == kInLarge))
       return "a large box is not where large ones are";
     if (where_[item] == kInLarge) {
-      if (buckets_.item_at(places_[item]) != item) return "an item's place is wrong";
+      if (buckets_.item_at(slots_[item]) != item) return "an item's slot is wrong";
       continue;
     }
     expected += std::size_t(cells.count());
@@ -162,7 +164,7 @@ const char* HashedGrid::find_fault() const {
   if (items != size_) return "the number of items is wrong";
   const char* fault = nullptr;
   occupied_.for_each([&](std::uint64_t key, std::uint32_t head) {
-    if (head == kNone) fault = "an empty cell is kept";
+    if (head == kNone) fault = "an empty cell exists";
     const Cell cell = cell_of_key(key);
     buckets_.for_each(head, [&](std::uint32_t item, const Aabb& box, std::uint32_t) {
       ++in_cells;

@@ -1,13 +1,13 @@
-// A uniform hashed grid: space in cubes of one size, of which only those that hold something exist. A box lies in every
-// cell that it touches; two boxes are found in the one cell that holds the lower corner of what they have in common. Boxes
-// over too many cells lie in a list of their own and are looked at by all: a grid has one size, and that is its weakness.
+// A uniform hashed grid: space is divided into cubes of one size, and only occupied cubes exist. A box lies in every
+// cell that it touches; two boxes find each other in the cell of the lower corner of their intersection. Boxes over too
+// many cells lie in one list that every query tests: a grid has one size, and that is its weakness.
 //
-// The cell's size follows that of the boxes, the largest quarter left aside, when the grid is built; it is built anew by
-// itself when it holds far more or less than then.
+// The cell size follows that of the boxes, without the largest quarter, when the grid is built; the grid rebuilds
+// itself when its number of items has changed much since then.
 //
-// Sources: C. Ericson, "Real-Time Collision Detection", 2005, chapter 7.1; M. Teschner et al., "Optimized Spatial Hashing
-// for Collision Detection of Deformable Objects", 2003; J. Amanatides, A. Woo, "A Fast Voxel Traversal Algorithm for Ray
-// Tracing", 1987 (rays go from layer to layer of cells).
+// Sources: C. Ericson, "Real-Time Collision Detection", 2005, chapter 7.1; M. Teschner et al., "Optimized Spatial
+// Hashing for Collision Detection of Deformable Objects", 2003; J. Amanatides, A. Woo, "A Fast Voxel Traversal
+// Algorithm for Ray Tracing", 1987 (rays go from layer to layer of cells).
 #pragma once
 
 #include "base/container/flat_map.h"
@@ -18,7 +18,7 @@ namespace gyre {
 
 class HashedGrid {
  public:
-  // A box that stays in its cells costs next to nothing, so all must be new before building pays.
+  // A box that stays in its cells costs almost nothing, so building pays only if all are new.
   static constexpr std::size_t kRebuildShare = 1;
 
   std::size_t size() const { return size_; }
@@ -37,7 +37,7 @@ class HashedGrid {
   void trim();
   const char* find_fault() const;
   std::size_t bytes() const {
-    return occupied_.bytes() + buckets_.bytes() + boxes_.bytes() + where_.bytes() + places_.bytes() +
+    return occupied_.bytes() + buckets_.bytes() + boxes_.bytes() + where_.bytes() + slots_.bytes() +
            entries_.bytes();
   }
 
@@ -46,9 +46,9 @@ class HashedGrid {
     if (size_ == 0) return;
     buckets_.for_each_overlap(large_, box, [&](std::uint32_t item, std::uint32_t) { visit(item); });
     const Cells cells = clipped(cells_of(box));
-    if (!for_few(cells, [&](std::uint32_t head, Cell cell) {
-          buckets_.for_each_overlap(head, box, [&](std::uint32_t item, std::uint32_t place) {
-            if (corner(cells_of(buckets_.box_at(place)), cells) == cell) visit(item);
+    if (!for_each_if_few(cells, [&](std::uint32_t head, Cell cell) {
+          buckets_.for_each_overlap(head, box, [&](std::uint32_t item, std::uint32_t slot) {
+            if (corner(cells_of(buckets_.box_at(slot)), cells) == cell) visit(item);
           });
         })) {
       for_each_in_cells([&](std::uint32_t item, const Aabb& other) {
@@ -58,17 +58,17 @@ class HashedGrid {
   }
 
   template <class Visit>
-  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
-    if (size_ == 0) return reach;
+  float for_each_along(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
+    if (size_ == 0) return max_fraction;
     const auto visit_large = [&](std::uint32_t item, float so_far, std::uint32_t) {
       return visit(item, so_far);
     };
-    reach = buckets_.for_each_along(large_, sweep, reach, visit_large);
-    if (reach < 0.0f || occupied_.empty()) return reach;
-    return walk_layers(sweep, reach, visit);
+    max_fraction = buckets_.for_each_along(large_, cast_test, max_fraction, visit_large);
+    if (max_fraction < 0.0f || occupied_.empty()) return max_fraction;
+    return visit_layers(cast_test, max_fraction, visit);
   }
 
-  // The cells that hold something.
+  // The occupied cells.
   template <class Visit>
   void for_each_node(Visit&& visit) const {
     for (std::size_t i = 0; i < occupied_.size(); ++i)
@@ -77,8 +77,8 @@ class HashedGrid {
 
  private:
   static constexpr std::uint32_t kNone = BoxBuckets::kNone;
-  static constexpr std::int64_t kMaxCells = 64;             // of one box
-  static constexpr std::int32_t kFarthest = (1 << 20) - 1;  // cells beyond this count as this one
+  static constexpr std::int64_t kMaxCells = 64;                  // of one box
+  static constexpr std::int32_t kMaxCoordinate = (1 << 20) - 1;  // cells beyond are clamped to this one
 
   struct Cell {
     std::int32_t at[3];
@@ -98,36 +98,38 @@ class HashedGrid {
   };
   enum Where : std::uint8_t { kAbsent, kInCells, kInLarge };
 
-  // Never decreases as `x` grows, whatever the rounding: that is all that the walks rely on.
+  // Never decreases as `x` grows, whatever the rounding; queries rely on nothing else.
   std::int32_t coordinate(float x) const {
     const float scaled = x * inverse_size_;
-    if (!(scaled > -float(kFarthest))) return -kFarthest;
-    if (scaled >= float(kFarthest)) return kFarthest;
+    if (!(scaled > -float(kMaxCoordinate))) return -kMaxCoordinate;
+    if (scaled >= float(kMaxCoordinate)) return kMaxCoordinate;
     const auto cut = std::int32_t(scaled);
     return float(cut) > scaled ? cut - 1 : cut;
   }
   Cell cell_at(Vec3 p) const { return {{coordinate(p.x), coordinate(p.y), coordinate(p.z)}}; }
   Cells cells_of(const Aabb& box) const { return {cell_at(box.low), cell_at(box.high)}; }
-  // The first cell that two runs of cells have in common.
+  // The first cell that two ranges of cells share.
   static Cell corner(const Cells& a, const Cells& b) {
     Cell cell{};
     for (int axis = 0; axis < 3; ++axis) cell.at[axis] = max(a.low.at[axis], b.low.at[axis]);
     return cell;
   }
   static std::uint64_t key_of(const Cell& cell) {
-    const auto part = [&](int axis) { return std::uint64_t(cell.at[axis] + (1 << 20)); };
-    return part(0) << 42 | part(1) << 21 | part(2);
+    const auto coordinate_bits = [&](int axis) { return std::uint64_t(cell.at[axis] + (1 << 20)); };
+    return coordinate_bits(0) << 42 | coordinate_bits(1) << 21 | coordinate_bits(2);
   }
   static Cell cell_of_key(std::uint64_t key) {
-    const auto part = [&](int shift) { return std::int32_t(key >> shift & 0x1fffffu) - (1 << 20); };
-    return {{part(42), part(21), part(0)}};
+    const auto coordinate_bits = [&](int shift) {
+      return std::int32_t(key >> shift & 0x1fffffu) - (1 << 20);
+    };
+    return {{coordinate_bits(42), coordinate_bits(21), coordinate_bits(0)}};
   }
-  // Around everything that counts as in the cell.
+  // A box around everything in the cell.
   Aabb box_of_cell(const Cell& cell) const;
   Cells clipped(Cells cells) const {
     for (int axis = 0; axis < 3; ++axis) {
-      cells.low.at[axis] = max(cells.low.at[axis], reach_.low.at[axis]);
-      cells.high.at[axis] = min(cells.high.at[axis], reach_.high.at[axis]);
+      cells.low.at[axis] = max(cells.low.at[axis], occupied_range_.low.at[axis]);
+      cells.high.at[axis] = min(cells.high.at[axis], occupied_range_.high.at[axis]);
     }
     return cells;
   }
@@ -140,10 +142,10 @@ class HashedGrid {
       }
     }
   }
-  // Calls fn(list, cell) for those of the cells that hold something; false, and nothing, if there are more cells than
-  // things to find.
+  // Calls fn(list, cell) for the occupied ones of the cells. False, without calls, if there are more cells than
+  // occupied ones.
   template <class Fn>
-  bool for_few(const Cells& cells, Fn&& fn) const {
+  bool for_each_if_few(const Cells& cells, Fn&& fn) const {
     if (cells.is_empty()) return true;
     if (cells.count() > std::int64_t(occupied_.size())) return false;
     for_each_cell(cells, [&](const Cell& cell) {
@@ -151,7 +153,7 @@ class HashedGrid {
     });
     return true;
   }
-  // Calls visit(item, box) once for everything that lies in cells.
+  // Calls visit(item, box) once for each item in cells.
   template <class Visit>
   void for_each_in_cells(Visit&& visit) const {
     for (const auto& entry : occupied_.entries()) {
@@ -163,7 +165,7 @@ class HashedGrid {
   }
 
   template <class Visit>
-  float walk_layers(const SweepTest& sweep, float reach, Visit&& visit) const;
+  float visit_layers(const CastTest& cast_test, float max_fraction, Visit&& visit) const;
 
   void choose_cell_size();
   void put(std::uint32_t item, const Aabb& box);
@@ -171,70 +173,73 @@ class HashedGrid {
 
   FlatMap<std::uint32_t> occupied_;  // by cell: its list
   BoxBuckets buckets_;
-  Array<Aabb> boxes_;            // by item
-  Array<Where> where_;           // by item
-  Array<std::uint32_t> places_;  // by item, of those in the list of large boxes
-  Array<BoxEntry> entries_;      // of the present build
+  Array<Aabb> boxes_;           // by item
+  Array<Where> where_;          // by item
+  Array<std::uint32_t> slots_;  // by item, of those in the list of large boxes
+  Array<BoxEntry> entries_;     // of the present build
   ShrinkPolicy clock_;
   std::uint32_t large_ = kNone;
-  Cells reach_{{{0, 0, 0}}, {{-1, -1, -1}}};  // all cells that were ever occupied since the build
+  Cells occupied_range_{{{0, 0, 0}}, {{-1, -1, -1}}};  // all cells occupied at any time since the build
   float cell_size_ = 1.0f, inverse_size_ = 1.0f;
   std::size_t size_ = 0;
   std::size_t size_when_built_ = 0;
 };
 
-// Goes along the sweep in layers of cells across its longest axis. Both ends of the part of a layer that the sweep
-// crosses move one way only, so an item is met in one unbroken run of layers: it is visited in the first.
+// Follows the cast in layers of cells across its longest axis. Both ends of the range that the cast covers in a layer
+// move monotonically, so each item is met in one unbroken run of layers; it is visited in the first.
 template <class Visit>
-float HashedGrid::walk_layers(const SweepTest& sweep, float reach, Visit&& visit) const {
-  const Aabb all{box_of_cell(reach_.low).low, box_of_cell(reach_.high).high};
-  const Vec3 way{absolute(sweep.way(0)), absolute(sweep.way(1)), absolute(sweep.way(2))};
-  const int along = way.x >= way.y && way.x >= way.z ? 0 : way.y >= way.z ? 1 : 2;
-  SweepRange whole = sweep.clip(all, {0.0f, reach});
-  if (whole.is_empty()) return reach;
-  whole = {max(whole.enter - 1.0e-5f, 0.0f), min(whole.leave + 1.0e-5f, reach)};
-  const Cells span = clipped(cells_of(sweep.box_of(whole)));
+float HashedGrid::visit_layers(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
+  const Aabb all{box_of_cell(occupied_range_.low).low, box_of_cell(occupied_range_.high).high};
+  const Vec3 extent{absolute(cast_test.translation(0)), absolute(cast_test.translation(1)),
+                    absolute(cast_test.translation(2))};
+  const int along = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  CastRange whole = cast_test.clip(all, {0.0f, max_fraction});
+  if (whole.is_empty()) return max_fraction;
+  whole = {max(whole.enter - 1.0e-5f, 0.0f), min(whole.leave + 1.0e-5f, max_fraction)};
+  const Cells span = clipped(cells_of(cast_test.box_of(whole)));
   const std::int64_t layers = std::int64_t(span.high.at[along]) - span.low.at[along] + 1;
   if (layers > std::int64_t(occupied_.size()) + 16) {
     for_each_in_cells([&](std::uint32_t item, const Aabb& box) {
-      if (reach >= 0.0f && !sweep.clip(box, {0.0f, reach}).is_empty()) reach = visit(item, reach);
+      if (max_fraction >= 0.0f && !cast_test.clip(box, {0.0f, max_fraction}).is_empty())
+        max_fraction = visit(item, max_fraction);
     });
-    return reach;
+    return max_fraction;
   }
-  const bool up = sweep.way(along) >= 0.0f;
+  const bool up = cast_test.translation(along) >= 0.0f;
   Cells before{};
   bool has_before = false;
-  for (std::int64_t i = 0; i < layers && reach >= 0.0f; ++i) {
+  for (std::int64_t i = 0; i < layers && max_fraction >= 0.0f; ++i) {
     const auto layer = std::int32_t(up ? span.low.at[along] + i : span.high.at[along] - i);
-    SweepRange part = whole;
+    CastRange range = whole;
     const Aabb slab = box_of_cell({{layer, layer, layer}});
-    sweep.clip(along, slab.low[along], slab.high[along], part);
-    if (part.is_empty()) continue;
-    if (part.enter > reach * 1.00001f) break;
-    part = {max(min(part.enter, whole.leave), whole.enter), max(min(part.leave, whole.leave), whole.enter)};
-    Cells cells = cells_of(sweep.box_of(part));
+    cast_test.clip(along, slab.low[along], slab.high[along], range);
+    if (range.is_empty()) continue;
+    if (range.enter > max_fraction * 1.00001f) break;
+    range = {max(min(range.enter, whole.leave), whole.enter),
+             max(min(range.leave, whole.leave), whole.enter)};
+    Cells cells = cells_of(cast_test.box_of(range));
     cells.low.at[along] = cells.high.at[along] = layer;
     const Cells here = clipped(cells);
-    const auto look_at = [&](const Cell& cell) {
-      const std::uint32_t* const head = reach < 0.0f ? nullptr : occupied_.find(key_of(cell));
+    const auto visit_cell = [&](const Cell& cell) {
+      const std::uint32_t* const head = max_fraction < 0.0f ? nullptr : occupied_.find(key_of(cell));
       if (head == nullptr) return;
-      reach = buckets_.for_each_along(*head, sweep, reach,
-                                      [&](std::uint32_t item, float so_far, std::uint32_t place) {
-                                        const Cells own = cells_of(buckets_.box_at(place));
-                                        if (!(corner(own, here) == cell)) return so_far;
-                                        bool was_met = has_before;
-                                        for (int axis = 0; axis < 3; ++axis) {
-                                          was_met = was_met && own.low.at[axis] <= before.high.at[axis] &&
-                                                    own.high.at[axis] >= before.low.at[axis];
-                                        }
-                                        return was_met ? so_far : visit(item, so_far);
-                                      });
+      max_fraction = buckets_.for_each_along(
+          *head, cast_test, max_fraction, [&](std::uint32_t item, float so_far, std::uint32_t slot) {
+            const Cells own = cells_of(buckets_.box_at(slot));
+            if (!(corner(own, here) == cell)) return so_far;
+            bool was_met = has_before;
+            for (int axis = 0; axis < 3; ++axis) {
+              was_met = was_met && own.low.at[axis] <= before.high.at[axis] &&
+                        own.high.at[axis] >= before.low.at[axis];
+            }
+            return was_met ? so_far : visit(item, so_far);
+          });
     };
-    for_each_cell(here, look_at);
+    for_each_cell(here, visit_cell);
     before = here;
     has_before = !here.is_empty();
   }
-  return reach;
+  return max_fraction;
 }
 
 }  // namespace gyre

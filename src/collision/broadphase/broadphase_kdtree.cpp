@@ -1,4 +1,4 @@
-// Where a kd-tree parts. See broadphase_kdtree.h.
+// Chooses the split of a node of the kd-tree. See broadphase_kdtree.h.
 #include "collision/broadphase/broadphase_kdtree.h"
 
 #include "collision/broadphase/box_tree.h"
@@ -12,7 +12,7 @@ float key_of(const BoxEntry& entry, int axis) { return entry.box.low[axis] + ent
 
 }  // namespace
 
-bool KdSplitter::parallel_filter(std::span<BoxEntry> entries, Split& split) {
+bool KdSplitter::choose_split(std::span<BoxEntry> entries, Split& split) {
   Vec3 low = entries[0].box.low + entries[0].box.high, high = low;
   for (const BoxEntry& entry : entries) {
     const Vec3 middle = entry.box.low + entry.box.high;
@@ -26,7 +26,7 @@ bool KdSplitter::parallel_filter(std::span<BoxEntry> entries, Split& split) {
   partition_by_center(entries, middle, axis);
   float value = key_of(entries[middle], axis);
   for (std::size_t i = middle; i < entries.size(); ++i) value = min(value, key_of(entries[i], axis));
-  // If the lower half all lie at the same place, the next one up parts.
+  // If the whole lower half has one position, the next higher one splits.
   if (value == low[axis]) {
     value = high[axis];
     for (const BoxEntry& entry : entries) {

@@ -1,7 +1,8 @@
-// A kd-tree: each node parts its boxes at the median of their centres, along the axis on which these are spread farthest.
+// A kd-tree: each node splits its boxes at the median of their centres, along the axis with the largest spread.
 //
-// Sources: J. Bentley, "Multidimensional Binary Search Trees Used for Associative Searching", 1975; B. Ooi, K. McDonell,
-// R. Sacks-Davis, "Spatial kd-Tree: An Indexing Mechanism for Spatial Databases", 1987 (each side keeps how far it reaches).
+// Sources: J. Bentley, "Multidimensional Binary Search Trees Used for Associative Searching", 1975; B. Ooi, K.
+// McDonell, R. Sacks-Davis, "Spatial kd-Tree: An Indexing Mechanism for Spatial Databases", 1987 (each side stores its
+// extent).
 #pragma once
 
 #include "collision/broadphase/split_tree.h"
@@ -18,7 +19,7 @@ struct KdSplitter {
     return box.low[split.direction] + box.high[split.direction];
   }
   static int child_of(const Split& split, const Aabb& box) { return key(split, box) < split.value ? 0 : 1; }
-  static bool parallel_filter(std::span<BoxEntry> entries, Split& split);
+  static bool choose_split(std::span<BoxEntry> entries, Split& split);
 };
 
 using KdTree = SplitTree<KdSplitter>;

@@ -1,5 +1,5 @@
-// Every broad phase against plain loops: exactly the pairs that overlap, may meet and of which one moved, in random,
-// clustered and degenerate worlds that change from frame to frame, for any number of threads.
+// Every broad phase against plain loops: it finds exactly the pairs that overlap, may pair, and have a moved proxy.
+// Random, clustered and degenerate worlds change from frame to frame, for any number of threads.
 #include "collision/broadphase/broadphase.h"
 
 #include "base/memory/memory.h"
@@ -58,7 +58,7 @@ struct World {
       case Layout::far_away:
         middle = random.vector(-20, 20) + Vec3{3.0e6f, -7.0e6f, 1.0e6f};
         break;
-      case Layout::wild:  // from micrometres to the ends of the world
+      case Layout::wild:  // from micrometres to the largest floats
         middle = std::ldexp(1.0f, int(random.next(60)) - 30) * random.vector(-1, 1);
         half = std::ldexp(1.0f, int(random.next(50)) - 25) * random.vector(0, 1);
         break;
@@ -82,7 +82,7 @@ struct World {
     return proxy;
   }
 
-  // Moves, adds, removes and turns some; returns which, ascending.
+  // Moves, adds, removes and rotates some; returns their indices, ascending.
   std::vector<std::uint32_t> change(std::uint32_t share) {
     std::vector<std::uint32_t> changed;
     for (std::uint32_t i = 0; i < proxies.size(); ++i) {
@@ -138,40 +138,40 @@ std::vector<BroadPhaseKind> all_kinds() {
   return kinds;
 }
 
-// What a caller who looks for the nearest makes of a cast: the way to each box stands for an exact test.
+// A caller that keeps the nearest hit of a cast; the distance to each box replaces an exact test.
 struct NearestHit {
-  float reach = 1.0f;
+  float max_fraction = 1.0f;
   std::uint32_t index = 0xffffffffu;
   bool operator==(const NearestHit&) const = default;
 };
-NearestHit nearest(const Broadphase& broadphase, const std::vector<Proxy>& proxies, const BoxSweep& sweep) {
+NearestHit nearest(const Broadphase& broadphase, const std::vector<Proxy>& proxies, const CastBox& cast_box) {
   NearestHit best;
-  broadphase.cast(proxies, sweep, 1.0f, [&](std::uint32_t index, float reach) {
+  broadphase.cast(proxies, cast_box, 1.0f, [&](std::uint32_t index, float max_fraction) {
     float low = 0.0f, high = 1.0f;
-    if (!meets(sweep, 0.0f, proxies[index].fat_box)) {
+    if (!meets(cast_box, 0.0f, proxies[index].fat_box)) {
       for (int i = 0; i < 30; ++i) {
         const float middle = 0.5f * (low + high);
-        (meets(sweep, middle, proxies[index].fat_box) ? high : low) = middle;
+        (meets(cast_box, middle, proxies[index].fat_box) ? high : low) = middle;
       }
     } else {
       high = 0.0f;
     }
-    if (high < best.reach || (high == best.reach && index < best.index)) best = {high, index};
-    return std::min(reach, best.reach);
+    if (high < best.max_fraction || (high == best.max_fraction && index < best.index)) best = {high, index};
+    return std::min(max_fraction, best.max_fraction);
   });
   return best;
 }
 
-BoxSweep random_sweep(World& world) {
+CastBox random_cast(World& world) {
   Random& random = world.random;
-  BoxSweep sweep{DVec3(random.vector(-25, 25)), random.vector(-40, 40), {}};
-  if (random.next(3) == 0) sweep.half_extents = random.vector(0, 1);
-  if (random.next(3) == 0) sweep.way = {0, random.real(-30, 30), 0};
-  if (random.next(12) == 0) sweep.way = {};
-  if (world.layout == Layout::flat && random.next(2) == 0) sweep.start.y = sweep.way.y = 0.0f;
+  CastBox cast_box{DVec3(random.vector(-25, 25)), random.vector(-40, 40), {}};
+  if (random.next(3) == 0) cast_box.half_extents = random.vector(0, 1);
+  if (random.next(3) == 0) cast_box.translation = {0, random.real(-30, 30), 0};
+  if (random.next(12) == 0) cast_box.translation = {};
+  if (world.layout == Layout::flat && random.next(2) == 0) cast_box.start.y = cast_box.translation.y = 0.0f;
   if (world.layout == Layout::line)
-    sweep = {{random.real(-600, 600), 0, 0}, {random.real(-900, 900), 0, 0}, {}};
-  return sweep;
+    cast_box = {{random.real(-600, 600), 0, 0}, {random.real(-900, 900), 0, 0}, {}};
+  return cast_box;
 }
 
 void expect_same_answers(World& world, const Broadphase& broadphase, const Broadphase& brute) {
@@ -181,24 +181,24 @@ void expect_same_answers(World& world, const Broadphase& broadphase, const Broad
   broadphase.query(world.proxies, box, b);
   ASSERT_EQ(a, b);
   for (int i = 0; i < 20; ++i) {
-    const BoxSweep sweep = random_sweep(world);
+    const CastBox cast_box = random_cast(world);
     std::vector<std::uint32_t> expected, found;
     for (std::uint32_t k = 0; k < world.proxies.size(); ++k) {
-      if (world.proxies[k].motion != ProxyMotion::none && meets(sweep, 0.8f, world.proxies[k].fat_box))
+      if (world.proxies[k].motion != ProxyMotion::none && meets(cast_box, 0.8f, world.proxies[k].fat_box))
         expected.push_back(k);
     }
-    EXPECT_EQ(broadphase.cast(world.proxies, sweep, 0.8f,
-                              [&](std::uint32_t index, float reach) {
+    EXPECT_EQ(broadphase.cast(world.proxies, cast_box, 0.8f,
+                              [&](std::uint32_t index, float max_fraction) {
                                 found.push_back(index);
-                                return reach;
+                                return max_fraction;
                               }),
               0.8f);
     std::sort(found.begin(), found.end());
     ASSERT_EQ(found, expected);
-    ASSERT_EQ(nearest(broadphase, world.proxies, sweep), nearest(brute, world.proxies, sweep));
+    ASSERT_EQ(nearest(broadphase, world.proxies, cast_box), nearest(brute, world.proxies, cast_box));
     if (expected.empty()) continue;
     int visits = 0;
-    broadphase.cast(world.proxies, sweep, 0.8f, [&](std::uint32_t, float) {
+    broadphase.cast(world.proxies, cast_box, 0.8f, [&](std::uint32_t, float) {
       ++visits;
       return -1.0f;
     });
@@ -216,7 +216,7 @@ TEST_P(BroadphaseOracle, EqualsPlainLoopsInAChangingWorld) {
   TaskSystem one(1), three(3);
   std::size_t found = 0;
   for (int frame = 0; frame < 110; ++frame) {
-    // The first frame brings all at once; some frames change nearly everything, some next to nothing.
+    // The first frame adds all at once; some frames change almost everything, some almost nothing.
     std::vector<std::uint32_t> changed = world.change(frame == 0        ? 1
                                                       : frame % 20 == 0 ? 2
                                                       : frame % 3 == 0  ? 60
@@ -262,7 +262,7 @@ TEST(Broadphase, EveryThreadCountFindsTheSame) {
   }
 }
 
-// So many that trees are deep, all of them on their way: what is kept up from step to step must not go stale.
+// So many that trees are deep, and all of them move: the upkeep from step to step must not degrade.
 TEST(Broadphase, ManyThatAllMove) {
   TaskSystem tasks(2);
   for (const Layout layout : {Layout::spread, Layout::clustered, Layout::mixed_sizes}) {
@@ -296,7 +296,7 @@ TEST(Broadphase, ManyThatAllMove) {
   }
 }
 
-TEST(Broadphase, RebuildForgetsWhatWas) {
+TEST(Broadphase, RebuildReplacesEverything) {
   World world(Layout::spread, 300);
   World other(Layout::clustered, 120);
   for (const BroadPhaseKind kind : all_kinds()) {
@@ -308,7 +308,7 @@ TEST(Broadphase, RebuildForgetsWhatWas) {
   }
 }
 
-// Everything comes, goes one by one, and comes again.
+// All proxies are added, removed one by one, and added again.
 TEST(Broadphase, EmptiesAndFillsAgain) {
   World world(Layout::clustered, 150);
   const std::vector<Proxy> all = world.proxies;
@@ -384,7 +384,7 @@ TEST(Broadphase, AllocatesNothingOnceWarm) {
   }
 }
 
-// The tree must stay good while things wander for a long time: not much worse than when built anew.
+// After a long random walk the tree is not much worse than a new one.
 TEST(BoxTree, KeepsItsQuality) {
   Random random;
   BoxTree tree;
@@ -413,7 +413,7 @@ TEST(BoxTree, KeepsItsQuality) {
   EXPECT_LT(tree.cost(), 1.6 * fresh.cost());
 }
 
-// What all moves is refitted, and built anew when that has made it much worse; either way walks find what overlaps.
+// A tree whose boxes all move is refitted, and rebuilt once it is much worse; queries find the overlaps either way.
 TEST(BoxTree, RefitsWhileThatIsGood) {
   Random random;
   BoxTree tree, fresh;
@@ -430,11 +430,11 @@ TEST(BoxTree, RefitsWhileThatIsGood) {
   tree.build(items, boxes);
   int built = 0;
   for (int frame = 0; frame < 60; ++frame) {
-    // All together at first, then each its own way.
+    // First all together, then each by itself.
     for (std::uint32_t i = 0; i < items.size(); ++i) {
       const Vec3 by = frame < 20 ? Vec3{0.3f, -0.5f, 0.1f} : velocities[i];
       boxes[i] = {boxes[i].low + by, boxes[i].high + by};
-      tree.place(i, boxes[i]);
+      tree.set_box(i, boxes[i]);
     }
     if (!tree.refit()) {
       tree.build(items, boxes);

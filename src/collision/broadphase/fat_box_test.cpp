@@ -1,8 +1,8 @@
-// Fat boxes: they contain the shape however far it is from the origin, change rarely, and do not stay too large.
+// Fat boxes contain their shape at any distance from the origin, change rarely, and do not stay too large.
 #include "collision/broadphase/fat_box.h"
 
-#include "geometry/testing/mesh_test_scenes.h"
 #include "geometry/shape/support.h"
+#include "geometry/testing/mesh_test_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -25,17 +25,18 @@ TEST(FatBox, WorldBoxContainsEveryPoint) {
     const Shape shape = make_shape(kind);
     for (int round = 0; round < 300; ++round) {
       const double far = round % 3 == 0 ? 0.0 : round % 3 == 1 ? 1.0e3 : 1.0e7;
-      // Some nearly along the axes, where discs are seen from the side.
-      const Quat turn = round % 5 == 0 ? from_rotation_vector(random.in_box(1.0e-3f)) : random.rotation();
-      const Pose pose{DVec3{far, -far, 0.3 * far} + DVec3(random.in_box(10.0f)), turn};
+      // Some nearly along the axes, so that discs are seen from the side.
+      const Quat orientation =
+          round % 5 == 0 ? from_rotation_vector(random.in_box(1.0e-3f)) : random.rotation();
+      const Pose pose{DVec3{far, -far, 0.3 * far} + DVec3(random.in_box(10.0f)), orientation};
       const WorldBox box = world_box(shape, pose);
       for (int axis = 0; axis < 3; ++axis) {
         const Vec3 direction{axis == 0 ? 1.0f : 0.0f, axis == 1 ? 1.0f : 0.0f, axis == 2 ? 1.0f : 0.0f};
         for (const float sign : {-1.0f, 1.0f}) {
           const Vec3 local = support(shape, rotate_inverse(pose.orientation, sign * direction));
-          const double reach = double(sign) * (pose * local)[axis] + double(core_radius(shape));
-          EXPECT_LE(reach, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
-          EXPECT_GE(reach + 1.3e-3, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
+          const double max_fraction = double(sign) * (pose * local)[axis] + double(core_radius(shape));
+          EXPECT_LE(max_fraction, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
+          EXPECT_GE(max_fraction + 1.3e-3, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
         }
       }
       EXPECT_TRUE(contains(round_outward(box), box));
@@ -70,7 +71,7 @@ TEST(FatBox, ChangesRarelyAndShrinksAgain) {
     ++changes;
   }
   EXPECT_LT(changes, 45);
-  // After a fast stretch the box is long; at rest it must not stay so.
+  // After fast motion the box is long; at rest it must become smaller.
   const BoxMotion fast{0.5f, {30, 0, 0}, 0.0f};
   const Aabb longest = fat_box(needed_box(tight, fast), fast);
   EXPECT_FALSE(needs_refit(longest, needed_box(tight, fast), fast));
@@ -96,7 +97,7 @@ TEST(FatBox, PlanesAreUnbounded) {
   EXPECT_FALSE(is_unbounded({{-1.0e9f, -1, -1}, {1.0e9f, 1, 1}}));
 }
 
-// What has left the range of floats, or all sense, has a box that is finite all the same and holds whatever is there.
+// A shape beyond the range of floats, or with NaN, has a finite box that contains whatever is finite.
 TEST(FatBox, EndsWhereFloatsEnd) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();

@@ -1,4 +1,4 @@
-// Cells that come and go. See loose_tree.h.
+// Creates and removes cells. See loose_tree.h.
 #include "collision/broadphase/loose_tree.h"
 
 namespace gyre {
@@ -21,7 +21,7 @@ float multiple_below(float x, float side) {
 
 template <int kAxes>
 std::uint32_t LooseTree<kAxes>::make_node(const Cell& cell, int level) {
-  const std::uint32_t index = take_place(nodes_, free_);
+  const std::uint32_t index = take_slot(nodes_, free_);
   Node& node = nodes_[index];
   node = Node();
   node.cell = cell;
@@ -38,19 +38,19 @@ void LooseTree<kAxes>::clear() {
   root_ = kNone;
 }
 
-// A first cell around the box, large against the last digit of its place, so that corners are exact.
+// Makes the first cell around the box, large relative to the last digit of its position, so that corners are exact.
 template <int kAxes>
 void LooseTree<kAxes>::make_root(const Aabb& box) {
-  float size = 0.0f, place = 0.0f;
+  float size = 0.0f, coordinate = 0.0f;
   for (int i = 0; i < kAxes; ++i) {
     const int axis = kAxis[i];
     size = max(size, box.high[axis] - box.low[axis]);
-    place = max(place, max(absolute(box.low[axis]), absolute(box.high[axis])));
+    coordinate = max(coordinate, max(absolute(box.low[axis]), absolute(box.high[axis])));
   }
-  const float least = max(1.125f * size, place * (1.0f / 65536.0f));
+  const float min_side = max(1.125f * size, coordinate * (1.0f / 65536.0f));
   int level = kLowestLevel;
   float side = side_of_level(level);
-  while (side < least && level < kHighestLevel) {
+  while (side < min_side && level < kHighestLevel) {
     side *= 2.0f;
     ++level;
   }
@@ -60,9 +60,9 @@ void LooseTree<kAxes>::make_root(const Aabb& box) {
   root_ = make_node(cell, level);
 }
 
-// Whether the box has its centre in the cell, and does not reach out too far.
+// True if the cell contains the box's centre and the box does not extend too far beyond it.
 template <int kAxes>
-bool LooseTree<kAxes>::holds(const Cell& cell, const Aabb& box) {
+bool LooseTree<kAxes>::fits(const Cell& cell, const Aabb& box) {
   for (int i = 0; i < kAxes; ++i) {
     const float middle = 0.5f * box.low[kAxis[i]] + 0.5f * box.high[kAxis[i]];
     if (!(middle >= cell.low[i] && middle <= cell.low[i] + cell.side)) return false;
@@ -72,7 +72,7 @@ bool LooseTree<kAxes>::holds(const Cell& cell, const Aabb& box) {
 
 template <int kAxes>
 void LooseTree<kAxes>::enlarge_root(const Aabb& box) {
-  while (!holds(nodes_[root_].cell, box) && nodes_[root_].level < kHighestLevel) {
+  while (!fits(nodes_[root_].cell, box) && nodes_[root_].level < kHighestLevel) {
     const std::uint32_t old = root_;
     const Cell small = nodes_[old].cell;
     Cell large{};
@@ -88,7 +88,7 @@ void LooseTree<kAxes>::enlarge_root(const Aabb& box) {
     Node& root = nodes_[root_];
     root.child[lane] = old;
     root.children = 1;
-    root.parted = true;
+    root.is_split = true;
     nodes_[old].parent = root_;
     nodes_[old].lane = std::uint8_t(lane);
   }
@@ -105,18 +105,18 @@ void LooseTree<kAxes>::finish_build() {
 }
 
 template <int kAxes>
-bool LooseTree<kAxes>::fits_in_child(const Node& node, const Aabb& box, int& lane) const {
+bool LooseTree<kAxes>::fits_child(const Node& node, const Aabb& box, int& lane) const {
   if (node.level <= kLowestLevel) return false;
-  // Where places have no more digits for smaller cells.
-  const float least = 0.125f * node.cell.side;
+  // Positions here have no digits for smaller cells.
+  const float eighth = 0.125f * node.cell.side;
   for (const float low : node.cell.low) {
-    if (low + least - low != least) return false;
+    if (low + eighth - low != eighth) return false;
   }
   lane = lane_for(node.cell, box);
   return gyre::contains(loose_box(cell_of_child(node.cell, lane)), box);
 }
 
-// The child in a lane, made if there is none.
+// The child in a lane, created if missing.
 template <int kAxes>
 std::uint32_t LooseTree<kAxes>::child_in(std::uint32_t index, int lane) {
   if (nodes_[index].child[lane] == kNone) {
@@ -129,21 +129,21 @@ std::uint32_t LooseTree<kAxes>::child_in(std::uint32_t index, int lane) {
   return nodes_[index].child[lane];
 }
 
-// Puts an item that the node can hold into the lowest cell below it.
+// Puts an item that fits the node into the lowest cell below it.
 template <int kAxes>
-void LooseTree<kAxes>::place(std::uint32_t index, std::uint32_t item, const Aabb& box) {
+void LooseTree<kAxes>::insert_below(std::uint32_t index, std::uint32_t item, const Aabb& box) {
   int lane = 0;
-  while (nodes_[index].parted && fits_in_child(nodes_[index], box, lane)) index = child_in(index, lane);
+  while (nodes_[index].is_split && fits_child(nodes_[index], box, lane)) index = child_in(index, lane);
   put(nodes_[index].items, index, item, box);
   ++nodes_[index].count;
-  while (index != kNone && nodes_[index].count > kFewItems && !nodes_[index].parted) index = part(index);
+  while (index != kNone && nodes_[index].count > kSplitAbove && !nodes_[index].is_split) index = split(index);
 }
 
-// Gives what fits into children to them. Returns the child that holds too much itself now, if one does.
+// Moves items that fit children into them. Returns a child that has too many items now, if any.
 template <int kAxes>
-std::uint32_t LooseTree<kAxes>::part(std::uint32_t index) {
-  nodes_[index].parted = true;
-  BoxEntry entries[kFewItems + 1];
+std::uint32_t LooseTree<kAxes>::split(std::uint32_t index) {
+  nodes_[index].is_split = true;
+  BoxEntry entries[kSplitAbove + 1];
   std::uint32_t count = 0;
   buckets_.for_each(nodes_[index].items, [&](std::uint32_t item, const Aabb& box, std::uint32_t) {
     entries[count++] = {box, item};
@@ -151,23 +151,23 @@ std::uint32_t LooseTree<kAxes>::part(std::uint32_t index) {
   std::uint32_t full = kNone;
   for (std::uint32_t i = 0; i < count; ++i) {
     int lane = 0;
-    if (!fits_in_child(nodes_[index], entries[i].box, lane)) continue;
+    if (!fits_child(nodes_[index], entries[i].box, lane)) continue;
     const std::uint32_t child = child_in(index, lane);
     take(nodes_[index].items, entries[i].item);
     --nodes_[index].count;
     put(nodes_[child].items, child, entries[i].item, entries[i].box);
-    if (++nodes_[child].count > kFewItems) full = child;
+    if (++nodes_[child].count > kSplitAbove) full = child;
   }
   return full;
 }
 
 template <int kAxes>
 void LooseTree<kAxes>::insert(std::uint32_t item, const Aabb& box) {
-  make_room(item);
-  GYRE_ASSERT(places_[item] == kNone, "the item is not in the tree yet");
+  grow_to(item);
+  GYRE_ASSERT(slots_[item] == kNone, "the item is not in the tree yet");
   if (root_ == kNone) make_root(box);
-  if (!holds(nodes_[root_].cell, box)) enlarge_root(box);
-  place(root_, item, box);
+  if (!fits(nodes_[root_].cell, box)) enlarge_root(box);
+  insert_below(root_, item, box);
   ++size_;
 }
 
@@ -203,8 +203,8 @@ void LooseTree<kAxes>::move(std::uint32_t item, const Aabb& box) {
   const std::uint32_t index = nodes_of_[item];
   const Node& node = nodes_[index];
   int lane = 0;
-  if (gyre::contains(loose_box(node.cell), box) && !(node.parted && fits_in_child(node, box, lane))) {
-    buckets_.set_box(places_[item], box);
+  if (gyre::contains(loose_box(node.cell), box) && !(node.is_split && fits_child(node, box, lane))) {
+    buckets_.set_box(slots_[item], box);
     return;
   }
   remove(item);
@@ -220,18 +220,18 @@ const char* LooseTree<kAxes>::find_fault() const {
     if (!node.used) continue;
     ++used;
     if (index != root_ && (node.parent == kNone || nodes_[node.parent].child[node.lane] != index))
-      return "a cell hangs below none";
-    if (node.count == 0 && node.children == 0) return "an empty cell is kept";
-    std::uint32_t here = 0;
+      return "a cell has no parent";
+    if (node.count == 0 && node.children == 0) return "an empty cell exists";
+    std::uint32_t count = 0;
     buckets_.for_each(node.items, [&](std::uint32_t item, const Aabb& box, std::uint32_t at) {
-      ++here;
-      if (places_[item] != at || nodes_of_[item] != index) fault = "an item's place is wrong";
+      ++count;
+      if (slots_[item] != at || nodes_of_[item] != index) fault = "an item's slot is wrong";
       const bool whole_range = index == root_ && node.level == kHighestLevel;
       if (!whole_range && !gyre::contains(loose_box(node.cell), box))
         fault = "an item reaches too far out of its cell";
     });
-    if (here != node.count) fault = "the number of a cell's items is wrong";
-    items += here;
+    if (count != node.count) fault = "the number of a cell's items is wrong";
+    items += count;
     std::uint8_t children = 0;
     for (int i = 0; i < kChildren; ++i) {
       if (node.child[i] == kNone) continue;
@@ -242,7 +242,7 @@ const char* LooseTree<kAxes>::find_fault() const {
           fault = "a cell is not where it should be";
       }
     }
-    if (children != node.children) fault = "the number of a cell's cells is wrong";
+    if (children != node.children) fault = "the number of a cell's children is wrong";
   }
   if (fault != nullptr) return fault;
   if (used + free_.size() != nodes_.size()) return "a cell is neither in use nor free";

@@ -1,13 +1,13 @@
-// A loose tree of cubes: each has cells of half its side below it, and a cell takes boxes that reach out of it by up to
-// half its side. So any box that is not larger than a cell fits into the one that holds its centre, and where it belongs is
-// found without looking at anything else. With three axes it is the loose octree; with two (x and z: those that lie flat)
-// the loose quadtree, whose cells are columns without end.
+// A loose tree of cubes: each cell has cells of half its side below it and takes boxes that extend beyond it by up to
+// half its side. So any box that is not larger than a cell fits the cell that contains its centre, which is found
+// without a search. With three axes it is the loose octree. With two (x and z, for flat worlds) it is the loose
+// quadtree, whose cells are endless columns.
 //
-// Cells come when more than a few dozen boxes would share one, and go when they are empty. The root doubles its side
-// whenever something lies outside.
+// A cell is split when it would contain more than a few dozen boxes, and removed when it is empty. The root doubles its
+// side when a box lies outside.
 //
-// Sources: R. Finkel, J. Bentley, "Quad Trees: A Data Structure for Retrieval on Composite Keys", 1974; T. Ulrich, "Loose
-// Octrees", Game Programming Gems, 2000.
+// Sources: R. Finkel, J. Bentley, "Quad Trees: A Data Structure for Retrieval on Composite Keys", 1974; T. Ulrich,
+// "Loose Octrees", Game Programming Gems, 2000.
 #pragma once
 
 #include "collision/broadphase/box_buckets.h"
@@ -51,8 +51,8 @@ class LooseTree : public BucketIndex {
   }
 
   template <class Visit>
-  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
-    if (root_ == kNone) return reach;
+  float for_each_along(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
+    if (root_ == kNone) return max_fraction;
     struct Waiting {
       std::uint32_t node;
       float enter;
@@ -62,39 +62,38 @@ class LooseTree : public BucketIndex {
     stack[depth++] = {root_, 0.0f};
     while (depth > 0) {
       const Waiting next = stack[--depth];
-      if (!(next.enter <= reach * 1.00001f)) continue;
+      if (!(next.enter <= max_fraction * 1.00001f)) continue;
       const Node& node = nodes_[next.node];
-      reach = buckets_.for_each_along(
-          node.items, sweep, reach,
+      max_fraction = buckets_.for_each_along(
+          node.items, cast_test, max_fraction,
           [&](std::uint32_t item, float so_far, std::uint32_t) { return visit(item, so_far); });
-      if (reach < 0.0f) return reach;
+      if (max_fraction < 0.0f) return max_fraction;
       const int bottom = depth;
       for (int i = 0; i < kChildren; ++i) {
         if (node.child[i] == kNone) continue;
-        const SweepRange range = sweep.clip(loose_box(cell_of_child(node.cell, i)), {0.0f, reach});
+        const CastRange range = cast_test.clip(loose_box(cell_of_child(node.cell, i)), {0.0f, max_fraction});
         if (range.is_empty()) continue;
-        int place = depth++;
-        for (; place > bottom && stack[place - 1].enter <= range.enter; --place)
-          stack[place] = stack[place - 1];
-        stack[place] = {node.child[i], range.enter};
+        int k = depth++;
+        for (; k > bottom && stack[k - 1].enter <= range.enter; --k) stack[k] = stack[k - 1];
+        stack[k] = {node.child[i], range.enter};
       }
     }
-    return reach;
+    return max_fraction;
   }
 
-  // The cells, without what reaches out of them; those of a quadtree as high as all there is.
+  // The cells without their loose margin; those of a quadtree are as high as all boxes together.
   template <class Visit>
   void for_each_node(Visit&& visit) const;
 
  private:
   static constexpr int kChildren = 1 << kAxes;
   static constexpr int kAxis[3] = {0, kAxes == 3 ? 1 : 2, 2};
-  static constexpr std::uint32_t kFewItems = 32;  // before a cell gets cells of its own
-  static constexpr int kLowestLevel = -24;        // sides of 2^level metres
+  static constexpr std::uint32_t kSplitAbove = 32;  // items of a cell before it is split
+  static constexpr int kLowestLevel = -24;          // sides of 2^level metres
   static constexpr int kHighestLevel = 126;
   static constexpr int kStackSize = (kHighestLevel - kLowestLevel + 1) * (kChildren - 1) + 1;
 
-  // Corners are multiples of the side, and both exact.
+  // Corners are multiples of the side; both are exact.
   struct Cell {
     float low[kAxes];
     float side;
@@ -108,7 +107,7 @@ class LooseTree : public BucketIndex {
     std::uint32_t child[kChildren];
     std::uint8_t children = 0;
     std::uint8_t lane = 0;  // in the parent
-    bool parted = false;    // what fits into a child goes there
+    bool is_split = false;  // items that fit a child go there
     bool used = true;
   };
 
@@ -129,7 +128,7 @@ class LooseTree : public BucketIndex {
       child.low[i] = (lane >> i & 1) != 0 ? cell.low[i] + child.side : cell.low[i];
     return child;
   }
-  // The child that holds the centre of `box`.
+  // The child that contains the centre of `box`.
   static int lane_for(const Cell& cell, const Aabb& box) {
     int lane = 0;
     for (int i = 0; i < kAxes; ++i) {
@@ -140,14 +139,14 @@ class LooseTree : public BucketIndex {
     return lane;
   }
 
-  static bool holds(const Cell& cell, const Aabb& box);
+  static bool fits(const Cell& cell, const Aabb& box);
   std::uint32_t make_node(const Cell& cell, int level);
   void make_root(const Aabb& box);
   void enlarge_root(const Aabb& box);
-  bool fits_in_child(const Node& node, const Aabb& box, int& lane) const;
-  void place(std::uint32_t node, std::uint32_t item, const Aabb& box);
+  bool fits_child(const Node& node, const Aabb& box, int& lane) const;
+  void insert_below(std::uint32_t node, std::uint32_t item, const Aabb& box);
   std::uint32_t child_in(std::uint32_t node, int lane);
-  std::uint32_t part(std::uint32_t node);
+  std::uint32_t split(std::uint32_t node);
   void drop_empty(std::uint32_t node);
 
   Array<Node> nodes_;

@@ -1,5 +1,5 @@
-// What every broad phase's find_pairs shares: blocks of moved proxies run in parallel, each worker keeps the keys that it
-// finds, and one sort at the end makes the result the same whoever found what.
+// Common code of every broad phase's find_pairs: blocks of moved proxies run in parallel, each worker stores the keys
+// that it finds, and one sort at the end makes the result independent of the workers.
 #pragma once
 
 #include "base/arena/shrink_policy.h"
@@ -16,8 +16,8 @@ namespace gyre {
 
 class PairCollector {
  public:
-  // Calls search(index of the moved proxy, visit); it must call visit(other) for at least every other proxy whose fat box
-  // overlaps, each once. Appends the keys of the pairs among them that may meet and that the filter leaves, sorted.
+  // Calls search(index of the moved proxy, visit), which must call visit(other) for at least every other proxy whose
+  // fat box overlaps, once each. Appends the keys of those pairs that may meet and that the filter keeps, sorted.
   template <class Search>
   void collect(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
                TaskSystem& tasks, Array<std::uint64_t>& pairs, const Search& search) {
@@ -25,22 +25,22 @@ class PairCollector {
       const std::uint32_t self = moved[std::size_t(i)];
       if (proxies[self].motion == ProxyMotion::none) return;
       search(self, [&](std::uint32_t other) {
-        // A pair of two moved proxies is found from the lower one only.
+        // Two moved proxies are paired from the lower one only.
         if (other == self || (other < self && is_moved(other))) return;
         emit(self, other);
       });
     });
   }
 
-  // The same from other places than the moved proxies: calls search(i, emit) for each i below `count`; together they must
-  // call emit(one, other) once for each pair that overlaps and of which one is_moved().
+  // The same, not by moved proxies: calls search(i, emit) for each i below `count`; together these must call emit(one,
+  // other) once for each overlapping pair of which one is_moved().
   template <class Search>
   void collect_from(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, int count,
                     PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs, const Search& search) {
     if (is_moved_.size() < proxies.size()) is_moved_.resize(proxies.size());
     for (const std::uint32_t index : moved) is_moved_.set(index);
     found_.resize(std::size_t(tasks.worker_count()));
-    for (Found& found : found_) found.keys.reserve(most_ + max_at_once_);
+    for (Found& found : found_) found.keys.reserve(max_pairs_ + max_per_block_);
     for_blocks(tasks, count, kBlock, [&](int begin, int end, int worker) {
       Array<std::uint64_t>& keys = found_[worker].keys;
       const std::size_t before = keys.size();
@@ -50,22 +50,22 @@ class PairCollector {
         if (overlap(a.fat_box, b.fat_box) && may_pair(a, b)) keys.push_back(pair_key(one, other));
       };
       for (int i = begin; i < end; ++i) search(i, emit);
-      found_[worker].max_at_once = max(found_[worker].max_at_once, keys.size() - before);
+      found_[worker].max_per_block = max(found_[worker].max_per_block, keys.size() - before);
       filter(keys, before);
     });
     for (const std::uint32_t index : moved) is_moved_.clear(index);
     append_sorted(pairs);
   }
-  // While collecting.
+  // Valid while collecting.
   bool is_moved(std::uint32_t index) const { return is_moved_.test(index); }
 
-  // To be called once a step: gives memory back that was not needed for long.
+  // To be called once a step: releases memory that was not needed for long.
   void trim() {
     const std::size_t needed = last_ * sizeof(std::uint64_t);
     last_ = 0;
-    if (!clock_.rests(needed, scratch_.bytes())) return;
-    most_ = 2 * clock_.max_needed() / sizeof(std::uint64_t);
-    max_at_once_ = 0;
+    if (!clock_.should_shrink(needed, scratch_.bytes())) return;
+    max_pairs_ = 2 * clock_.max_needed() / sizeof(std::uint64_t);
+    max_per_block_ = 0;
     for (Found& found : found_) found = {};
     scratch_ = Array<std::uint64_t>();
   }
@@ -78,10 +78,10 @@ class PairCollector {
  private:
   static constexpr int kBlock = 32;
 
-  // What one worker finds.
+  // The result of one worker.
   struct Found {
     Array<std::uint64_t> keys;
-    std::size_t max_at_once = 0;  // in a block
+    std::size_t max_per_block = 0;  // in a block
   };
 
   void append_sorted(Array<std::uint64_t>& pairs) {
@@ -89,22 +89,22 @@ class PairCollector {
     for (Found& found : found_) {
       pairs.append(found.keys);
       found.keys.clear();
-      max_at_once_ = max(max_at_once_, found.max_at_once);
+      max_per_block_ = max(max_per_block_, found.max_per_block);
     }
     const std::size_t count = pairs.size() - before;
-    // Which worker finds how many changes from run to run: each gets room for all, and for a block before it is filtered, so
-    // that none grows once warm.
-    if (count > most_) most_ = count + count / 2;
+    // Workers find different numbers in each run: each gets room for all pairs, and for a block before it is filtered,
+    // so that none grows once warm.
+    if (count > max_pairs_) max_pairs_ = count + count / 2;
     last_ = last_ < count ? count : last_;
-    if (scratch_.size() < count) scratch_.resize_uninitialized(most_);
+    if (scratch_.size() < count) scratch_.resize_uninitialized(max_pairs_);
     radix_sort_u64({pairs.data() + before, count}, scratch_);
   }
 
   Bitset is_moved_;
   Array<Found> found_;  // by worker
   Array<std::uint64_t> scratch_;
-  std::size_t most_ = 0;  // pairs of a step
-  std::size_t max_at_once_ = 0;
+  std::size_t max_pairs_ = 0;  // pairs of a step
+  std::size_t max_per_block_ = 0;
   std::size_t last_ = 0;  // pairs found since the last trim()
   ShrinkPolicy clock_;
 };

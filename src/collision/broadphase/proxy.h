@@ -1,5 +1,5 @@
-// A proxy is the only thing a broad phase sees of a shape: a fat box, who it may meet, and whether it moves. Proxies are
-// indexed like shapes; a broad phase never learns what a body is.
+// A proxy is the entry of a shape in the broad phase: a fat box, a filter, and whether it moves. Proxies have the
+// indices of shapes; a broad phase knows no bodies.
 #pragma once
 
 #include <gyre/defs.h>
@@ -11,20 +11,20 @@ namespace gyre {
 
 enum class ProxyMotion : std::uint8_t {
   none,    // the slot is empty
-  fixed,   // never moves by itself: two such proxies never pair
+  fixed,   // never moves by itself: two fixed proxies never pair
   moving,  // kinematic or dynamic
 };
 
 struct Proxy {
-  Aabb fat_box;  // world frame, rounded outward, larger than the shape by a margin so that it changes rarely
+  Aabb fat_box;  // world frame, rounded outward, with a margin so that it changes rarely
   Filter filter;
   std::uint32_t body = 0;  // proxies of one body never pair
   ProxyMotion motion = ProxyMotion::none;
   bool sensor = false;
-  bool pushes = true;  // dynamic: at least one of a pair must be, unless one is a sensor
+  bool pushes = true;  // dynamic: a pair needs at least one, unless one is a sensor
 };
 
-// Whether the two may meet at all, boxes aside.
+// True if the two may pair, whatever their boxes.
 constexpr bool may_pair(const Proxy& a, const Proxy& b) {
   if (a.motion == ProxyMotion::none || b.motion == ProxyMotion::none || a.body == b.body) return false;
   if (a.motion == ProxyMotion::fixed && b.motion == ProxyMotion::fixed) return false;
@@ -34,7 +34,7 @@ constexpr bool may_pair(const Proxy& a, const Proxy& b) {
   return (a.filter.layer & b.filter.collides_with) != 0 && (b.filter.layer & a.filter.collides_with) != 0;
 }
 
-// The key of an unordered pair of proxies: lower index in the high half, so that sorted keys go by the lower one.
+// The key of an unordered pair: the lower index in the high half, so that sorted keys go by the lower one.
 constexpr std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
   return a < b ? (std::uint64_t(a) << 32 | b) : (std::uint64_t(b) << 32 | a);
 }

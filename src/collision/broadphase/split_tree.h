@@ -1,12 +1,12 @@
-// A tree that parts boxes by planes: what the kd-tree and the BSP tree share. Each node parts its boxes along one direction,
-// and keeps for each of its children from where to where its boxes reach along it; a walk enters the children that it
-// overlaps there. So boxes that cross a plane need neither be cut nor be kept twice.
+// A tree that splits boxes by planes, the base of the kd-tree and the BSP tree. Each node splits its boxes along one
+// direction and stores the extent of each child along it; a query enters the children whose extents it overlaps. So a
+// box that crosses a plane is neither cut nor stored twice.
 //
-// What moves widens what the nodes on its way keep. A subtree into whose leaves as many things came as it holds is built
-// anew, so that neither depth nor overlap get out of hand.
+// Moving boxes widen the extents of their nodes. A subtree that has received as many new items as it contains is
+// rebuilt, which bounds depth and overlap.
 //
-// `Splitter` says how: kChildren; kDirections; Split {std::uint8_t direction; float value}; child_of(split, box);
-// choose(entries, split), which may reorder the entries and says false if nothing parts them.
+// `Splitter` has kChildren, kDirections, Split {std::uint8_t direction; float value}, child_of(split, box), and
+// choose_split(entries, split), which may reorder the entries and returns false if nothing splits them.
 #pragma once
 
 #include "collision/broadphase/box_buckets.h"
@@ -21,9 +21,9 @@ struct Split {
   float value = 0.0f;
 };
 
-// Directions along which boxes are parted: the axes, the diagonals of the faces of a cube, those of the cube itself. Not of
-// unit length. What a box reaches to along one is worked out from its corners by sums in one order; sums never decrease when
-// a term grows, so boxes with a point in common overlap along every direction, whatever the rounding.
+// The split directions: the axes, the face diagonals and the space diagonals of a cube, not of unit length. The extent
+// of a box along one is a sum of its corner coordinates in one order. Sums never decrease when a term grows, so boxes
+// with a common point overlap along every direction, whatever the rounding.
 struct SplitDirections {
   static constexpr int kCount = 13;
   static constexpr std::int8_t kSigns[kCount][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0},
@@ -63,7 +63,7 @@ class SplitTree : public BucketIndex {
   void improve(std::size_t) {}
   const char* find_fault() const;
   std::size_t bytes() const { return item_bytes() + nodes_.bytes() + free_.bytes(); }
-  // How many nodes lie one below the other at most.
+  // The number of levels.
   int depth() const;
 
   template <class Visit>
@@ -91,43 +91,42 @@ class SplitTree : public BucketIndex {
   }
 
   template <class Visit>
-  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
-    if (root_ == kNone) return reach;
+  float for_each_along(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
+    if (root_ == kNone) return max_fraction;
     struct Waiting {
       std::uint32_t node;
-      SweepRange range;
+      CastRange range;
     };
     Waiting stack[kStackSize];
     int depth = 0;
-    stack[depth++] = {root_, {0.0f, reach}};
+    stack[depth++] = {root_, {0.0f, max_fraction}};
     while (depth > 0) {
       Waiting next = stack[--depth];
-      next.range.leave = min(next.range.leave, reach);
+      next.range.leave = min(next.range.leave, max_fraction);
       if (next.range.is_empty()) continue;
       const Node& node = nodes_[next.node];
       if (node.is_leaf()) {
-        reach = buckets_.for_each_along(
-            node.items, sweep, reach,
+        max_fraction = buckets_.for_each_along(
+            node.items, cast_test, max_fraction,
             [&](std::uint32_t item, float so_far, std::uint32_t) { return visit(item, so_far); });
-        if (reach < 0.0f) return reach;
+        if (max_fraction < 0.0f) return max_fraction;
         continue;
       }
       const int bottom = depth;
       for (int i = 0; i < kChildren; ++i) {
-        SweepRange range = next.range;
+        CastRange range = next.range;
         if (!(node.low[i] <= node.high[i])) continue;
-        clip(sweep, node, i, range);
+        clip(cast_test, node, i, range);
         if (range.is_empty()) continue;
-        int place = depth++;
-        for (; place > bottom && stack[place - 1].range.enter <= range.enter; --place)
-          stack[place] = stack[place - 1];
-        stack[place] = {node.child[i], range};
+        int k = depth++;
+        for (; k > bottom && stack[k - 1].range.enter <= range.enter; --k) stack[k] = stack[k - 1];
+        stack[k] = {node.child[i], range};
       }
     }
-    return reach;
+    return max_fraction;
   }
 
-  // Boxes around what inner nodes hold.
+  // The bounds of the items below each inner node.
   template <class Visit>
   void for_each_node(Visit&& visit) const {
     if (root_ != kNone) visit_node(root_, 0, visit);
@@ -136,10 +135,10 @@ class SplitTree : public BucketIndex {
  private:
   static constexpr int kChildren = Splitter::kChildren;
   static constexpr std::uint32_t kMaxInLeaf = 32;
-  static constexpr std::uint32_t kFewInLeaf = 16;  // when it is built
-  static constexpr std::uint32_t kFewArrivals = 64;
-  static constexpr int kMostDepth = 96;
-  static constexpr int kStackSize = (kMostDepth + 2) * kChildren;
+  static constexpr std::uint32_t kBuiltLeafSize = 16;  // of a new leaf
+  static constexpr std::uint32_t kMinArrivals = 64;
+  static constexpr int kMaxDepth = 96;
+  static constexpr int kStackSize = (kMaxDepth + 2) * kChildren;
 
   struct Node {
     Split split;
@@ -156,12 +155,12 @@ class SplitTree : public BucketIndex {
     bool is_leaf() const { return leaf; }
   };
 
-  static void clip(const SweepTest& sweep, const Node& node, int child, SweepRange& range) {
+  static void clip(const CastTest& cast_test, const Node& node, int child, CastRange& range) {
     const int direction = node.split.direction;
     if (direction < 3) {
-      sweep.clip(direction, node.low[child], node.high[child], range);
+      cast_test.clip(direction, node.low[child], node.high[child], range);
     } else {
-      sweep.clip_along(SplitDirections::kSigns[direction], node.low[child], node.high[child], range);
+      cast_test.clip_along(SplitDirections::kSigns[direction], node.low[child], node.high[child], range);
     }
   }
   template <class Visit>
@@ -174,8 +173,8 @@ class SplitTree : public BucketIndex {
   void fill_leaf(std::uint32_t index, std::span<const BoxEntry> entries);
   void rebuild(std::uint32_t index);
   std::uint32_t descend(const Aabb& box);
-  void arrive(std::uint32_t leaf, std::uint32_t item, const Aabb& box);
-  void leave(std::uint32_t item);
+  void add_to_leaf(std::uint32_t leaf, std::uint32_t item, const Aabb& box);
+  void remove_from_leaf(std::uint32_t item);
   void widen(Node& node, int child, const Aabb& box);
 
   Array<Node> nodes_;

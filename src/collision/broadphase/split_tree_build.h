@@ -1,4 +1,4 @@
-// Building and changing a tree of planes; for the two sources that make one. See split_tree.h.
+// Builds and changes a split tree; included by the two sources that instantiate one. See split_tree.h.
 #pragma once
 
 #include "collision/broadphase/split_tree.h"
@@ -9,7 +9,7 @@ namespace gyre {
 
 template <class Splitter>
 std::uint32_t SplitTree<Splitter>::make_node(std::uint32_t parent) {
-  const std::uint32_t index = take_place(nodes_, free_);
+  const std::uint32_t index = take_slot(nodes_, free_);
   nodes_[index] = Node();
   nodes_[index].parent = parent;
   constexpr float kEnd = std::numeric_limits<float>::infinity();
@@ -40,17 +40,17 @@ void SplitTree<Splitter>::fill_leaf(std::uint32_t index, std::span<const BoxEntr
   for (const BoxEntry& entry : entries) put(nodes_[index].items, index, entry.item, entry.box);
 }
 
-// Makes an empty node hold the entries.
+// Fills an empty node with the entries.
 template <class Splitter>
 void SplitTree<Splitter>::fill(std::uint32_t index, std::span<BoxEntry> entries, int depth) {
   nodes_[index].count = std::uint32_t(entries.size());
   nodes_[index].arrivals = 0;
   Split split;
-  if (entries.size() <= kFewInLeaf || depth >= kMostDepth / 2 || !Splitter::parallel_filter(entries, split)) {
+  if (entries.size() <= kBuiltLeafSize || depth >= kMaxDepth / 2 || !Splitter::choose_split(entries, split)) {
     fill_leaf(index, entries);
     return;
   }
-  // Child by child to the front, each time in one pass.
+  // Moves the entries of each child to the front, in one pass each.
   std::size_t begins[kChildren + 1] = {};
   for (int i = 0; i < kChildren; ++i) {
     std::size_t end = begins[i];
@@ -65,11 +65,11 @@ void SplitTree<Splitter>::fill(std::uint32_t index, std::span<BoxEntry> entries,
   nodes_[index].leaf = false;
   nodes_[index].split = split;
   for (int i = 0; i < kChildren; ++i) {
-    const std::span<BoxEntry> part = entries.subspan(begins[i], begins[i + 1] - begins[i]);
+    const std::span<BoxEntry> group = entries.subspan(begins[i], begins[i + 1] - begins[i]);
     const std::uint32_t child = make_node(index);
     nodes_[index].child[i] = child;
-    for (const BoxEntry& entry : part) widen(nodes_[index], i, entry.box);
-    fill(child, part, depth + 1);
+    for (const BoxEntry& entry : group) widen(nodes_[index], i, entry.box);
+    fill(child, group, depth + 1);
   }
 }
 
@@ -77,13 +77,13 @@ template <class Splitter>
 void SplitTree<Splitter>::finish_build() {
   clear();
   if (entries_.empty()) return;
-  for (const BoxEntry& entry : entries_) make_room(entry.item);
+  for (const BoxEntry& entry : entries_) grow_to(entry.item);
   size_ = entries_.size();
   root_ = make_node(kNone);
   fill(root_, entries_, 0);
 }
 
-// Appends all that lies below a node to entries_.
+// Appends all items below a node to entries_.
 template <class Splitter>
 void SplitTree<Splitter>::gather(std::uint32_t index) {
   const Node& node = nodes_[index];
@@ -96,7 +96,7 @@ void SplitTree<Splitter>::gather(std::uint32_t index) {
   for (const std::uint32_t child : node.child) gather(child);
 }
 
-// Gives back what is below a node and what it holds; the node itself stays, empty.
+// Frees the subtree below a node and its items; the node itself stays, empty.
 template <class Splitter>
 void SplitTree<Splitter>::free_subtree(std::uint32_t index) {
   Node& node = nodes_[index];
@@ -127,7 +127,7 @@ void SplitTree<Splitter>::rebuild(std::uint32_t index) {
   fill(index, entries_, depth);
 }
 
-// The leaf in which a box belongs; widens what is kept on the way.
+// The leaf in which a box belongs; widens the extents above it.
 template <class Splitter>
 std::uint32_t SplitTree<Splitter>::descend(const Aabb& box) {
   std::uint32_t index = root_;
@@ -141,43 +141,43 @@ std::uint32_t SplitTree<Splitter>::descend(const Aabb& box) {
 }
 
 template <class Splitter>
-void SplitTree<Splitter>::leave(std::uint32_t item) {
+void SplitTree<Splitter>::remove_from_leaf(std::uint32_t item) {
   const std::uint32_t leaf = nodes_of_[item];
   take(nodes_[leaf].items, item);
   for (std::uint32_t index = leaf; index != kNone; index = nodes_[index].parent) --nodes_[index].count;
 }
 
-// Puts an item into the leaf where it belongs, and builds anew what that wears out.
+// Adds an item to a leaf, and rebuilds the subtree that has degenerated.
 template <class Splitter>
-void SplitTree<Splitter>::arrive(std::uint32_t leaf, std::uint32_t item, const Aabb& box) {
+void SplitTree<Splitter>::add_to_leaf(std::uint32_t leaf, std::uint32_t item, const Aabb& box) {
   put(nodes_[leaf].items, leaf, item, box);
-  std::uint32_t worn = kNone;
+  std::uint32_t to_rebuild = kNone;
   int depth = 0;
   for (std::uint32_t index = leaf; index != kNone; index = nodes_[index].parent, ++depth) {
     Node& node = nodes_[index];
     ++node.count;
-    if (++node.arrivals > max(kFewArrivals, node.count) && !node.is_leaf()) worn = index;
+    if (++node.arrivals > max(kMinArrivals, node.count) && !node.is_leaf()) to_rebuild = index;
   }
   const std::uint32_t count = nodes_[leaf].count;
-  // What cannot be parted is tried again only when there is twice as much of it.
+  // A leaf that cannot be split is tried again only at twice its size.
   const bool full = count == kMaxInLeaf + 1 || (count > kMaxInLeaf && (count & (count - 1)) == 0);
-  if (full && worn == kNone) worn = depth > kMostDepth / 2 ? root_ : leaf;
-  if (worn != kNone) rebuild(worn);
+  if (full && to_rebuild == kNone) to_rebuild = depth > kMaxDepth / 2 ? root_ : leaf;
+  if (to_rebuild != kNone) rebuild(to_rebuild);
 }
 
 template <class Splitter>
 void SplitTree<Splitter>::insert(std::uint32_t item, const Aabb& box) {
-  make_room(item);
-  GYRE_ASSERT(places_[item] == kNone, "the item is not in the tree yet");
+  grow_to(item);
+  GYRE_ASSERT(slots_[item] == kNone, "the item is not in the tree yet");
   if (root_ == kNone) root_ = make_node(kNone);
   ++size_;
-  arrive(descend(box), item, box);
+  add_to_leaf(descend(box), item, box);
 }
 
 template <class Splitter>
 void SplitTree<Splitter>::remove(std::uint32_t item) {
   GYRE_ASSERT(contains(item), "the item is in the tree");
-  leave(item);
+  remove_from_leaf(item);
   if (--size_ == 0) clear();
 }
 
@@ -186,11 +186,11 @@ void SplitTree<Splitter>::move(std::uint32_t item, const Aabb& box) {
   GYRE_ASSERT(contains(item), "the item is in the tree");
   const std::uint32_t leaf = descend(box);
   if (leaf == nodes_of_[item]) {
-    buckets_.set_box(places_[item], box);
+    buckets_.set_box(slots_[item], box);
     return;
   }
-  leave(item);
-  arrive(leaf, item, box);
+  remove_from_leaf(item);
+  add_to_leaf(leaf, item, box);
 }
 
 template <class Splitter>
@@ -213,7 +213,7 @@ const char* SplitTree<Splitter>::find_fault() const {
     const Node& node = nodes_[index];
     if (!node.used) continue;
     ++used;
-    if (index != root_ && node.parent == kNone) return "a node hangs below none";
+    if (index != root_ && node.parent == kNone) return "a node has no parent";
     if (!node.is_leaf()) {
       std::uint32_t count = 0;
       for (const std::uint32_t child : node.child) {
@@ -223,10 +223,10 @@ const char* SplitTree<Splitter>::find_fault() const {
       if (count != node.count) return "the number of a node's items is wrong";
       continue;
     }
-    std::uint32_t here = 0;
-    buckets_.for_each(node.items, [&](std::uint32_t item, const Aabb& box, std::uint32_t place) {
-      ++here;
-      if (places_[item] != place || nodes_of_[item] != index) fault = "an item's place is wrong";
+    std::uint32_t count = 0;
+    buckets_.for_each(node.items, [&](std::uint32_t item, const Aabb& box, std::uint32_t slot) {
+      ++count;
+      if (slots_[item] != slot || nodes_of_[item] != index) fault = "an item's slot is wrong";
       std::uint32_t below = index;
       for (std::uint32_t above = node.parent; above != kNone; below = above, above = nodes_[above].parent) {
         int lane = 0;
@@ -237,12 +237,12 @@ const char* SplitTree<Splitter>::find_fault() const {
           fault = "an item reaches farther than a node above it knows";
       }
     });
-    if (here != node.count) return "the number of a leaf's items is wrong";
-    items += here;
+    if (count != node.count) return "the number of a leaf's items is wrong";
+    items += count;
   }
   if (fault != nullptr) return fault;
   if (used + free_.size() != nodes_.size()) return "a node is neither in use nor free";
-  if (depth() > kMostDepth) return "nodes lie too deep";
+  if (depth() > kMaxDepth) return "nodes lie too deep";
   return items == size_ ? nullptr : "the number of items is wrong";
 }
 

@@ -1,4 +1,4 @@
-// Blocks of contacts, in which those with manifolds come first: what is told of each is its own.
+// In blocks of contacts, where those with manifolds come first, each result belongs to its contact.
 #include "collision/contact/collide_scene.h"
 #include "random.h"
 
@@ -9,8 +9,8 @@ namespace {
 
 using testing_random::Random;
 
-// Crossed sticks, of which half are fixed: nearly all are near each other, so blocks of contacts are full, and few touch.
-TEST(CollideBlock, TellsOfEachContactWhetherItLiesBesideWhatRests) {
+// Crossed sticks, half of them fixed: nearly all are near each other, so blocks of contacts are full, and few touch.
+TEST(CollideBlock, MarksContactsWithStaticShapes) {
   Random random;
   CollideScene scene;
   for (int i = 0; i < 60; ++i)
@@ -25,7 +25,7 @@ TEST(CollideBlock, TellsOfEachContactWhetherItLiesBesideWhatRests) {
       if (contact.manifold_room == 0) continue;
       const bool has_points = contact.manifold_count != 0;
       const bool one_rests = scene.bodies[contact.body_a].awake != scene.bodies[contact.body_b].awake;
-      ASSERT_EQ(scene.changes.beside_resting.test(slot), has_points && one_rests) << step << ", " << slot;
+      ASSERT_EQ(scene.changes.on_static.test(slot), has_points && one_rests) << step << ", " << slot;
       beside += has_points && one_rests ? 1 : 0;
       among += has_points && !one_rests ? 1 : 0;
     }

@@ -1,10 +1,10 @@
-// A small world made by hand, for tests of the narrow-phase stage: bodies with one shape each.
+// A small hand-made world for tests of the narrow-phase stage: bodies with one shape each.
 #pragma once
 
 #include "collision/broadphase/broadphase.h"
+#include "collision/broadphase/fat_box.h"
 #include "collision/contact/collide.h"
 #include "collision/contact/contact_recycle.h"
-#include "collision/broadphase/fat_box.h"
 #include "collision/contact/pair_update.h"
 
 #include <vector>
@@ -15,7 +15,7 @@ class CollideScene {
  public:
   explicit CollideScene(int threads = 1) : tasks_(threads) {}
 
-  // Returns the body's index, which is the shape's too.
+  // Returns the index of the body and its shape.
   std::uint32_t add(const AnyShape& geometry, const Pose& pose, bool awake = true,
                     const Transform& local = {}) {
     const auto index = std::uint32_t(bodies.size());
@@ -27,7 +27,7 @@ class CollideScene {
     ColliderBody body;
     body.pose = pose;
     body.center = local.position;
-    body.reach = outer_radius(shape.shape, {});
+    body.bounding_radius = outer_radius(shape.shape, {});
     body.awake = awake;
     bodies.push_back(body);
     Proxy proxy;
@@ -41,10 +41,10 @@ class CollideScene {
   BoxMotion motion_of(std::uint32_t i) const {
     const ColliderBody& body = bodies[i];
     return {shapes[i].size, seconds * body.linear_velocity,
-            seconds * length(body.angular_velocity) * body.reach};
+            seconds * length(body.angular_velocity) * body.bounding_radius};
   }
 
-  // Refits what needs it, finds pairs, runs the stage, removes what is gone.
+  // Refits boxes, finds pairs, runs the stage, and removes contacts that have ended.
   void step() {
     std::vector<std::uint32_t> changed;
     for (std::uint32_t i = 0; i < bodies.size(); ++i) {
@@ -67,22 +67,23 @@ class CollideScene {
       pair.sensor = proxies[pair.body_a].sensor || proxies[pair.body_b].sensor;
       return pair;
     });
-    look();
+    update_contacts();
     remove_gone(store, changes.gone, [](std::uint32_t, const Contact&) {});
   }
 
-  void look() {
-    std::vector<CollisionBody> looks;
+  void update_contacts() {
+    std::vector<CollisionBody> bodies;
     std::vector<BodyCenter> centers;
     std::vector<std::uint8_t> awake;
     for (const ColliderBody& body : bodies) {
-      looks.push_back(make_collision_body(body, seconds));
-      centers.push_back({body.center, body.reach});
+      bodies.push_back(make_collision_body(body, seconds));
+      centers.push_back({body.center, body.bounding_radius});
       awake.push_back(body.awake ? 1 : 0);
     }
     all_.resize(store.contacts.size());
     all_.set_all();
-    collide(store, {shapes, looks, centers, awake, proxies, all_, select_recycling(width), recycle}, tasks_, changes);
+    collide(store, {shapes, bodies, centers, awake, proxies, all_, select_recycling(width), recycle}, tasks_,
+            changes);
   }
 
   // The contact of two shapes; null if there is none.

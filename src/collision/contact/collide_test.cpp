@@ -1,5 +1,5 @@
-// The narrow-phase stage on scenes made by hand: where points lie, what is carried from step to step, and that recycled
-// contacts say the same as full looks.
+// The narrow-phase stage on hand-made scenes: positions of points, data carried from step to step, and recycled
+// contacts against full updates.
 #include "collision/contact/collide.h"
 
 #include "base/memory/memory.h"
@@ -19,7 +19,7 @@ using testing_random::Random;
 const Box kGround{{10, 1, 10}};
 const Box kCube{{0.5f, 0.5f, 0.5f}};
 
-// Both anchors must name one place, and `separation` must be what the bodies' surfaces have.
+// Both anchors must be one point, and `separation` must be that of the surfaces.
 void expect_consistent(CollideScene& scene, std::uint32_t a, std::uint32_t b) {
   const Manifold manifold = scene.manifold(a, b);
   const ColliderBody& body_a = scene.bodies[a];
@@ -159,7 +159,7 @@ std::vector<Kinds> all_kinds() {
   return kinds;
 }
 
-// Compares with a scene that looks at everything anew.
+// Compares with a scene that updates every contact in full.
 void expect_same_contact(CollideScene& scene, std::uint32_t a, std::uint32_t b, float tolerance) {
   CollideScene fresh;
   fresh.shapes = scene.shapes;
@@ -183,7 +183,7 @@ void expect_same_contact(CollideScene& scene, std::uint32_t a, std::uint32_t b, 
   }
 }
 
-TEST(CollideRecycling, SaysWhatAFullLookSays) {
+TEST(CollideRecycling, AgreesWithFullUpdates) {
   Random random;
   for (const Kinds& kinds : flat_kinds()) {
     int recycled = 0;
@@ -195,7 +195,7 @@ TEST(CollideRecycling, SaysWhatAFullLookSays) {
                                                          from_axis_angle({0, 1, 0}, 0.4f)});
       scene.step();
       ASSERT_GE(scene.manifold(a, b).count, 3);
-      // A small motion of B against A, in any direction.
+      // A small motion of B relative to A, in any direction.
       Pose& pose = scene.bodies[b].pose;
       pose.position += random.vector(-1.0e-4f, 1.0e-4f);
       pose.orientation = normalized(random.turn(2.0e-4f) * pose.orientation);
@@ -215,7 +215,7 @@ TEST(CollideRecycling, ErrorsDoNotAddUp) {
   scene.step();
   int recycled = 0, full = 0;
   for (int step = 0; step < 400; ++step) {
-    // Creeps sideways, turns slowly about the normal and rocks a little.
+    // Creeps sideways, rotates slowly about the normal and rocks a little.
     Pose& pose = scene.bodies[cube].pose;
     pose.position.x += 2.0e-5;
     pose.position.y = 0.5 - 1.0e-4 * double(step % 50);
@@ -233,7 +233,7 @@ TEST(CollideRecycling, ErrorsDoNotAddUp) {
   EXPECT_GT(full, 5);
 }
 
-TEST(CollideRecycling, PairsThatTurnTogetherAreRecycled) {
+TEST(CollideRecycling, PairsInRigidRotationAreRecycled) {
   CollideScene scene;
   const Transform local{{0.2f, 1.5f, 0.1f}, {}};
   const Pose start{{5, 5, 5}, {}};
@@ -252,7 +252,7 @@ TEST(CollideRecycling, PairsThatTurnTogetherAreRecycled) {
   }
 }
 
-TEST(CollideRecycling, KeepsAndClearsWhatTheSolverLeft) {
+TEST(CollideRecycling, KeepsImpulsesAndClearsSums) {
   CollideScene scene;
   const auto ground = scene.add(kGround, {{0, -1, 0}, {}}, false);
   const auto cube = scene.add(kCube, {{0, 0.5, 0}, {}});
@@ -275,13 +275,13 @@ TEST(CollideRecycling, KeepsAndClearsWhatTheSolverLeft) {
   EXPECT_EQ(now.friction_impulse, (Vec3{0.5f, 0, 0}));
 }
 
-// However slowly it rolls: a contact that lags behind would brake it.
+// At any rolling speed: a contact that lags behind would brake the body.
 TEST(CollideRecycling, RollingContactsDoNotLag) {
   const std::vector<AnyShape> rollers = {Sphere{0.5f}, Capsule{0.5f, 0.4f}, Cylinder{0.5f, 0.4f}};
   for (const AnyShape& roller : rollers) {
     for (const bool ground_first : {true, false}) {
       CollideScene scene;
-      // The axis of capsules and cylinders is local y: laid along z.
+      // The axis of capsules and cylinders is local y; here it lies along z.
       const Quat lying = from_axis_angle({1, 0, 0}, 0.5f * kPi);
       std::uint32_t ground = 0, ball = 1;
       if (ground_first) ground = scene.add(kGround, {{0, -1, 0}, {}}, false);
@@ -325,23 +325,24 @@ TEST(CollideRecycling, NothingIsMissedThatComesSlowly) {
         each->step();
       }
       const Manifold full = fresh.manifold(0, 1);
-      const Manifold kept = scene.manifold(0, 1);
-      float nearest_full = 1.0f, nearest_kept = 1.0f;
+      const Manifold recycled = scene.manifold(0, 1);
+      float nearest_full = 1.0f, nearest_recycled = 1.0f;
       for (int i = 0; i < full.count; ++i) nearest_full = min(nearest_full, full.points[i].separation);
-      for (int i = 0; i < kept.count; ++i) nearest_kept = min(nearest_kept, kept.points[i].separation);
-      // What matters in this step: within the share of the size and the way of the step.
+      for (int i = 0; i < recycled.count; ++i)
+        nearest_recycled = min(nearest_recycled, recycled.points[i].separation);
+      // Within the speculative distance: the share of the size and the translation of the step.
       const float size = smallest(Vec3{scene.shapes[1].size, 0.5f, 0.5f});
       if (nearest_full < kSpeculativeShare * size) {
-        ASSERT_NEAR(nearest_kept, nearest_full, 1.0e-5f) << step;
+        ASSERT_NEAR(nearest_recycled, nearest_full, 1.0e-5f) << step;
       }
       skipped +=
-          scene.contact(0, 1) != nullptr && scene.contact(0, 1)->recycled != 0 && kept.count == 0 ? 1 : 0;
+          scene.contact(0, 1) != nullptr && scene.contact(0, 1)->recycled != 0 && recycled.count == 0 ? 1 : 0;
     }
     EXPECT_GT(skipped, 5) << "nothing was recycled while clear " << kinds.a.index() << " " << kinds.b.index();
   }
 }
 
-// --------------------------------------------------------------------------------------------------- what goes on
+// --------------------------------------------------------------------------------------------------- from step to step
 
 TEST(Collide, SleepingPairsAreLeftAlone) {
   CollideScene scene;
@@ -360,7 +361,7 @@ TEST(Collide, SleepingPairsAreLeftAlone) {
   EXPECT_FALSE(scene.changes.ended.any());
 }
 
-TEST(Collide, SaysWhatBeganAndEndedAndIsGone) {
+TEST(Collide, ReportsBeganEndedAndGone) {
   CollideScene scene;
   const auto ground = scene.add(kGround, {{0, -1, 0}, {}}, false);
   const auto cube = scene.add(kCube, {{0, 0.5, 0}, {}});
@@ -450,7 +451,7 @@ TEST(Collide, ExactFarFromTheOrigin) {
   }
 }
 
-// The same scene a thousand times larger or smaller makes the same decisions.
+// The same scene a thousand times larger or smaller gives the same decisions.
 TEST(Collide, KnowsNoAbsoluteLength) {
   std::vector<int> decisions[3];
   for (int k = 0; k < 3; ++k) {
@@ -500,7 +501,7 @@ TEST(Collide, FatBoxesKeepTheirPromise) {
     }
     scene.step();
     const bool pair = scene.contact(a, b) != nullptr;
-    // Ask the shapes themselves, through a stage whose boxes are endless.
+    // Tests the shapes themselves, with a stage whose boxes are endless.
     CollideScene endless;
     endless.shapes = scene.shapes;
     endless.bodies = scene.bodies;
@@ -508,10 +509,10 @@ TEST(Collide, FatBoxesKeepTheirPromise) {
     for (Proxy& proxy : endless.proxies) proxy.fat_box = {{-1e9f, -1e9f, -1e9f}, {1e9f, 1e9f, 1e9f}};
     add_contact(endless.store, pair_key(a, b), {a, b, false, false, {}});
     endless.recycle = false;
-    endless.look();
+    endless.update_contacts();
     const Manifold manifold = endless.manifold(a, b);
     bool needed = false;
-    // Each point's way towards the other is what counts, so the nearest way along the normal.
+    // The approach of each point counts, so the smallest approach along the normal.
     for (int i = 0; i < manifold.count; ++i) needed = needed || manifold.points[i].separation <= 0.0f;
     const float margin = kSpeculativeShare * smaller_size(scene.shapes[a].size, scene.shapes[b].size);
     for (int i = 0; i < manifold.count; ++i) {
@@ -563,11 +564,11 @@ TEST(Collide, AllocatesNothingOnceWarm) {
   }
   for (int step = 0; step < 3; ++step) scene.step();
   const std::uint64_t before = allocation_count();
-  for (int step = 0; step < 5; ++step) scene.look();
+  for (int step = 0; step < 5; ++step) scene.update_contacts();
   EXPECT_EQ(allocation_count(), before);
 }
 
-TEST(Collide, SmallerSizeIgnoresWhatIsNone) {
+TEST(Collide, SmallerSizeIgnoresMissingSizes) {
   EXPECT_EQ(smaller_size(1.0f, 2.0f), 1.0f);
   EXPECT_EQ(smaller_size(0.0f, 2.0f), 2.0f);
   EXPECT_EQ(smaller_size(3.0f, kUnbounded), 3.0f);

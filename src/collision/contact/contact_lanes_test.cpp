@@ -1,4 +1,4 @@
-// How far bodies close in a step: no farther than need be where they go together, and never less than they do.
+// Bounds of the approach of two bodies in a step: tight for bodies that move together, and never too small.
 #include "collision/contact/collide_scene.h"
 #include "geometry/shape/support.h"
 #include "random.h"
@@ -12,7 +12,8 @@ using testing_random::Random;
 
 const Box kCube{{0.5f, 0.5f, 0.5f}};
 
-// A cube 4 cm above a turntable at 3 rad/s, 4 m from its axis: more than is looked for where nothing closes.
+// A cube 4 cm above a turntable at 3 rad/s, 4 m from its axis: beyond the speculative distance of pairs that do not
+// close.
 struct Turntable {
   CollideScene scene;
   std::uint32_t table = scene.add(Box{{5, 0.5f, 5}}, {{0, -0.5, 0}, {}});
@@ -27,18 +28,18 @@ struct Turntable {
   int points() { return scene.manifold(table, cube).count; }
 };
 
-TEST(Closing, WhatGoesRoundTogetherDoesNotClose) { EXPECT_EQ(Turntable({0, 0, -12}, {0, 3, 0}).points(), 0); }
-TEST(Closing, WhatSlidesAlongDoesNotClose) {
+TEST(Closing, RigidCoRotationDoesNotClose) { EXPECT_EQ(Turntable({0, 0, -12}, {0, 3, 0}).points(), 0); }
+TEST(Closing, SlidingDoesNotClose) {
   EXPECT_EQ(Turntable({0, 0, 0}, {0, 0, 0}).points(), 0);
   EXPECT_EQ(Turntable({0, 0, 12}, {0, -3, 0}).points(), 0);
 }
-TEST(Closing, WhatComesOrTiltsDoes) {
+TEST(Closing, ApproachAndTiltClose) {
   EXPECT_EQ(Turntable({0, -3, -12}, {0, 3, 0}).points(), 4);
   EXPECT_GT(Turntable({0, 0, -12}, {6, 3, 0}).points(), 0);
 }
-TEST(Closing, WhatLeavesDoesNot) { EXPECT_EQ(Turntable({0, 6, -12}, {0, 3, 0}).points(), 0); }
+TEST(Closing, SeparationDoesNotClose) { EXPECT_EQ(Turntable({0, 6, -12}, {0, 3, 0}).points(), 0); }
 
-// Two balls of 0.5 m that stand 0.1 m apart and close by 0.15 in the step, the second `aside` from its body's origin.
+// Two balls of 0.5 m that are 0.1 m apart and close by 0.15 in the step, the second `aside` from its body's origin.
 int points_of_balls(float aside) {
   CollideScene scene;
   scene.add(Sphere{0.5f}, {});
@@ -47,13 +48,14 @@ int points_of_balls(float aside) {
   scene.step();
   return scene.manifold(0, 1).count;
 }
-TEST(Closing, BodiesWhoseBallsComeTogetherInTheStepAreLookedAt) {
+TEST(Closing, BodiesWhoseBallsMeetInTheStepAreUpdated) {
   EXPECT_EQ(points_of_balls(0.0f), 1);
   EXPECT_EQ(points_of_balls(1.0f), 1);
 }
 
-// What slides far above a table needs no points; but the look reached no farther than the gap, and when it falls the next must see it.
-TEST(Closing, ALookThatFoundNothingAlongTheAxisReachedToTheGap) {
+// A body that slides far above a table needs no points; but the update searched only up to the gap, and when the body
+// falls the next update must see it.
+TEST(Closing, AnEmptyUpdateSearchedUpToTheGap) {
   for (const int width : {1, 0}) {
     CollideScene scene;
     scene.width = width;
@@ -70,7 +72,7 @@ TEST(Closing, ALookThatFoundNothingAlongTheAxisReachedToTheGap) {
   }
 }
 
-// A beam of 2 m lies level 12 cm above a floor and turns by 0.15 rad in the step: its end, 1 m away, goes that far down.
+// A level beam of 2 m, 12 cm above a floor, rotates by 0.15 rad in the step: its end, 1 m away, comes down by as much.
 TEST(Closing, ABeamThatTiltsIsSeenByItsEnd) {
   CollideScene scene;
   const std::uint32_t floor = scene.add(Box{{5, 0.5f, 5}}, {{0, -0.5, 0}, {}}, false);
@@ -97,14 +99,14 @@ Pair random_pair(Random& random) {
     body.linear_velocity = random.vector(-5, 5);
     body.angular_velocity = random.vector(-5, 5);
   }
-  // Often both turn nearly alike.
+  // Often both rotate nearly alike.
   if (random.next(2) == 0)
     pair.bodies[1].angular_velocity = pair.bodies[0].angular_velocity + random.vector(-1, 1);
   pair.bodies[1].pose.position = DVec3(random.real(0.5f, 2.5f) * normalized(random.vector(-1, 1)));
   return pair;
 }
 
-// The points of a look at a pair as it is.
+// The number of points after an update of a pair.
 int points_of(const Pair& pair, CollideScene& scene) {
   for (int side = 0; side < 2; ++side) {
     scene.add(pair.shapes[side], pair.bodies[side].pose, true, {pair.bodies[side].center, {}});
@@ -117,12 +119,12 @@ int points_of(const Pair& pair, CollideScene& scene) {
 
 float nearest_point(CollideScene& scene) {
   const Manifold manifold = scene.manifold(0, 1);
-  float least = 1.0f;
-  for (int i = 0; i < manifold.count; ++i) least = min(least, manifold.points[i].separation);
-  return least;
+  float nearest = 1.0f;
+  for (int i = 0; i < manifold.count; ++i) nearest = min(nearest, manifold.points[i].separation);
+  return nearest;
 }
 
-// After one step of even motion, and at rest there.
+// The pair after a step of uniform motion, at rest.
 Pair moved(Pair pair, float seconds) {
   for (ColliderBody& body : pair.bodies) {
     const DVec3 center = body.pose * body.center + DVec3(seconds * body.linear_velocity);
@@ -134,27 +136,28 @@ Pair moved(Pair pair, float seconds) {
   return pair;
 }
 
-// Whether a look need not see as far as the two may come: that is left to the sweep.
+// True if the approach exceeds what updates search; CCD handles it.
 bool too_fast(const CollideScene& scene) {
   const ColliderBody& a = scene.bodies[0];
   const ColliderBody& b = scene.bodies[1];
-  const float fastest = length(b.linear_velocity - a.linear_velocity) + length(a.angular_velocity) * a.reach +
-                        length(b.angular_velocity) * b.reach;
+  const float fastest = length(b.linear_velocity - a.linear_velocity) +
+                        length(a.angular_velocity) * a.bounding_radius +
+                        length(b.angular_velocity) * b.bounding_radius;
   return scene.seconds * fastest > kMaxApproach * min(scene.shapes[0].size, scene.shapes[1].size);
 }
 
-TEST(Closing, WhatMeetsInAStepIsSeenBefore) {
+TEST(Closing, PairsThatMeetInAStepHavePointsBefore) {
   Random random;
   int met = 0, unseen = 0;
   for (int trial = 0; trial < 4000; ++trial) {
     const Pair pair = random_pair(random);
     CollideScene before, narrow, after;
     const bool seen = points_of(pair, before) > 0;
-    // One lane, where boxes are searched one by one, says the same.
+    // One lane, which searches boxes one by one, gives the same.
     narrow.width = 1;
     EXPECT_EQ(points_of(pair, narrow) > 0, seen);
     if (before.contact(0, 1) != nullptr) {
-      EXPECT_EQ(narrow.contact(0, 1)->looked, before.contact(0, 1)->looked);
+      EXPECT_EQ(narrow.contact(0, 1)->cached_distance, before.contact(0, 1)->cached_distance);
     }
     unseen += seen ? 0 : 1;
     points_of(moved(pair, before.seconds), after);

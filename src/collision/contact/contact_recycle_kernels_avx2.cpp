@@ -1,4 +1,4 @@
-// Recycling of contacts for one kind of CPU, in a namespace of its own so that the linker can never mix it with others'.
+// Contact recycling for one kind of CPU, in its own namespace so that the linker cannot mix kinds.
 #define GYRE_TARGET_NAMESPACE target_avx2
 #include "collision/contact/contact_recycle_lanes.h"
 

@@ -1,8 +1,8 @@
-// Recycling of contacts for one kind of CPU, in a namespace of its own so that the linker can never mix it with others'.
+// Contact recycling for one kind of CPU, in its own namespace so that the linker cannot mix kinds.
 #define GYRE_TARGET_NAMESPACE target_sse2
 #include "collision/contact/contact_recycle_lanes.h"
 
-// WebAssembly without SIMD would have every lane's code one after the other: its kernel is that of width 1.
+// WebAssembly without SIMD would run the lanes one after the other; it uses the kernel of width 1.
 #if !defined(__wasm__) || defined(__wasm_simd128__)
 namespace gyre {
 

@@ -1,4 +1,4 @@
-// Adding and removing contacts, and the indices over them. See contact_store.h.
+// Adds and removes contacts and keeps the indices over them. See contact_store.h.
 #include "collision/contact/contact_store.h"
 
 #include "base/check.h"
@@ -17,7 +17,7 @@ std::uint32_t add_chunk(ContactStore& store) {
   const auto chunk = std::uint32_t(store.chunk_used.size());
   store.chunk_used.push_back(0);
   store.manifolds.resize(store.manifolds.size() + kChunk);
-  store.free_chunks.give(chunk);
+  store.free_chunks.release(chunk);
   return chunk;
 }
 
@@ -25,17 +25,17 @@ std::uint32_t acquire_manifolds(ContactStore& store, std::uint16_t room) {
   if (room == 1) {
     if (const std::uint32_t chunk = store.partial_chunks.lowest(); chunk != FreeSlots::kNone) {
       std::uint8_t& used = store.chunk_used[chunk];
-      const auto place = std::uint32_t(std::countr_one(used));
-      used = std::uint8_t(used | 1u << place);
+      const auto index = std::uint32_t(std::countr_one(used));
+      used = std::uint8_t(used | 1u << index);
       if (used == kWholeChunk) store.partial_chunks.acquire(chunk);
-      return chunk * kChunk + place;
+      return chunk * kChunk + index;
     }
   }
   std::uint32_t chunk = store.free_chunks.lowest();
   if (chunk == FreeSlots::kNone) chunk = add_chunk(store);
   store.free_chunks.acquire(chunk);
   store.chunk_used[chunk] = room == 1 ? std::uint8_t(1) : kWholeChunk;
-  if (room == 1) store.partial_chunks.give(chunk);
+  if (room == 1) store.partial_chunks.release(chunk);
   return chunk * kChunk;
 }
 
@@ -45,17 +45,17 @@ void release_manifolds(ContactStore& store, std::uint32_t first, std::uint16_t r
   used = room == 1 ? std::uint8_t(used & ~(1u << first % kChunk)) : std::uint8_t(0);
   if (used == 0) {
     store.partial_chunks.acquire(chunk);
-    store.free_chunks.give(chunk);
+    store.free_chunks.release(chunk);
   } else {
-    store.partial_chunks.give(chunk);
+    store.partial_chunks.release(chunk);
   }
 }
 
-// Of a mesh contact: nothing is kept yet.
-void clear_kept_triangles(ContactStore& store, const Contact& contact) {
+// A new mesh contact has no cached triangles.
+void clear_cached_triangles(ContactStore& store, const Contact& contact) {
   const std::size_t chunk = contact.first_manifold / kChunk;
-  if (store.kept_triangles.size() <= chunk) store.kept_triangles.resize(chunk + 1);
-  store.kept_triangles[chunk].count = CachedTriangles::kUnknown;
+  if (store.cached_triangles.size() <= chunk) store.cached_triangles.resize(chunk + 1);
+  store.cached_triangles[chunk].count = CachedTriangles::kUnknown;
 }
 
 void link(ContactStore& store, std::uint32_t slot) {
@@ -90,14 +90,14 @@ void unlink(ContactStore& store, std::uint32_t slot) {
 
 }  // namespace
 
-void FreeSlots::give(std::uint32_t place) {
-  if (place >= free_.size()) free_.resize(std::size_t(place) + 1);
-  free_.set(place);
-  hint_ = min(hint_, place);
+void FreeSlots::release(std::uint32_t index) {
+  if (index >= free_.size()) free_.resize(std::size_t(index) + 1);
+  free_.set(index);
+  hint_ = min(hint_, index);
 }
 
-void FreeSlots::acquire(std::uint32_t place) {
-  if (free_.test(place)) free_.clear(place);
+void FreeSlots::acquire(std::uint32_t index) {
+  if (free_.test(index)) free_.clear(index);
 }
 
 std::uint32_t FreeSlots::lowest() {
@@ -127,7 +127,7 @@ std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShap
   contact.sensor = shapes.sensor ? 1 : 0;
   contact.surface = shapes.surface;
   store.contacts[slot] = contact;
-  if (shapes.against_mesh) clear_kept_triangles(store, contact);
+  if (shapes.against_mesh) clear_cached_triangles(store, contact);
   store.slot_of_pair.insert(key, slot, key_reader(store));
   link(store, slot);
   ++store.live;
@@ -139,12 +139,12 @@ void remove_contact(ContactStore& store, std::uint32_t slot) {
   GYRE_ASSERT(contact.manifold_room != 0, "the contact exists");
   unlink(store, slot);
   store.slot_of_pair.erase(pair_key(contact.shape_a, contact.shape_b), key_reader(store));
-  // Of manifolds that are not in use nothing is left to hide from hashes and snapshots.
+  // Unused manifolds are cleared, because hashes and snapshots include them.
   for (Manifold& manifold : manifolds_of(store, contact)) manifold = Manifold{};
   release_manifolds(store, contact.first_manifold, contact.manifold_room);
   store.contacts[slot] = Contact{};
   store.with_manifolds.clear(slot);
-  store.free_contacts.give(slot);
+  store.free_contacts.release(slot);
   --store.live;
 }
 
@@ -159,28 +159,28 @@ void rebuild_index(ContactStore& store) {
   store.free_contacts.clear();
   store.free_chunks.clear();
   store.partial_chunks.clear();
-  store.kept_triangles.clear();
+  store.cached_triangles.clear();
   store.chunk_used.assign(store.manifolds.size() / kChunk, 0);
   store.live = 0;
   for (std::uint32_t slot = 0; slot < count; ++slot) {
     const Contact& contact = store.contacts[slot];
     if (contact.manifold_room == 0) {
-      store.free_contacts.give(slot);
+      store.free_contacts.release(slot);
       continue;
     }
     store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot, key_reader(store));
     link(store, slot);
     ++store.live;
     store.with_manifolds.assign(slot, contact.manifold_count != 0);
-    if (contact.manifold_room > 1) clear_kept_triangles(store, contact);
+    if (contact.manifold_room > 1) clear_cached_triangles(store, contact);
     std::uint8_t& used = store.chunk_used[contact.first_manifold / kChunk];
     used =
         contact.manifold_room == 1 ? std::uint8_t(used | 1u << contact.first_manifold % kChunk) : kWholeChunk;
   }
   for (std::uint32_t chunk = 0; chunk < store.chunk_used.size(); ++chunk) {
     const std::uint8_t used = store.chunk_used[chunk];
-    if (used == 0) store.free_chunks.give(chunk);
-    if (used != 0 && used != kWholeChunk) store.partial_chunks.give(chunk);
+    if (used == 0) store.free_chunks.release(chunk);
+    if (used != 0 && used != kWholeChunk) store.partial_chunks.release(chunk);
   }
 }
 
@@ -191,7 +191,7 @@ bool is_clear(const Manifold& manifold) {
   return std::memcmp(&manifold, &clear, sizeof clear) == 0;
 }
 
-// Whether the manifold is as a new one beyond its points.
+// True if the unused points of the manifold are as new.
 bool ends_with_its_points(const Manifold& manifold) {
   const Manifold clear{};
   const auto unused = std::size_t(kMaxManifoldPoints - manifold.count);
@@ -213,9 +213,9 @@ const char* find_fault(const ContactStore& store, std::uint32_t slot, Array<std:
     used[i / kChunk] = std::uint8_t(used[i / kChunk] | bit);
   }
   for (const Manifold& manifold : manifolds_of(store, contact))
-    if (!ends_with_its_points(manifold)) return "a manifold has something in a point that it does not have";
+    if (!ends_with_its_points(manifold)) return "an unused point of a manifold is not clear";
   for (std::uint32_t i = contact.first_manifold + contact.manifold_count; i < end; ++i)
-    if (!is_clear(store.manifolds[i])) return "a contact has something in a manifold that it does not use";
+    if (!is_clear(store.manifolds[i])) return "an unused manifold of a contact is not clear";
   if (find_contact(store, pair_key(contact.shape_a, contact.shape_b)) != slot)
     return "the index does not lead to the contact";
   const std::uint32_t shapes[2] = {contact.shape_a, contact.shape_b};
@@ -246,7 +246,7 @@ const char* find_fault(const ContactStore& store) {
     if (empty) continue;
     ++live;
     if (store.contacts[slot].manifold_count != 0 && !store.with_manifolds.test(slot))
-      return "a contact with manifolds is not known to have some";
+      return "the bit of a contact with manifolds is clear";
     if (const char* const fault = find_fault(store, slot, used)) return fault;
   }
   if (live != store.live || live != store.slot_of_pair.size()) return "the number of contacts is wrong";
@@ -254,8 +254,7 @@ const char* find_fault(const ContactStore& store) {
     if (used[chunk] != store.chunk_used[chunk]) return "a chunk's record differs from what contacts own";
     if (store.free_chunks.contains(chunk) != (used[chunk] == 0)) return "free chunks are not the unused ones";
     const bool partial = used[chunk] != 0 && used[chunk] != kWholeChunk;
-    if (store.partial_chunks.contains(chunk) != partial)
-      return "partial chunks are not those with some in use";
+    if (store.partial_chunks.contains(chunk) != partial) return "partial chunks are not the partly used ones";
     for (std::uint32_t i = 0; i < kChunk; ++i)
       if ((used[chunk] >> i & 1u) == 0 && !is_clear(store.manifolds[chunk * kChunk + i]))
         return "a manifold of no contact is not clear";

@@ -1,9 +1,9 @@
-// Persistent contacts: one slot for each pair of shapes whose fat boxes overlap. A contact keeps its manifolds, the
-// impulses in them and what the pair's last look found out, from step to step.
+// Persistent contacts: one slot for each pair of shapes whose fat boxes overlap. A contact keeps its manifolds, their
+// impulses and the results of the pair's last update from step to step.
 //
-// Slots and manifold runs are handed out lowest-free-first, to new pairs in key order. So slot order is a function of
-// history alone, everything that walks contacts walks them in slot order, and which places are free follows from the
-// contacts themselves: a loaded snapshot goes on exactly as the world that wrote it.
+// A new pair takes the lowest free slot and the lowest free run of manifolds, in the order of pair keys. So slot order
+// depends on history alone, and every loop over contacts follows it. The free slots follow from the contacts; a loaded
+// snapshot therefore continues exactly as the world that wrote it.
 #pragma once
 
 #include "base/container/array.h"
@@ -19,7 +19,7 @@
 
 namespace gyre {
 
-// Mixed surface of a pair.
+// Mixed surface properties of a pair.
 struct ContactSurface {
   float static_friction = 0.0f;
   float dynamic_friction = 0.0f;
@@ -34,65 +34,66 @@ struct Contact {
   std::uint32_t body_a = 0;
   std::uint32_t body_b = 0;
   std::uint32_t first_manifold = 0;  // into ContactStore::manifolds
-  std::uint16_t manifold_room =
-      0;  // 1, or kMaxMeshManifolds against meshes and height fields; 0: the slot is empty
-  std::uint16_t manifold_count = 0;  // those in use now
-  std::uint8_t sensor = 0;           // touches nothing, only reported
-  std::uint8_t touching = 0;         // surfaces met at the last look (for events)
-  std::uint8_t recycled = 0;         // the last look took the manifold over unchanged in the bodies' frames
-  std::uint8_t ended = 0;            // fat boxes no longer overlap: to be removed
-  // What the last full look saw: how far it reached (no surfaces but those of the manifold's points were nearer then; below
-  // zero: never looked), the size that the pair's tolerances are relative to, and B's body frame in A's.
-  float looked = -1.0f;  // m
-  float size = 0.0f;     // m
+  std::uint16_t manifold_room = 0;   // 1; kMaxMeshManifolds against surfaces; 0: empty slot
+  std::uint16_t manifold_count = 0;  // in use now
+  std::uint8_t sensor = 0;           // only reports overlap
+  std::uint8_t touching = 0;         // the surfaces touched at the last update (for events)
+  std::uint8_t recycled = 0;         // the last update recycled the manifold
+  std::uint8_t ended = 0;            // the fat boxes no longer overlap: to be removed
+  // Results of the last full update. Within `cached_distance` there were no surfaces but those of the manifold's
+  // points; negative before the first update. `size` is the scale of the pair's tolerances. `seen_a_from_b` is B's body
+  // frame in A's.
+  float cached_distance = -1.0f;  // m
+  float size = 0.0f;              // m
   Transform seen_a_from_b;
   PairCache cache;
   ContactSurface surface;
 };
 
-// Where a contact hangs in the lists of its two shapes. A link is 2 * slot + side (0: in the list of shape_a).
+// The links of a contact in the lists of its two shapes. A link is 2 * slot + side (0: in the list of shape_a).
 struct ContactLinks {
   std::uint32_t previous[2];
   std::uint32_t next[2];
 };
 constexpr std::uint32_t kNoLink = 0xffffffffu;
 
-// Places that are free, of which the lowest is handed out first.
+// Free slots; the lowest is handed out first.
 class FreeSlots {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
   void clear() { *this = FreeSlots{}; }
-  void give(std::uint32_t place);
-  void acquire(std::uint32_t place);  // takes this very place; no effect if it is not free
-  std::uint32_t lowest();          // kNone if none is free
-  bool contains(std::uint32_t place) const { return free_.test(place); }
+  void release(std::uint32_t index);
+  void acquire(std::uint32_t index);  // takes this slot; no effect if it is not free
+  std::uint32_t lowest();             // kNone if none is free
+  bool contains(std::uint32_t index) const { return free_.test(index); }
 
  private:
   Bitset free_;
-  std::uint32_t hint_ = 0;  // nothing below is free
+  std::uint32_t hint_ = 0;  // no free slot is below
 };
 
 struct ContactStore {
   Array<Contact> contacts;             // by slot; empty slots have manifold_room 0
-  PagedArray<Manifold, 64> manifolds;  // runs owned by contacts; a run lies within a page
+  PagedArray<Manifold, 64> manifolds;  // runs owned by contacts; each run lies within one page
   std::uint32_t live = 0;
 
-  // The rest follows from `contacts` (rebuild_index makes it anew) and is no part of the state.
+  // Everything below follows from `contacts` (see rebuild_index) and is not state.
   SlotTable slot_of_pair;  // see find_contact
   Array<std::uint32_t>
-      first_of_shape;         // by shape: the first link of its list, in no particular order; may be short
+      first_of_shape;         // by shape, may be short: the first link of its list, in no particular order
   Array<ContactLinks> links;  // by slot
-  Bitset with_manifolds;      // by slot: clear where a contact has no manifold, for certain
+  Bitset with_manifolds;      // by slot: clear if the contact has no manifold for certain
   FreeSlots free_contacts;
-  // Manifolds are handed out in chunks of kMaxMeshManifolds: a chunk is one run for a mesh contact, or singles.
+  // Manifolds are handed out in chunks of kMaxMeshManifolds; a chunk is one run for a mesh contact, or single
+  // manifolds.
   Array<std::uint8_t> chunk_used;  // bit i: manifold i of the chunk is in use
-  FreeSlots free_chunks;           // chunks of which nothing is in use
-  FreeSlots partial_chunks;        // chunks of which some singles are in use and some are free
-  // By chunk, of those that belong to mesh contacts: what their looks keep of the mesh. As long as the last of these needs.
-  Array<CachedTriangles> kept_triangles;
+  FreeSlots free_chunks;           // unused chunks
+  FreeSlots partial_chunks;        // chunks with used and free single manifolds
+  // By chunk, for chunks of mesh contacts. As long as the last of these needs.
+  Array<CachedTriangles> cached_triangles;
 };
 
-// What a new pair needs to know about its shapes.
+// Facts about the shapes of a new pair.
 struct PairShapes {
   std::uint32_t body_a = 0, body_b = 0;
   bool against_mesh = false;
@@ -100,23 +101,23 @@ struct PairShapes {
   ContactSurface surface;
 };
 
-// How the table of pairs reads the key of a slot.
+// Reads the key of a slot for the table of pairs.
 inline auto key_reader(const ContactStore& store) {
   return [&store](std::uint32_t slot) {
     return std::uint64_t(store.contacts[slot].shape_a) << 32 | store.contacts[slot].shape_b;
   };
 }
-// The slot of a pair's contact; SlotTable::kNone if it has none.
+// The slot of a pair's contact, or SlotTable::kNone.
 inline std::uint32_t find_contact(const ContactStore& store, std::uint64_t key) {
   return store.slot_of_pair.find(key, key_reader(store));
 }
-// Adds a contact (the pair must be new) / removes one; the manifolds' impulses go with it.
+// Adds the contact of a new pair, or removes a contact with its impulses.
 std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShapes& shapes);
 void remove_contact(ContactStore& store, std::uint32_t slot);
-// Builds everything but contacts and manifolds anew (after loading a snapshot).
+// Rebuilds everything but contacts and manifolds, after a snapshot was loaded.
 void rebuild_index(ContactStore& store);
-// Makes the next look at this contact a full one: something about one of its bodies changed that its pose does not show.
-inline void invalidate_cache(Contact& contact) { contact.looked = -1.0f; }
+// Makes the next update of this contact a full one, after a change of a body that its pose does not show.
+inline void invalidate_cache(Contact& contact) { contact.cached_distance = -1.0f; }
 
 // Calls fn(slot) for each contact of a shape, in no particular order; fn must not add or remove contacts.
 template <class Fn>
@@ -128,14 +129,14 @@ void for_each_contact_of_shape(const ContactStore& store, std::uint32_t shape, F
   }
 }
 
-// Null for a contact without a mesh or height field; of fields nothing is ever known.
+// Null for a contact without a mesh or height field. For height fields nothing is cached.
 inline CachedTriangles* cached_triangles_of(ContactStore& store, const Contact& contact) {
-  return contact.manifold_room > 1 ? &store.kept_triangles[contact.first_manifold / kMaxMeshManifolds]
+  return contact.manifold_room > 1 ? &store.cached_triangles[contact.first_manifold / kMaxMeshManifolds]
                                    : nullptr;
 }
 
-// Whether indices, lists and free places agree with the contacts. Walks everything; for tests and debug builds. Null if
-// all is well, otherwise what is not, in words.
+// Checks that indices, lists and free slots agree with the contacts. Visits everything; for tests and debug builds.
+// Null if all is well, otherwise the fault in words.
 const char* find_fault(const ContactStore& store);
 
 inline std::span<Manifold> manifolds_of(ContactStore& store, const Contact& contact) {

@@ -1,4 +1,4 @@
-// The contact store against plain bookkeeping: slots lowest first, no leak under churn, and indices that can be rebuilt.
+// The contact store against plain bookkeeping: lowest slots first, no leaks, and indices that can be rebuilt.
 #include "collision/contact/contact_store.h"
 
 #include "collision/contact/pair_update.h"
@@ -54,7 +54,7 @@ TEST(ContactStore, RemovedContactsLeaveNothingBehind) {
   EXPECT_EQ(store.manifolds[store.contacts[slot].first_manifold].points[0].normal_impulse, 0.0f);
 }
 
-// Triangles are those of one mesh: whoever takes their place over knows none.
+// Cached triangles belong to one mesh: a later contact in the same slots has none.
 TEST(ContactStore, TrianglesOfAMeshAreForgottenWithItsContact) {
   ContactStore store;
   PairShapes on_mesh;
@@ -66,7 +66,7 @@ TEST(ContactStore, TrianglesOfAMeshAreForgottenWithItsContact) {
   cached_triangles_of(store, store.contacts[other])->count = 5;
   remove_contact(store, slot);
   const std::uint32_t next = add(3);
-  ASSERT_EQ(store.contacts[next].first_manifold, chunk) << "it takes the same place";
+  ASSERT_EQ(store.contacts[next].first_manifold, chunk) << "it takes the same run";
   EXPECT_EQ(cached_triangles_of(store, store.contacts[next])->count, CachedTriangles::kUnknown);
   EXPECT_EQ(cached_triangles_of(store, store.contacts[other])->count, 5);
   rebuild_index(store);
@@ -87,8 +87,9 @@ TEST(ContactStore, ChurnKeepsIndicesRightAndMemoryLevel) {
       if (a == b || expected.count(pair_key(a, b)) != 0) continue;
       const std::uint64_t key = pair_key(a, b);
       const std::uint32_t slot = add_contact(store, key, describe(key));
-      const std::uint32_t wanted = free_slots.empty() ? std::uint32_t(expected.size()) : *free_slots.begin();
-      ASSERT_EQ(slot, wanted);
+      const std::uint32_t lowest_free =
+          free_slots.empty() ? std::uint32_t(expected.size()) : *free_slots.begin();
+      ASSERT_EQ(slot, lowest_free);
       free_slots.erase(slot);
       expected[key] = slot;
       owned += store.contacts[slot].manifold_room;
@@ -112,7 +113,7 @@ TEST(ContactStore, ChurnKeepsIndicesRightAndMemoryLevel) {
   ASSERT_STREQ(find_fault(store), nullptr);
   EXPECT_EQ(store.live, expected.size());
   for (const auto& [key, slot] : expected) EXPECT_EQ(find_contact(store, key), slot);
-  // Never more places than were needed at the busiest moment, and little waste in shared chunks.
+  // Never more slots than at the busiest moment, and little waste in shared chunks.
   EXPECT_EQ(store.contacts.size(), max_live);
   EXPECT_LE(store.manifolds.size(), max_owned + max_owned / 4);
 }
@@ -185,9 +186,9 @@ TEST(ContactStore, FaultsAreFound) {
   EXPECT_NE(find_fault(broken), nullptr);
   broken = store;
   broken.manifolds[broken.contacts[4].first_manifold].load_age = 1.0f;
-  EXPECT_STREQ(find_fault(broken), "a contact has something in a manifold that it does not use");
+  EXPECT_STREQ(find_fault(broken), "an unused manifold of a contact is not clear");
   broken.contacts[4].manifold_count = 1;
-  EXPECT_STREQ(find_fault(broken), "a contact with manifolds is not known to have some");
+  EXPECT_STREQ(find_fault(broken), "the bit of a contact with manifolds is clear");
   for (const bool anchor : {false, true}) {
     ContactStore loaded = store;
     loaded.contacts[4].manifold_count = 1;
@@ -197,7 +198,7 @@ TEST(ContactStore, FaultsAreFound) {
     manifold.points[1].mean_impulse = manifold.anchors[1].separation = 1.0f;
     EXPECT_STREQ(find_fault(loaded), nullptr);
     (anchor ? manifold.anchors[2].separation : manifold.points[2].mean_impulse) = 1.0f;
-    EXPECT_STREQ(find_fault(loaded), "a manifold has something in a point that it does not have");
+    EXPECT_STREQ(find_fault(loaded), "an unused point of a manifold is not clear");
   }
   broken.with_manifolds.set(4);
   EXPECT_EQ(find_fault(broken), nullptr);
@@ -207,7 +208,7 @@ TEST(ContactStore, FaultsAreFound) {
   EXPECT_STREQ(find_fault(broken), "a manifold of no contact is not clear");
 }
 
-TEST(PairUpdate, AddsInKeyOrderWhatIsNewAndNotBlocked) {
+TEST(PairUpdate, AddsNewUnblockedPairsInKeyOrder) {
   ContactStore store;
   BlockedBodies blocked;
   blocked.insert(pair_key(1, 3), 1);
@@ -225,7 +226,7 @@ TEST(PairUpdate, AddsInKeyOrderWhatIsNewAndNotBlocked) {
   EXPECT_EQ(store.contacts[3].surface.static_friction, 4.0f);
 }
 
-// Where much comes together at once no array is moved again and again: room is for all of them, without an eighth more.
+// Many new contacts at once move each array once at most: there is room for all, without an eighth more.
 TEST(PairUpdate, MakesRoomForAllAtOnce) {
   ContactStore store;
   const auto keys_of = [](std::uint32_t first, std::uint32_t count) {

@@ -1,11 +1,11 @@
-// Full looks, and the matching of new points with old ones. See contact_update.h.
+// Full updates, and the matching of new points with old ones. See contact_update.h.
 #include "collision/contact/contact_update.h"
 
 #include "collision/broadphase/fat_box.h"
 #include "collision/contact/contact_apart_lanes.h"
-#include "collision/contact/manifold_layout.h"
 #include "collision/contact/match_manifold.h"
 #include "geometry/manifold/manifold_box.h"
+#include "geometry/manifold/manifold_layout.h"
 #include "geometry/manifold_mesh/manifold_mesh.h"
 #include "geometry/query/surface_overlap.h"
 
@@ -14,14 +14,15 @@
 namespace gyre {
 namespace {
 
-// All lengths in sizes of the pair (the smaller shape's inner radius).
-// Points farther apart than kKept beyond the speculative distance are not kept, only how near they were.
-constexpr float kKept = 0.005f;
-// Above a mesh a look at boxes alone comes first, as far as the pair goes in some steps: what falls need not look in each.
+// Lengths are in sizes of the pair (inner radius of the smaller shape). Points farther apart than the speculative
+// distance and this margin are dropped; only their separation counts.
+constexpr float kPointMargin = 0.005f;
+// Above a mesh a test of boxes comes first, over the approach of this many steps; falling bodies then need no search in
+// each step.
 constexpr float kClearSteps = 4.0f;
-// A new point takes over from an old one this near, whatever its feature is called, if the cosine between their normals is
-// at least kSameSide.
-constexpr float kMatch = 0.1f, kSameSide = 0.8f;
+// A new point without a feature match takes the impulses of the nearest old point within kMatchDistance, if the cosine
+// between their normals is at least kSameSideCosine.
+constexpr float kMatchDistance = 0.1f, kSameSideCosine = 0.8f;
 
 bool has_rim(const Shape& shape) {
   return shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
@@ -30,18 +31,18 @@ bool has_rim(const Shape& shape) {
 std::span<Manifold> manifolds_of(const PairInput& pair) {
   return {pair.manifolds, pair.contact->manifold_count};
 }
-// Whether the anchors lie in the frame of B's body, else A's.
+// True if the anchors lie in the body frame of B, false if in A's.
 bool frame_is_b(const Shape& a, const Shape& b) {
   const Roundness<1> round_a{std::int32_t(a.kind), a.radius}, round_b{std::int32_t(b.kind), b.radius};
   return any(ManifoldMatch<1>(round_a, round_b).frame_is_b);
 }
 
-// ----------------------------------------------------------------------------------------------- what the shapes tell
+// ---------------------------------------------------------------------------------------------------------- the shapes
 
 template <int kRoom>
 struct Found {
-  // Not cleared: only the counted ones are ever read. Who finds them says everything of them but the triangle, which only
-  // surfaces have.
+  // Not cleared: only counted ones are read. The narrow phase writes all members but `triangle`, which only surfaces
+  // have.
   union {
     LocalManifold manifolds[kRoom];
   };
@@ -52,11 +53,11 @@ struct Found {
   }
 };
 
-// A shape in the frame in which it is seen (View).
-struct SeenShape {
+// A shape in the frame of PairView.
+struct ViewedShape {
   Shape moved;
   const Shape* shape;
-  SeenShape(const Shape& own, const Shape& other) : shape(&own) {
+  ViewedShape(const Shape& own, const Shape& other) : shape(&own) {
     if (own.kind != ShapeKind::plane || !is_convex(other.kind)) return;
     moved = own;
     moved.offset = 0.0f;
@@ -65,87 +66,88 @@ struct SeenShape {
 };
 
 template <int kRoom>
-void ask_shapes(const PairInput& pair, const View& view, float reach, CachedTriangles* kept,
-                Found<kRoom>& found) {
-  const SeenShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
-  found.count = collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache,
-                               found.manifolds, kept);
+void collide_in_view(const PairInput& pair, const PairView& view, float max_distance,
+                     CachedTriangles* cached, Found<kRoom>& found) {
+  const ViewedShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
+  found.count = collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, max_distance, pair.contact->cache,
+                               found.manifolds, cached);
 }
 
-// How near surfaces must be for contacts along a normal to matter. What is no farther apart than `min_near` always does.
-float min_near(const View& view) { return (kSpeculativeShare + kKept) * view.size; }
-float near_along(const View& view, Vec3 normal) {
-  return min_near(view) + min(min(view.closing.along(normal), view.way), kMaxApproach * view.size);
+// The distance below which contacts along a normal matter. Contacts within min_near() always do.
+float min_near(const PairView& view) { return (kSpeculativeShare + kPointMargin) * view.size; }
+float near_along(const PairView& view, Vec3 normal) {
+  return min_near(view) + min(min(view.closing.along(normal), view.max_approach), kMaxApproach * view.size);
 }
 
-// As ask_shapes, of two sharp boxes; but nothing is found where they do not come near enough along the axis that parts them most.
-// Then nothing is nearer than they are along that axis, and that is what is returned.
-float ask_boxes(const PairInput& pair, const View& view, float reach, Found<1>& found) {
+// As collide_in_view, for two sharp boxes. If they stay too far apart along the axis of largest separation, nothing is
+// found and the result is their separation along that axis, a lower bound of the distance.
+float collide_boxes_in_view(const PairInput& pair, const PairView& view, float max_distance,
+                            Found<1>& found) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
   PairCache& cache = pair.contact->cache;
   const boxes::Axis axis = view.axis.number != boxes::kNoAxis
                                ? view.axis
-                               : find_box_axis(a, b, view.shapes_a_from_b, reach, cache);
+                               : find_box_axis(a, b, view.shapes_a_from_b, max_distance, cache);
   if (axis.separation > min_near(view) &&
       axis.separation > near_along(view, box_axis_normal(axis, view.shapes_a_from_b))) {
     cache.words[0] = std::uint32_t(axis.number + 1);
     found.count = 0;
-    return min(axis.separation, reach);
+    return min(axis.separation, max_distance);
   }
-  collide_boxes_along(axis, a, b, view.shapes_a_from_b, reach, cache, found.manifolds[0]);
+  collide_boxes_along(axis, a, b, view.shapes_a_from_b, max_distance, cache, found.manifolds[0]);
   found.count = found.manifolds[0].count > 0 ? 1 : 0;
-  return reach;
+  return max_distance;
 }
 
-// Leaves out what is farther apart than `reach`. Returns the smallest separation of what was left out.
+// Drops the points farther apart than `max_distance`. Returns the smallest separation of a dropped point.
 template <int kRoom>
-float keep_near(Found<kRoom>& found, float reach) {
+float remove_far_points(Found<kRoom>& found, float max_distance) {
   float left_out = kUnbounded;
-  int kept_manifolds = 0;
+  int manifold_count = 0;
   for (int m = 0; m < found.count; ++m) {
     LocalManifold& manifold = found.manifolds[m];
-    int kept = 0;
+    int count = 0;
     for (int i = 0; i < manifold.count; ++i) {
-      if (manifold.points[i].separation <= reach) {
-        if (kept != i) manifold.points[kept] = manifold.points[i];
-        ++kept;
+      if (manifold.points[i].separation <= max_distance) {
+        if (count != i) manifold.points[count] = manifold.points[i];
+        ++count;
       } else {
         left_out = min(left_out, manifold.points[i].separation);
       }
     }
-    manifold.count = kept;
-    if (kept == 0) continue;
-    if (kept_manifolds != m) found.manifolds[kept_manifolds] = manifold;
-    ++kept_manifolds;
+    manifold.count = count;
+    if (count == 0) continue;
+    if (manifold_count != m) found.manifolds[manifold_count] = manifold;
+    ++manifold_count;
   }
-  found.count = kept_manifolds;
+  found.count = manifold_count;
   return left_out;
 }
 
 float farthest_of(const LocalManifold& manifold) {
-  float most = -kUnbounded;
-  for (int i = 0; i < manifold.count; ++i) most = max(most, manifold.points[i].separation);
-  return most;
+  float farthest = -kUnbounded;
+  for (int i = 0; i < manifold.count; ++i) farthest = max(farthest, manifold.points[i].separation);
+  return farthest;
 }
 
-// Whether no point is as near as `reach`.
+// True if no point is within `max_distance`.
 template <int kRoom>
-bool is_beyond(const Found<kRoom>& found, float reach) {
+bool is_beyond(const Found<kRoom>& found, float max_distance) {
   for (int m = 0; m < found.count; ++m) {
     for (int i = 0; i < found.manifolds[m].count; ++i) {
-      if (found.manifolds[m].points[i].separation <= reach) return false;
+      if (found.manifolds[m].points[i].separation <= max_distance) return false;
     }
   }
   return true;
 }
 
-// What goes on of a manifold that was there before this look; its points side by side. Those that it had not are zero.
+// What continues of a manifold from before the update, with its points side by side. Missing points are zero.
 struct FormerManifold {
   Vec3 normal, friction_impulse, rolling_impulse;
   float twist_impulse, load_age;
   std::uint32_t triangle, sliding;
-  unsigned left;  // bits, by point: it has found no heir yet
+  unsigned left;  // bits, by point: not yet matched
   WideInt<kMaxManifoldPoints> feature;
   float normal_impulse[kMaxManifoldPoints], mean_impulse[kMaxManifoldPoints];
   Vec3W<kMaxManifoldPoints> anchor;
@@ -158,14 +160,14 @@ void read_points(const Manifold& from, FormerManifold& to) {
     points[k] = floats(&from.points[k]);
     anchors[k] = floats(&from.anchors[k]);
   }
-  Wide<W> names[4], impulses[4], places[4];
+  Wide<W> names[4], impulses[4], positions[4];
   read_four<W>(points, 4, names);
   read_four<W>(points, 8, impulses);
-  read_four<W>(anchors, 0, places);
+  read_four<W>(anchors, 0, positions);
   to.feature = bit_pattern(names[3]);
   impulses[0].store_unaligned(to.normal_impulse);
   impulses[2].store_unaligned(to.mean_impulse);
-  to.anchor = {places[0], places[1], places[2]};
+  to.anchor = {positions[0], positions[1], positions[2]};
 }
 
 void read_former(const Manifold& from, FormerManifold& to) {
@@ -180,8 +182,8 @@ void read_former(const Manifold& from, FormerManifold& to) {
   read_points(from, to);
 }
 
-// What a manifold keeps from step to step, turned into the new tangent plane.
-void carry_friction(const FormerManifold& from, Manifold& to) {
+// Projects the impulses that a manifold carries from step to step onto the new tangent plane.
+void carry_friction_impulses(const FormerManifold& from, Manifold& to) {
   to.friction_impulse = from.friction_impulse - dot(from.friction_impulse, to.normal) * to.normal;
   to.rolling_impulse = from.rolling_impulse - dot(from.rolling_impulse, to.normal) * to.normal;
   to.twist_impulse = from.twist_impulse;
@@ -191,26 +193,26 @@ void carry_friction(const FormerManifold& from, Manifold& to) {
 
 template <int kRoom>
 struct Former {
-  // Not cleared: only the counted ones are ever read.
+  // Not cleared: only counted ones are read.
   union {
     FormerManifold manifolds[kRoom];
   };
   int count = 0;
-  bool taken[kRoom] = {};
+  bool continued[kRoom] = {};
 
   explicit Former(std::span<const Manifold> before) : count(int(before.size())) {
     for (int m = 0; m < count; ++m) read_former(before[std::size_t(m)], manifolds[m]);
   }
 };
 
-// The former manifold that goes on in the new one; -1 if none does. A single manifold always goes on.
+// The old manifold that continues in the new one, or -1. A single manifold always continues.
 template <int kRoom>
 int find_former(const Former<kRoom>& former, const Manifold& manifold) {
   if constexpr (kRoom == 1) return former.count == 1 ? 0 : -1;
   int best = -1;
-  float best_score = kSameSide;
+  float best_score = kSameSideCosine;
   for (int m = 0; m < former.count; ++m) {
-    if (former.taken[m]) continue;
+    if (former.continued[m]) continue;
     const float same_triangle = former.manifolds[m].triangle == manifold.triangle ? 0.5f : 0.0f;
     const float score = dot(former.manifolds[m].normal, manifold.normal) + same_triangle;
     if (score > best_score) {
@@ -221,36 +223,36 @@ int find_former(const Former<kRoom>& former, const Manifold& manifold) {
   return best;
 }
 
-void take_over(FormerManifold& former, int k, ContactPointState& point) {
+void inherit_impulses(FormerManifold& former, int k, ContactPointState& point) {
   former.left &= ~(1u << k);
   point.normal_impulse = former.normal_impulse[k];
   point.mean_impulse = former.mean_impulse[k];
 }
 
-// By name within the former manifold; bit i of the result is set for each point that found its own.
+// Matches points by feature within the old manifold. Returns the matched points as bits.
 unsigned match_by_feature(FormerManifold& former, Manifold& manifold) {
   unsigned matched = 0;
   for (int i = 0; i < manifold.count; ++i) {
     const WideInt<kMaxManifoldPoints> name(std::int32_t(manifold.points[i].feature));
     const unsigned same = to_bits(former.feature == name) & former.left;
     if (same == 0) continue;
-    take_over(former, std::countr_zero(same), manifold.points[i]);
+    inherit_impulses(former, std::countr_zero(same), manifold.points[i]);
     matched |= 1u << i;
   }
   return matched;
 }
 
-// By place, among all points that are left on the same side: features get new names when another edge comes first, but
-// the load stays where it was.
+// Matches the remaining points by position, among all points on the same side: features change their names when another
+// edge comes first, but the load stays where it was.
 template <int kRoom>
-void match_by_place(Former<kRoom>& former, Manifold& manifold, unsigned matched, float radius) {
+void match_by_position(Former<kRoom>& former, Manifold& manifold, unsigned matched, float radius) {
   for (int i = 0; i < manifold.count; ++i) {
     if ((matched >> i & 1u) != 0) continue;
     int best_m = -1, best_k = -1;
     float nearest = square(radius);
     for (int m = 0; m < former.count; ++m) {
       const FormerManifold& old = former.manifolds[m];
-      if (old.left == 0 || dot(old.normal, manifold.normal) < kSameSide) continue;
+      if (old.left == 0 || dot(old.normal, manifold.normal) < kSameSideCosine) continue;
       const Wide<kMaxManifoldPoints> away =
           length_squared(old.anchor - splat<kMaxManifoldPoints>(manifold.anchors[i].position));
       unsigned near = to_bits(away < Wide<kMaxManifoldPoints>(nearest)) & old.left;
@@ -262,28 +264,28 @@ void match_by_place(Former<kRoom>& former, Manifold& manifold, unsigned matched,
         best_k = k;
       }
     }
-    if (best_m >= 0) take_over(former.manifolds[best_m], best_k, manifold.points[i]);
+    if (best_m >= 0) inherit_impulses(former.manifolds[best_m], best_k, manifold.points[i]);
   }
 }
 
-// Where a look's manifolds go from their frame: into world axes, and into the frame of the anchors.
-struct Placing {
-  const View& view;
+// From the frame of an update to world axes and to the frame of the anchors.
+struct OutputFrames {
+  const PairView& view;
   bool anchors_in_b;  // B's body frame, else A's
-  Quat anchor_turn;
+  Quat anchor_orientation;
   Vec3 anchor_center;
 
-  Placing(const PairInput& pair, const View& seen) : view(seen) {
+  OutputFrames(const PairInput& pair, const PairView& seen) : view(seen) {
     anchors_in_b = frame_is_b(pair.shape_a->shape, pair.shape_b->shape);
-    anchor_turn = (anchors_in_b ? pair.look_b : pair.look_a)->orientation;
+    anchor_orientation = (anchors_in_b ? pair.body_b : pair.body_a)->orientation;
     anchor_center = (anchors_in_b ? pair.center_b : pair.center_a)->position;
   }
 };
 
 QuatW<4> splat(Quat q) { return {q.x, q.y, q.z, q.w}; }
 
-// The four points of a manifold side by side; those that are not in use become zero, as all impulses do.
-void write_points(const LocalManifold& local, const Placing& placing, Manifold& out) {
+// Writes the four points of a manifold side by side. Unused points and all impulses become zero.
+void write_points(const LocalManifold& local, const OutputFrames& frames, Manifold& out) {
   constexpr int W = kMaxManifoldPoints;
   Records<W> from;
   Targets<W> points, anchors;
@@ -297,11 +299,12 @@ void write_points(const LocalManifold& local, const Placing& placing, Manifold& 
   const Mask<W> used = Mask<W>::of_bits((1u << local.count) - 1u);
   Wide<W> found[4];
   read_four<W>(from, 0, found);
-  const Vec3W<W> place = rotate(splat(placing.view.frame_turn), Vec3W<W>{found[0], found[1], found[2]});
-  const Vec3W<W> a = keep(used, place + splat<W>(placing.view.frame_from_a));
-  const Vec3W<W> b = keep(used, place + splat<W>(placing.view.frame_from_b));
-  const Vec3W<W> arm = rotate_inverse(splat(placing.anchor_turn), placing.anchors_in_b ? b : a);
-  const Vec3W<W> anchor = keep(used, arm + splat<W>(placing.anchor_center));
+  const Vec3W<W> position =
+      rotate(splat(frames.view.frame_orientation), Vec3W<W>{found[0], found[1], found[2]});
+  const Vec3W<W> a = keep(used, position + splat<W>(frames.view.frame_from_a));
+  const Vec3W<W> b = keep(used, position + splat<W>(frames.view.frame_from_b));
+  const Vec3W<W> arm = rotate_inverse(splat(frames.anchor_orientation), frames.anchors_in_b ? b : a);
+  const Vec3W<W> anchor = keep(used, arm + splat<W>(frames.anchor_center));
   const Wide<W> separation = keep(used, found[3]), zero(0.0f);
   write_four<4, W>(points, 0, {a.x, a.y, a.z, separation});
   write_four<4, W>(points, 4, {b.x, b.y, b.z, from_bit_pattern(feature & to_int(used))});
@@ -309,9 +312,9 @@ void write_points(const LocalManifold& local, const Placing& placing, Manifold& 
   write_four<4, W>(anchors, 0, {anchor.x, anchor.y, anchor.z, separation});
 }
 
-// All of a manifold, as if nothing had been there before.
-void write_manifold(const LocalManifold& local, const Placing& placing, Manifold& out) {
-  out.normal = rotate(placing.view.frame_turn, local.normal);
+// Writes a whole manifold without history.
+void write_manifold(const LocalManifold& local, const OutputFrames& frames, Manifold& out) {
+  out.normal = rotate(frames.view.frame_orientation, local.normal);
   out.count = local.count;
   out.load_age = 0.0f;
   out.friction_impulse = {};
@@ -320,115 +323,119 @@ void write_manifold(const LocalManifold& local, const Placing& placing, Manifold
   out.triangle = local.triangle;
   out.total_friction = {};
   out.sliding = 0;
-  out.anchor_normal = rotate_inverse(placing.anchor_turn, out.normal);
-  write_points(local, placing, out);
+  out.anchor_normal = rotate_inverse(frames.anchor_orientation, out.normal);
+  write_points(local, frames, out);
 }
 
-// What rolls on a rim may go farther in a step than any point goes with its load, and the lowest point of a rim changes its name
-// where it passes a corner. If one point is left over on either side, it is the same.
+// A contact that rolls on a rim may move farther in a step than any match allows, and the lowest point of a rim changes
+// its feature at a corner. If exactly one point is unmatched on each side, the two are the same point.
 template <int kRoom>
 void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_before) {
   if (former.count != 1) return;
-  int lonely = -1, orphan = -1;
+  int unmatched = -1, unmatched_old = -1;
   for (int i = 0; i < manifold.count; ++i) {
     if ((matched_before >> i & 1u) != 0 || manifold.points[i].normal_impulse != 0.0f) continue;
-    if (lonely >= 0) return;
-    lonely = i;
+    if (unmatched >= 0) return;
+    unmatched = i;
   }
   FormerManifold& old = former.manifolds[0];
   for (int k = 0; k < kMaxManifoldPoints; ++k) {
     if ((old.left >> k & 1u) == 0 || old.normal_impulse[k] == 0.0f) continue;
-    if (orphan >= 0) return;
-    orphan = k;
+    if (unmatched_old >= 0) return;
+    unmatched_old = k;
   }
-  if (lonely >= 0 && orphan >= 0 && dot(old.normal, manifold.normal) >= kSameSide)
-    take_over(old, orphan, manifold.points[lonely]);
+  if (unmatched >= 0 && unmatched_old >= 0 && dot(old.normal, manifold.normal) >= kSameSideCosine)
+    inherit_impulses(old, unmatched_old, manifold.points[unmatched]);
 }
 
 template <int kRoom>
-void write_manifolds(const Found<kRoom>& found, const PairInput& pair, const View& view) {
+void write_manifolds(const Found<kRoom>& found, const PairInput& pair, const PairView& view) {
   Manifold* const out = pair.manifolds;
   Former<kRoom> former(manifolds_of(pair));
-  const Placing placing(pair, view);
+  const OutputFrames frames(pair, view);
   unsigned matched[kRoom] = {};
   for (int m = 0; m < found.count; ++m) {
-    write_manifold(found.manifolds[m], placing, out[m]);
+    write_manifold(found.manifolds[m], frames, out[m]);
     const int old = find_former(former, out[m]);
     if (old < 0) continue;
-    former.taken[old] = true;
-    carry_friction(former.manifolds[old], out[m]);
+    former.continued[old] = true;
+    carry_friction_impulses(former.manifolds[old], out[m]);
     matched[m] = match_by_feature(former.manifolds[old], out[m]);
   }
-  for (int m = 0; m < found.count; ++m) match_by_place(former, out[m], matched[m], kMatch * view.size);
+  for (int m = 0; m < found.count; ++m)
+    match_by_position(former, out[m], matched[m], kMatchDistance * view.size);
   if (found.count == 1 && (has_rim(pair.shape_a->shape) || has_rim(pair.shape_b->shape)))
     match_rolling(former, out[0], matched[0]);
-  // Nothing of the past stays behind in what is not in use.
+  // Unused manifolds keep nothing of the past.
   for (int m = found.count; m < former.count; ++m) out[m] = Manifold{};
   pair.contact->manifold_count = std::uint16_t(found.count);
 }
 
-void note_look(Contact& contact, const View& view, float looked) {
-  contact.looked = looked;
+void save_view(Contact& contact, const PairView& view, float cached_distance) {
+  contact.cached_distance = cached_distance;
   contact.size = view.size;
   contact.seen_a_from_b = view.a_from_b;
 }
 
-bool is_clear_of_surface(const PairInput& pair, const View& view, float reach) {
+bool is_clear_of_surface(const PairInput& pair, const PairView& view, float max_distance) {
   const Transform a_from_b =
       inverse(pair.shape_a->body_from_shape) * view.a_from_b * pair.shape_b->body_from_shape;
-  return is_clear_of_surface(pair.shape_a->shape, pair.shape_b->shape, a_from_b, reach);
+  return is_clear_of_surface(pair.shape_a->shape, pair.shape_b->shape, a_from_b, max_distance);
 }
 
-// How far a look reached that left out everything beyond `kept`, of which the nearest is `left_out` away. Points measure separation
-// along one normal, which is not always that of the nearest features: hence only a part.
-float looked_as_far(float reach, float kept, float left_out) {
-  return left_out < reach ? kept + 0.75f * (left_out - kept) : reach;
+// The distance that an update searched, if it dropped all points beyond `point_limit` and the nearest of those is at
+// `left_out`. Separations are measured along one normal, which is not always that of the nearest features; hence the
+// factor.
+float searched_distance(float max_distance, float point_limit, float left_out) {
+  return left_out < max_distance ? point_limit + 0.75f * (left_out - point_limit) : max_distance;
 }
 
-// A look at what is no mesh. Returns how far it reached.
-float compute_convex_manifold(const PairInput& pair, const View& view, Found<1>& found) {
-  float kept = view.speculative + kKept * view.size;
-  if (pair.contact->manifold_count == 0 && view.way < kSlow * view.size) {
-    const float far_reach = view.speculative + kFarSlack * view.size;
-    ask_shapes(pair, view, far_reach, nullptr, found);
-    // Far points may have taken the places of near ones in the manifold: then it is no good.
-    if (is_beyond(found, kept)) return looked_as_far(far_reach, kept, keep_near(found, kept));
+// Updates a contact of two convex shapes, or a plane and a convex shape. Returns the distance that it searched.
+float compute_convex_manifold(const PairInput& pair, const PairView& view, Found<1>& found) {
+  float point_limit = view.speculative + kPointMargin * view.size;
+  if (pair.contact->manifold_count == 0 && view.max_approach < kSlow * view.size) {
+    const float far_distance = view.speculative + kFarSlack * view.size;
+    collide_in_view(pair, view, far_distance, nullptr, found);
+    // Far points may have displaced near ones in the manifold, which is then useless.
+    if (is_beyond(found, point_limit))
+      return searched_distance(far_distance, point_limit, remove_far_points(found, point_limit));
   }
-  float reach = view.speculative + kNearSlack * view.size;
+  float max_distance = view.speculative + kNearSlack * view.size;
   if (is_sharp_box(pair.shape_a->shape) && is_sharp_box(pair.shape_b->shape)) {
-    reach = ask_boxes(pair, view, reach, found);
+    max_distance = collide_boxes_in_view(pair, view, max_distance, found);
   } else {
-    ask_shapes(pair, view, reach, nullptr, found);
+    collide_in_view(pair, view, max_distance, nullptr, found);
   }
   if (found.count > 0 && farthest_of(found.manifolds[0]) > min_near(view))
-    kept = near_along(view, found.manifolds[0].normal);
-  return looked_as_far(reach, kept, keep_near(found, kept));
+    point_limit = near_along(view, found.manifolds[0].normal);
+  return searched_distance(max_distance, point_limit, remove_far_points(found, point_limit));
 }
 
-// A look at a mesh or height field.
-float compute_mesh_manifolds(const PairInput& pair, const View& view, CachedTriangles* kept_triangles,
+// Updates a contact with a mesh or height field. Returns the distance that it searched.
+float compute_mesh_manifolds(const PairInput& pair, const PairView& view, CachedTriangles* cached_triangles,
                              Found<kMaxMeshManifolds>& found) {
   if (pair.contact->manifold_count == 0) {
-    const float far_reach = view.speculative + kClearSteps * view.way + kFarSlack * view.size;
-    if (is_clear_of_surface(pair, view, far_reach)) return far_reach;
+    const float far_distance = view.speculative + kClearSteps * view.max_approach + kFarSlack * view.size;
+    if (is_clear_of_surface(pair, view, far_distance)) return far_distance;
   }
-  const float kept = view.speculative + kKept * view.size, reach = view.speculative + kNearSlack * view.size;
-  ask_shapes(pair, view, reach, kept_triangles, found);
-  return looked_as_far(reach, kept, keep_near(found, kept));
+  const float point_limit = view.speculative + kPointMargin * view.size,
+              max_distance = view.speculative + kNearSlack * view.size;
+  collide_in_view(pair, view, max_distance, cached_triangles, found);
+  return searched_distance(max_distance, point_limit, remove_far_points(found, point_limit));
 }
 
 // kRoom is the contact's manifold_room.
 template <int kRoom>
-void look_in_room(const PairInput& pair, const View& view, CachedTriangles* kept_triangles) {
+void update_in_room(const PairInput& pair, const PairView& view, CachedTriangles* cached_triangles) {
   Found<kRoom> found;
-  float looked = 0.0f;
+  float cached_distance = 0.0f;
   if constexpr (kRoom == 1) {
-    looked = compute_convex_manifold(pair, view, found);
+    cached_distance = compute_convex_manifold(pair, view, found);
   } else {
-    looked = compute_mesh_manifolds(pair, view, kept_triangles, found);
+    cached_distance = compute_mesh_manifolds(pair, view, cached_triangles, found);
   }
   if (found.count > 0 || pair.contact->manifold_count > 0) write_manifolds(found, pair, view);
-  note_look(*pair.contact, view, looked);
+  save_view(*pair.contact, view, cached_distance);
 }
 
 bool carried_load(std::span<const Manifold> manifolds) {
@@ -457,22 +464,22 @@ float smaller_size(float a, float b) {
   return has_a && has_b ? min(a, b) : has_a ? a : has_b ? b : 0.0f;
 }
 
-bool test_sensor_overlap(const PairInput& pair, const View& view) {
+bool test_sensor_overlap(const PairInput& pair, const PairView& view) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
   if (!is_convex(a.kind) && !is_convex(b.kind)) return surfaces_overlap(a, b, view.shapes_a_from_b);
   Found<kMaxMeshManifolds> found;
-  ask_shapes(pair, view, 0.0f, nullptr, found);
-  keep_near(found, 0.0f);
+  collide_in_view(pair, view, 0.0f, nullptr, found);
+  remove_far_points(found, 0.0f);
   return found.count > 0;
 }
 
-bool compute_manifold(const PairInput& pair, const View& view, CachedTriangles* kept) {
+bool compute_manifold(const PairInput& pair, const PairView& view, CachedTriangles* cached) {
   const bool loaded = carried_load(manifolds_of(pair));
   if (pair.contact->manifold_room == 1) {
-    look_in_room<1>(pair, view, kept);
+    update_in_room<1>(pair, view, cached);
   } else {
-    look_in_room<kMaxMeshManifolds>(pair, view, kept);
+    update_in_room<kMaxMeshManifolds>(pair, view, cached);
   }
   if (pair.contact->manifold_count == 0) return false;
   return loaded || is_near(manifolds_of(pair), kTouch * view.size);

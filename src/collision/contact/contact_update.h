@@ -1,21 +1,21 @@
-// One contact brought up to date by a full look through the narrow phase. What has hardly moved since its last one need not
-// be looked at: see contact_recycle.h.
+// A full update of one contact by the narrow phase. Pairs that hardly moved since their last full update are recycled
+// instead: see contact_recycle.h.
 //
-// In: the contact, its two shapes and bodies, how far to look. Out: the contact's manifolds, in world axes, with the
-// impulses of the points that were there before, and with anchors from which they are found again.
+// In: the contact, its two shapes and bodies, and the view of the pair. Out: the manifolds in world axes, with the
+// impulses of matched points, and with the anchors that recycling needs.
 #pragma once
 
 #include "collision/contact/contact_recycle.h"
 
 namespace gyre {
 
-// The smaller of two sizes, of those that are sizes at all (see ColliderShape::size).
+// The smaller of two sizes, without those that are no sizes (see ColliderShape::size).
 float smaller_size(float a, float b);
 
-// Full look of a sensor's contact: whether the two shapes overlap. Keeps no manifold.
-bool test_sensor_overlap(const PairInput& pair, const View& view);
+// Full update of a sensor's contact. Returns whether the two shapes overlap; stores no manifold.
+bool test_sensor_overlap(const PairInput& pair, const PairView& view);
 
-// Full look of any other contact; returns whether its shapes touch. `kept`: of a contact with a mesh, else null.
-bool compute_manifold(const PairInput& pair, const View& view, CachedTriangles* kept);
+// Full update of any other contact. Returns whether its shapes touch. `cached`: triangles of a mesh contact, else null.
+bool compute_manifold(const PairInput& pair, const PairView& view, CachedTriangles* cached);
 
 }  // namespace gyre

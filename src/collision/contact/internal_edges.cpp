@@ -1,4 +1,4 @@
-// Which contacts are hidden by a flush neighbour. See seam.h.
+// Finds contacts that a flush neighbour hides. See internal_edges.h.
 #include "collision/contact/internal_edges.h"
 
 #include "base/container/sort.h"
@@ -12,20 +12,20 @@
 namespace gyre {
 namespace {
 
-constexpr int kContactsPerBlock = 64;  // contacts: one word of the bits
-// Normals nearer than this are of one face.
+constexpr int kContactsPerBlock = 64;  // contacts: one word of bits
+// Normals with a larger cosine belong to one face.
 constexpr float kSameFace = 0.99999f;
-// Sine of the least lean of a normal out of a triangle's.
+// Sine of the smallest angle between a normal and the triangle's.
 constexpr float kLeaning = 1.0e-3f;
 
-// A contact of a shape that is pushed with one that is not, from the latter's side.
+// A contact of a pushed shape with one that is not pushed, seen from the latter.
 struct Side {
   std::uint32_t mover, other;            // shapes
   std::uint32_t mover_body, other_body;  // their bodies
-  float out = 1.0f;                      // times the manifold's normal: out of the other, towards the mover
+  float out = 1.0f;                      // factor on the manifold's normal, so that it points to the mover
 };
 
-// False if the contact is of another sort.
+// False for any other contact.
 bool find_side(const ContactStore& store, std::uint32_t slot, const CollideInput& input, Side& side) {
   const Contact& c = store.contacts[slot];
   if (c.manifold_room == 0 || c.manifold_count == 0 || c.sensor != 0) return false;
@@ -36,16 +36,16 @@ bool find_side(const ContactStore& store, std::uint32_t slot, const CollideInput
   return true;
 }
 
-// Both stand still, or go along together without turning.
-bool rest_together(const CollideInput& input, std::uint32_t a, std::uint32_t b) {
+// True if the two bodies are at rest or translate together without rotation.
+bool move_together(const CollideInput& input, std::uint32_t a, std::uint32_t b) {
   if (a == b) return true;
-  const CollisionBody& look_a = input.looks[a];
-  const CollisionBody& look_b = input.looks[b];
-  return look_a.way == look_b.way && look_a.turn == Vec3{} && look_b.turn == Vec3{};
+  const CollisionBody& body_a = input.bodies[a];
+  const CollisionBody& body_b = input.bodies[b];
+  return body_a.translation == body_b.translation && body_a.rotation == Vec3{} && body_b.rotation == Vec3{};
 }
 
-// How far the shape reaches beyond a point along a unit direction, in the frame of the shape.
-float reach_beyond(const Shape& shape, Vec3 point, Vec3 direction) {
+// How far the shape extends beyond a point along a unit direction, in the frame of the shape.
+float extent_beyond(const Shape& shape, Vec3 point, Vec3 direction) {
   if (shape.kind == ShapeKind::plane) {
     if (dot(shape.extents, direction) < kSameFace) return kUnbounded;
     return shape.offset - dot(shape.extents, point);
@@ -53,7 +53,7 @@ float reach_beyond(const Shape& shape, Vec3 point, Vec3 direction) {
   return dot(support(shape, direction) - point, direction) + core_radius(shape);
 }
 
-bool holds(const Shape& shape, Vec3 point, float slack) {
+bool contains_point(const Shape& shape, Vec3 point, float slack) {
   if (shape.kind == ShapeKind::plane) return dot(shape.extents, point) - shape.offset <= slack;
   Shape dot_shape;
   dot_shape.radius = 0.0f;
@@ -62,26 +62,27 @@ bool holds(const Shape& shape, Vec3 point, float slack) {
   return found.overlap || (!found.beyond && found.distance <= near);
 }
 
-// A resting shape where it lies, to be asked about points in world axes measured from a body's centre of mass.
-class PosedShape {
+// A static shape (here any shape that contacts do not push) in the world, for queries about points in world axes
+// measured from a body's centre of mass.
+class StaticShape {
  public:
-  PosedShape(const CollideInput& input, std::uint32_t shape, std::uint32_t body, std::uint32_t from_body)
-      : shape_(input.shapes[shape]), look_(input.looks[body]) {
-    const CollisionBody& from = input.looks[from_body];
-    origin_ = difference(from.position, look_.position) +
+  StaticShape(const CollideInput& input, std::uint32_t shape, std::uint32_t body, std::uint32_t from_body)
+      : shape_(input.shapes[shape]), body_(input.bodies[body]) {
+    const CollisionBody& from = input.bodies[from_body];
+    origin_ = difference(from.position, body_.position) +
               rotate(from.orientation, input.centers[from_body].position);
   }
   const Shape& shape() const { return shape_.shape; }
   Vec3 point(Vec3 p) const {
-    return inverse_times(shape_.body_from_shape, rotate_inverse(look_.orientation, origin_ + p));
+    return inverse_times(shape_.body_from_shape, rotate_inverse(body_.orientation, origin_ + p));
   }
   Vec3 direction(Vec3 d) const {
-    return rotate_inverse(shape_.body_from_shape.orientation, rotate_inverse(look_.orientation, d));
+    return rotate_inverse(shape_.body_from_shape.orientation, rotate_inverse(body_.orientation, d));
   }
 
  private:
   const ColliderShape& shape_;
-  const CollisionBody& look_;
+  const CollisionBody& body_;
   Vec3 origin_;
 };
 
@@ -89,18 +90,18 @@ bool is_surface(const Shape& shape) {
   return shape.kind == ShapeKind::mesh || shape.kind == ShapeKind::height_field;
 }
 
-// How far a shape rises beyond a point along a direction: of a surface only the triangle that is touched.
-float rises(const Shape& shape, std::uint32_t triangle, Vec3 point, Vec3 direction) {
-  if (!is_surface(shape)) return reach_beyond(shape, point, direction);
+// How far a shape extends beyond a point along a direction; of a surface only the touched triangle counts.
+float height_above(const Shape& shape, std::uint32_t triangle, Vec3 point, Vec3 direction) {
+  if (!is_surface(shape)) return extent_beyond(shape, point, direction);
   const TriangleView view = Surface(shape).triangle(triangle);
-  float most = -kUnbounded;
-  for (const Vec3 corner : view.v) most = max(most, dot(corner - point, direction));
-  return most;
+  float highest = -kUnbounded;
+  for (const Vec3 corner : view.v) highest = max(highest, dot(corner - point, direction));
+  return highest;
 }
 
-// Whether a surface goes on, level, from a point in the way that a direction leans: a step on, there is still a triangle of
-// the plane in which the point lies.
-bool goes_on(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
+// True if the surface continues, level, from a point in the direction of the lean: a small step ahead, a triangle of
+// the point's plane still lies there.
+bool continues_level(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
   const Surface surface(shape);
   std::uint32_t ids[32];
   const int count = find_triangles(surface, grow({point, point}, 3.0f * slack), ids);
@@ -108,7 +109,7 @@ bool goes_on(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
     const TriangleView view = surface.triangle(ids[i]);
     if (absolute(dot(view.normal, point - view.v[0])) > slack) continue;
     const Vec3 leaning = direction - dot(direction, view.normal) * view.normal;
-    // A triangle's own normal is no seam.
+    // The triangle's own normal makes no internal edge.
     if (length_squared(leaning) < kLeaning * kLeaning) continue;
     const Vec3 ahead = point + 2.0f * slack * normalized(leaning);
     bool inside = true;
@@ -121,13 +122,13 @@ bool goes_on(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
   return false;
 }
 
-// Whether the neighbour goes on beyond a point of the contact along the contact's normal, and holds it.
-bool goes_beyond(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
-  if (is_surface(shape)) return goes_on(shape, point, direction, slack);
-  return reach_beyond(shape, point, direction) > 2.0f * slack && holds(shape, point, slack);
+// True if the neighbour contains a point of the contact and continues beyond it along the contact's normal.
+bool continues_beyond(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
+  if (is_surface(shape)) return continues_level(shape, point, direction, slack);
+  return extent_beyond(shape, point, direction) > 2.0f * slack && contains_point(shape, point, slack);
 }
 
-// A manifold of a contact between a mover and something that rests.
+// A manifold between a mover and a static shape.
 struct Patch {
   const Contact& contact;
   const Side& side;
@@ -135,26 +136,28 @@ struct Patch {
   Vec3 out() const { return side.out * manifold.normal; }
 };
 
-// Which points of a manifold are hidden by the neighbour with which the mover has one too: those that lie in it where it goes on
-// beyond them, and where the manifold's own shape does not rise out of it.
+// Decides which points of a manifold a neighbour of the same mover hides: points inside the neighbour, where it
+// continues beyond them and where the manifold's own shape does not rise above the neighbour.
 class Cover {
  public:
   Cover(const CollideInput& input, const Patch& own, const Patch& neighbour)
       : input_(input),
         own_(own),
         neighbour_(neighbour),
-        its_(input, own.side.other, own.side.other_body, own.contact.body_a),
+        own_shape_(input, own.side.other, own.side.other_body, own.contact.body_a),
         out_(own.out()),
-        up_(its_.direction(neighbour.out())),
+        up_(own_shape_.direction(neighbour.out())),
         slack_(kFlushShare * own.contact.size) {}
 
   bool hides(int i) const {
     const ContactPointState& state = own_.manifold.points[i];
-    // The point midway, and from there half the separation back to the surface.
+    // The point is midway between the surfaces; half the separation back lies the static surface.
     const Vec3 point = state.from_a - 0.5f * state.separation * out_;
-    if (rises(its_.shape(), own_.manifold.triangle, its_.point(point), up_) > 2.0f * slack_) return false;
-    const PosedShape by(input_, neighbour_.side.other, neighbour_.side.other_body, own_.contact.body_a);
-    return goes_beyond(by.shape(), by.point(point), by.direction(out_), slack_);
+    if (height_above(own_shape_.shape(), own_.manifold.triangle, own_shape_.point(point), up_) >
+        2.0f * slack_)
+      return false;
+    const StaticShape by(input_, neighbour_.side.other, neighbour_.side.other_body, own_.contact.body_a);
+    return continues_beyond(by.shape(), by.point(point), by.direction(out_), slack_);
   }
   bool hides_all() const {
     for (int i = 0; i < own_.manifold.count; ++i) {
@@ -167,28 +170,27 @@ class Cover {
   const CollideInput& input_;
   const Patch& own_;
   const Patch& neighbour_;
-  const PosedShape its_;
+  const StaticShape own_shape_;
   const Vec3 out_, up_;
   const float slack_;
 };
 
-// The contacts with what rests of each mover that has several. What lies on one shape alone has no seam below it: most lie so, and of
-// them only the number is kept.
-class RestingContacts {
+// The contacts with static shapes of each mover that has several. A mover on one shape alone has no internal edge below
+// it; for such movers, the most common ones, only the number is stored.
+class StaticContacts {
  public:
-  RestingContacts(const ContactStore& store, const CollideInput& input, const Bitset& beside_resting,
-                  Arena& arena)
+  StaticContacts(const ContactStore& store, const CollideInput& input, const Bitset& on_static, Arena& arena)
       : counts_(arena.make<std::uint8_t>(input.proxies.size())) {
     for (std::uint8_t& count : counts_) count = 0;
     const auto for_each = [&](auto&& fn) {
-      beside_resting.for_each_set([&](std::size_t slot) {
+      on_static.for_each_set([&](std::size_t slot) {
         Side side;
         if (find_side(store, std::uint32_t(slot), input, side)) fn(std::uint32_t(slot), side.mover);
       });
     };
     std::size_t listed = 0;
     for_each([&](std::uint32_t, std::uint32_t mover) {
-      // With the second the first is to be listed too.
+      // The second contact makes the first one count too.
       if (counts_[mover] > 0) listed += counts_[mover] == 1 ? 2 : 1;
       if (counts_[mover] < 2) ++counts_[mover];
     });
@@ -202,7 +204,7 @@ class RestingContacts {
   }
 
   bool has_several(std::uint32_t mover) const { return counts_[mover] > 1; }
-  // Of one that has; the lower half of each is the slot.
+  // For a mover with several; the lower half of each key is the slot.
   std::span<const std::uint64_t> of(std::uint32_t mover) const {
     const auto begin = std::lower_bound(keys_.begin(), keys_.end(), std::uint64_t(mover) << 32);
     auto end = begin;
@@ -211,37 +213,37 @@ class RestingContacts {
   }
 
  private:
-  std::span<std::uint8_t> counts_;       // by shape; two stand for more
+  std::span<std::uint8_t> counts_;       // by shape; 2 stands for two or more
   std::span<const std::uint64_t> keys_;  // mover and slot, ascending
 };
 
-// What questions are asked of.
+// The context of all queries.
 struct Scene {
   const ContactStore& store;
   const CollideInput& input;
-  const RestingContacts& resting;
+  const StaticContacts& static_contacts;
 };
 
 bool hides(const CollideInput& input, const Patch& neighbour, const Patch& own, int point) {
   if (dot(own.out(), neighbour.out()) > kSameFace) return false;
-  // Two that hide each other both stay: better a bump than a hole.
+  // If two manifolds hide each other, both stay: a bump is better than a hole.
   return Cover(input, own, neighbour).hides(point) && !Cover(input, neighbour, own).hides_all();
 }
 
-// The contact that is asked about, and those of the same mover.
-struct Asked {
+// A contact that may be hidden, and the contacts of the same mover.
+struct Candidate {
   std::uint32_t slot;
   Side side;
   std::span<const std::uint64_t> neighbours;
 };
 
-// Whether some neighbour hides a point of the patch.
-bool is_point_hidden(const Scene& scene, const Asked& asked, const Patch& own, int point) {
-  for (const std::uint64_t key : asked.neighbours) {
+// True if a neighbour hides a point of the patch.
+bool is_point_hidden(const Scene& scene, const Candidate& candidate, const Patch& own, int point) {
+  for (const std::uint64_t key : candidate.neighbours) {
     const auto slot = std::uint32_t(key);
     Side side;
-    if (slot == asked.slot || !find_side(scene.store, slot, scene.input, side)) continue;
-    if (!rest_together(scene.input, own.side.other_body, side.other_body)) continue;
+    if (slot == candidate.slot || !find_side(scene.store, slot, scene.input, side)) continue;
+    if (!move_together(scene.input, own.side.other_body, side.other_body)) continue;
     const Contact& other = scene.store.contacts[slot];
     for (std::uint32_t m = 0; m < other.manifold_count; ++m) {
       const Patch by{other, side, scene.store.manifolds[other.first_manifold + m]};
@@ -251,71 +253,71 @@ bool is_point_hidden(const Scene& scene, const Asked& asked, const Patch& own, i
   return false;
 }
 
-// Whether all points are: mostly the first is not, and nothing else is asked.
-bool is_hidden(const Scene& scene, const Asked& asked, int index) {
-  const Contact& contact = scene.store.contacts[asked.slot];
-  const Patch own{contact, asked.side,
+// True if all points are hidden; mostly the first is not, which ends the search.
+bool is_hidden(const Scene& scene, const Candidate& candidate, int index) {
+  const Contact& contact = scene.store.contacts[candidate.slot];
+  const Patch own{contact, candidate.side,
                   scene.store.manifolds[contact.first_manifold + std::uint32_t(index)]};
   for (int i = 0; i < own.manifold.count; ++i) {
-    if (!is_point_hidden(scene, asked, own, i)) return false;
+    if (!is_point_hidden(scene, candidate, own, i)) return false;
   }
   return true;
 }
 
-// Bits of the manifolds of a contact that are hidden.
+// Bits of the hidden manifolds of a contact.
 std::uint8_t hidden_manifolds(const Scene& scene, std::uint32_t slot) {
   Side side;
   if (!find_side(scene.store, slot, scene.input, side)) return 0;
-  if (!scene.resting.has_several(side.mover) || scene.input.awake[side.mover_body] == 0) return 0;
-  const Asked asked{slot, side, scene.resting.of(side.mover)};
+  if (!scene.static_contacts.has_several(side.mover) || scene.input.awake[side.mover_body] == 0) return 0;
+  const Candidate candidate{slot, side, scene.static_contacts.of(side.mover)};
   unsigned mask = 0;
   for (int i = 0; i < scene.store.contacts[slot].manifold_count; ++i) {
-    if (is_hidden(scene, asked, i)) mask |= 1u << i;
+    if (is_hidden(scene, candidate, i)) mask |= 1u << i;
   }
   return std::uint8_t(mask);
 }
 
-// Takes the hidden manifolds out of a contact.
-void take_out(ContactStore& store, std::uint32_t slot, std::uint8_t mask) {
+// Removes hidden manifolds from a contact.
+void remove_manifolds(ContactStore& store, std::uint32_t slot, std::uint8_t mask) {
   Contact& contact = store.contacts[slot];
   Manifold* const manifolds = &store.manifolds[contact.first_manifold];
-  int kept = 0;
+  int count = 0;
   for (int i = 0; i < contact.manifold_count; ++i) {
     if ((mask >> i & 1) != 0) continue;
-    if (kept != i) manifolds[kept] = manifolds[i];
-    ++kept;
+    if (count != i) manifolds[count] = manifolds[i];
+    ++count;
   }
-  for (int i = kept; i < contact.manifold_count; ++i) manifolds[i] = {};
-  contact.manifold_count = std::uint16_t(kept);
+  for (int i = count; i < contact.manifold_count; ++i) manifolds[i] = {};
+  contact.manifold_count = std::uint16_t(count);
   invalidate_cache(contact);
 }
 static_assert(kMaxMeshManifolds <= 8);
 
 }  // namespace
 
-void remove_internal_edge_contacts(ContactStore& store, const CollideInput& input,
-                                   const Bitset& beside_resting, Arena& arena, TaskSystem& tasks,
-                                   InternalEdgeScratch& scratch) {
+void remove_internal_edge_contacts(ContactStore& store, const CollideInput& input, const Bitset& on_static,
+                                   Arena& arena, TaskSystem& tasks, InternalEdgeScratch& scratch) {
   const ArenaScope scope(arena);
   const std::size_t count = store.contacts.size();
   if (scratch.hidden.size() < count) scratch.hidden.resize(count);
   scratch.hidden.reset_all();
-  const RestingContacts resting(store, input, beside_resting, arena);
-  const Scene scene{store, input, resting};
-  // All are asked before any is changed: nobody is hidden by who is hidden earlier in the list.
+  const StaticContacts static_contacts(store, input, on_static, arena);
+  const Scene scene{store, input, static_contacts};
+  // All contacts are tested before any changes, so a hidden contact still hides others.
   for_blocks(tasks, int(count), kContactsPerBlock, [&](int begin, int, int) {
-    for (std::uint64_t left = beside_resting.words()[std::size_t(begin / kContactsPerBlock)]; left != 0;
+    for (std::uint64_t left = on_static.words()[std::size_t(begin / kContactsPerBlock)]; left != 0;
          left &= left - 1) {
       const auto slot = std::uint32_t(begin + std::countr_zero(left));
       if (hidden_manifolds(scene, slot) != 0) scratch.hidden.set(slot);
     }
   });
-  // Which of their manifolds: asked again, for the few there are.
+  // The few contacts found are tested again for their manifolds.
   scratch.found.clear();
   scratch.hidden.for_each_set([&](std::size_t slot) {
     scratch.found.push_back({std::uint32_t(slot), hidden_manifolds(scene, std::uint32_t(slot))});
   });
-  for (const InternalEdgeScratch::Found& found : scratch.found) take_out(store, found.slot, found.manifolds);
+  for (const InternalEdgeScratch::Found& found : scratch.found)
+    remove_manifolds(store, found.slot, found.manifolds);
 }
 
 }  // namespace gyre

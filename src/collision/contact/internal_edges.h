@@ -1,13 +1,15 @@
-// Separate bodies laid flush are one surface: what slides from one onto the next must not catch on the edge between them.
+// Internal edges: separate bodies laid flush are one surface, and a body that slides across must not catch on the edge
+// between them (ghost collisions).
 //
-// In: contacts that were just looked at. Out: those of them without points that no surface of the whole would have made.
+// In: contacts that were just updated. Out: the same contacts without the points that the union of the bodies would not
+// produce.
 //
-// A point p of B with the normal n (out of B) belongs to the surface of the whole only if no body A that holds p goes on
-// beyond p along n: otherwise the way out of B leads through A. For a ball over A, beside the edge of B, the nearest point of
-// the whole is on A. In a corner that is not so although it looks alike: there B rises out of A, along the normal of A's own
-// contact. Both are questions about farthest points, exact for convex bodies; steps of less than kFlushShare count as none.
-// Meshes and height fields are surfaces: one of them hides a point that lies on it if it goes on, level, the way that the
-// normal leans, and of the other only the triangle that is touched must not rise.
+// A point p of B with the normal n (out of B) lies on the surface of the union only if no body A that contains p
+// extends beyond p along n; otherwise the way out of B leads into A. For a ball on A beside the edge of B, the nearest
+// point of the union is on A. A corner looks alike, but there B rises above A along the normal of A's own contact, so
+// its point stays. Both tests need only support points and are exact for convex bodies; steps below kFlushShare do not
+// count. Meshes and height fields are surfaces: a surface hides a point that lies on it if it continues, level, in the
+// direction in which the normal leans; of the other surface only the touched triangle must not rise.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -15,10 +17,10 @@
 
 namespace gyre {
 
-// In sizes of the contact: bodies that part or step by less are flush.
+// In sizes of the contact: bodies with smaller gaps or steps are flush.
 constexpr float kFlushShare = 0.01f;
 
-// Kept from step to step only for its memory.
+// Kept between steps for its memory only.
 struct InternalEdgeScratch {
   struct Found {
     std::uint32_t slot;
@@ -28,11 +30,9 @@ struct InternalEdgeScratch {
   Array<Found> found;
 };
 
-// Takes those manifolds from every contact of a moving shape with a resting one that another resting shape, touched by it
-// too, hides. Such a contact is looked at anew in the next step.
-// `beside_resting`: see TouchChanges.
-void remove_internal_edge_contacts(ContactStore& store, const CollideInput& input,
-                                   const Bitset& beside_resting, Arena& arena, TaskSystem& tasks,
-                                   InternalEdgeScratch& scratch);
+// Removes manifolds from contacts of a moving and a static shape, if another static shape that the same mover touches
+// hides them. Such a contact gets a full update in the next step. `on_static`: see TouchChanges.
+void remove_internal_edge_contacts(ContactStore& store, const CollideInput& input, const Bitset& on_static,
+                                   Arena& arena, TaskSystem& tasks, InternalEdgeScratch& scratch);
 
 }  // namespace gyre

@@ -1,4 +1,4 @@
-// How a manifold follows the two bodies when it is recycled, by the shapes that meet. W pairs side by side.
+// Which body carries the anchors of a recycled manifold, by the kinds of the shapes. W pairs side by side.
 #pragma once
 
 #include "geometry/shape/shape.h"
@@ -7,13 +7,13 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Of a shape, what decides.
+// The kind and radius of a shape, which decide.
 template <int W>
 struct Roundness {
   WideInt<W> kind;  // ShapeKind
   Wide<W> radius;
 
-  GYRE_INLINE Mask<W> is(ShapeKind one) const { return kind == WideInt<W>(std::int32_t(one)); }
+  GYRE_INLINE Mask<W> is(ShapeKind other) const { return kind == WideInt<W>(std::int32_t(other)); }
   GYRE_INLINE Mask<W> is_flat() const {
     return (kind >= WideInt<W>(std::int32_t(ShapeKind::hull))) |
            (is(ShapeKind::box) & (radius == Wide<W>(0.0f)));
@@ -24,14 +24,14 @@ struct Roundness {
   }
 };
 
-// The anchors lie in the frame of one of the bodies, and the other one's points move there. Where that one is a core swept by
-// a ball on something flat, the points of its core are what counts: however it rolls, it touches below them.
+// The anchors lie in the frame of one body, and the points of the other body move there. If that other shape is a
+// rounded core on something flat, the points of its core count: it touches below them, however it rolls.
 template <int W>
 struct ManifoldMatch {
   Mask<W> frame_is_b;  // else A's
   Mask<W> flat;        // flat features on both sides
-  Mask<W> round;       // a swept core on something flat
-  Wide<W> radius;      // of the swept core
+  Mask<W> round;       // a rounded core on something flat
+  Wide<W> radius;      // of the rounded core
 
   GYRE_INLINE ManifoldMatch(const Roundness<W>& a, const Roundness<W>& b) {
     const Mask<W> flat_a = a.is_flat(), flat_b = b.is_flat();

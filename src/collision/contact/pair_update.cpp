@@ -1,4 +1,4 @@
-// Adding and removing contacts in a fixed order. See pair_update.h.
+// Adds and removes contacts in a fixed order. See pair_update.h.
 #include "collision/contact/pair_update.h"
 
 #include "base/container/sort.h"
@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// Contacts lie in the order of their slots, keys come in another: how many keys before its turn a contact is asked for.
+// How many keys ahead a contact is prefetched; contacts lie in slot order, keys in another.
 constexpr std::size_t kAhead = 24;
 void fetch_contact(const ContactStore& store, std::uint64_t key) {
   const std::uint32_t slot = store.slot_of_pair.first_tried(key);
@@ -17,19 +17,19 @@ void fetch_contact(const ContactStore& store, std::uint64_t key) {
 }  // namespace
 
 void drop_known_pairs(const ContactStore& store, Array<std::uint64_t>& keys, std::size_t from) {
-  std::size_t kept = from;
+  std::size_t unknown = from;
   for (std::size_t i = from; i < keys.size() && i < from + kAhead; ++i) fetch_contact(store, keys[i]);
   for (std::size_t i = from; i < keys.size(); ++i) {
     if (i + kAhead < keys.size()) fetch_contact(store, keys[i + kAhead]);
     const std::uint64_t key = keys[i];
-    if (find_contact(store, key) == SlotTable::kNone) keys[kept++] = key;
+    if (find_contact(store, key) == SlotTable::kNone) keys[unknown++] = key;
   }
-  keys.resize_uninitialized(kept);
+  keys.resize_uninitialized(unknown);
 }
 
 void add_pairs(ContactStore& store, std::span<const std::uint64_t> keys, const BlockedBodies& blocked,
                FunctionRef<PairShapes(std::uint64_t key)> describe, Array<std::uint32_t>* added) {
-  // Where much comes together at once, arrays that grow bit by bit are moved again and again.
+  // If many pairs begin at once, the arrays grow in one step instead of many.
   store.contacts.expect(store.live + keys.size());
   store.links.expect(store.live + keys.size());
   for (const std::uint64_t key : keys) {

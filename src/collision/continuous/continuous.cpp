@@ -1,4 +1,4 @@
-// The stage that clamps fast bodies. See continuous.h.
+// The CCD stage: halts fast bodies at their times of impact. See continuous.h.
 #include "collision/continuous/continuous.h"
 
 #include "base/container/sort.h"
@@ -13,49 +13,49 @@
 namespace gyre {
 namespace {
 
-constexpr int kBodiesPerBlock = 4;  // bodies: each is work enough
-// In inner radii of the moving shape. What is left must lie within what collide() looks for, and so near that it counts as
-// touching there.
+constexpr int kBodiesPerBlock = 4;  // bodies: each is enough work
+// In inner radii of the moving shape. The remaining gap must lie within the search distance of collide(), and be so
+// small that it counts as touching there.
 constexpr double kTarget = 0.0025;
 constexpr double kTouching = 0.01;
-constexpr double kClear = 0.01;  // of the target: nearer than that, the next look at the contact decides
+constexpr double kClear = 0.01;  // of the target: nearer gaps are left to the next update of the contact
 constexpr double kCoreTarget = 0.025;
 
-// A box around the whole way of a shape, turning included: around both ends, and the bulge between.
+// A box around the whole sweep of a shape, rotation included: around both ends, and the bulge between them.
 Aabb swept_box(const SweptShape& shape) {
   const WorldBox start = world_box(*shape.shape, shape.sweep->pose * shape.body_from_shape);
   const WorldBox end = world_box(*shape.shape, pose_at(*shape.sweep, 1.0) * shape.body_from_shape);
   const double radius = double(shape.radius);
-  const double bulge = min(0.125 * radius * double(length_squared(shape.sweep->turned)), 2.0 * radius);
+  const double bulge = min(0.125 * radius * double(length_squared(shape.sweep->rotation)), 2.0 * radius);
   const DVec3 all{bulge, bulge, bulge};
   const auto lower = [](DVec3 a, DVec3 b) { return DVec3{min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; };
   const auto upper = [](DVec3 a, DVec3 b) { return DVec3{max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; };
   return round_outward({lower(start.low, end.low) - all, upper(start.high, end.high) + all});
 }
 
-// A box around swept_box(), sooner found: bounds from the shape's start and the farthest that a point of it goes.
-Aabb box_around(const SweptShape& shape) {
+// A larger box, computed faster: the bounds at the start, extended by the largest displacement of any point.
+Aabb quick_box(const SweptShape& shape) {
   const Sweep& sweep = *shape.sweep;
   const Pose start = sweep.pose * shape.body_from_shape;
-  const Aabb turned = bounds(*shape.shape, {{}, start.orientation});
+  const Aabb rotated = bounds(*shape.shape, {{}, start.orientation});
   const Vec3 position = to_float(start.position), from_center = shape.body_from_shape.position - sweep.center;
-  const float angle = length(sweep.turned);
-  const float turn = shape.radius * angle * (1.0f + 0.125f * angle);
-  // What world_box() adds at both ends, and more than all that rounding comes to.
+  const float angle = length(sweep.rotation);
+  const float arc = shape.radius * angle * (1.0f + 0.125f * angle);
+  // The slack that world_box() adds at both ends, and more than all rounding.
   const bool has_disc = shape.shape->kind == ShapeKind::cylinder || shape.shape->kind == ShapeKind::cone;
   const float slack =
-      1.0e-5f * largest(absolute(position) + max(absolute(turned.low), absolute(turned.high)) +
-                        absolute(sweep.moved) + absolute(sweep.center) + absolute(from_center)) +
+      1.0e-5f * largest(absolute(position) + max(absolute(rotated.low), absolute(rotated.high)) +
+                        absolute(sweep.translation) + absolute(sweep.center) + absolute(from_center)) +
       (has_disc ? 2.0e-3f * shape.shape->radius : 0.0f);
-  const float around = turn + slack;
+  const float around = arc + slack;
   const Vec3 all{around, around, around};
-  const Aabb box{position + turned.low + min(sweep.moved, Vec3{}) - all,
-                 position + turned.high + max(sweep.moved, Vec3{}) + all};
-  // Trees rely on finite boxes, and that one ends where floats do.
+  const Aabb box{position + rotated.low + min(sweep.translation, Vec3{}) - all,
+                 position + rotated.high + max(sweep.translation, Vec3{}) + all};
+  // Trees rely on finite boxes; swept_box() ends at the largest float.
   return is_finite(box.low) && is_finite(box.high) ? box : swept_box(shape);
 }
 
-// Whether one of the two is a sensor that the other may visit.
+// True if exactly one of the two is a sensor and the pair may meet.
 bool is_gate(const Proxy& self, const Proxy& other) {
   return self.sensor != other.sensor && may_pair(self, other);
 }
@@ -65,58 +65,59 @@ bool is_obstacle(const Proxy& self, const Proxy& other, bool continuous) {
   return continuous || !other.pushes;
 }
 
-// The shape of a fast body on its way.
+// A shape of a fast body with its sweep.
 struct Mover {
   SweptShape whole;
   Core core;
   SweptShape core_swept;
   ImpactScale scale;
 
-  Mover(const ColliderShape& shape, const SweptShape& on_its_way, float least, bool slides)
-      : whole(on_its_way),
+  Mover(const ColliderShape& shape, const SweptShape& swept, float min_fraction, bool slides)
+      : whole(swept),
         core(make_core(shape.shape, shape.body_from_shape)),
         core_swept(make_swept_shape(core.shape, core.body_from_core, *whole.sweep)) {
     const auto size = double(inner_radius(shape.shape));
-    scale = {kTarget * size, kTouching * size, kCoreTarget * size, double(least), slides};
+    scale = {kTarget * size, kTouching * size, kCoreTarget * size, double(min_fraction), slides};
   }
   Mover(const Mover&) = delete;
   Mover& operator=(const Mover&) = delete;
 
-  // Where before `end` the shape must stop in front of `other`, or only its core.
-  Stop stop_before(const SweptShape& other, double end, bool core_only, TriangleHull& triangle) const {
+  // The time of impact of the shape, or only of its core, with `other` before `end`.
+  TimeOfImpact impact_with(const SweptShape& other, double end, bool core_only,
+                           TriangleHull& triangle) const {
     const SweptShape& own = core_only ? core_swept : whole;
     if (!is_convex(other.shape->kind) && other.shape->kind != ShapeKind::plane)
-      return stop_before_surface(own, core_swept, other, end, scale, triangle);
-    return gyre::stop_before(own, core_swept, other, 0.0, end, scale);
+      return surface_time_of_impact(own, core_swept, other, end, scale, triangle);
+    return gyre::convex_time_of_impact(own, core_swept, other, 0.0, end, scale);
   }
 
-  // Whether the shape comes into `other` before `end` and is clearly out of it at `end`. Whether it was inside as the step
-  // began is for the caller to know: the look at the contact decided that, in float.
+  // True if the shape enters `other` before `end` and is clearly outside at `end`. The caller knows whether it was
+  // inside at the start, from the update of the contact in float.
   bool crosses(const SweptShape& other, double end, TriangleHull& triangle) const {
-    if (other.shape->kind == ShapeKind::plane) return false;  // a half space is not crossed, only entered
+    if (other.shape->kind == ShapeKind::plane) return false;  // a half space is entered, not crossed
     if (!is_convex(other.shape->kind))
       return crosses_surface(whole, other, end, kClear * scale.target, scale, triangle);
     if (find_gap(whole, other, end, scale.target).distance <= kClear * scale.target) return false;
     const double before = find_gap(whole, other, 0.0, scale.target).distance;
-    // At the very surface: on its way in or out.
+    // On the surface itself: true if the shape goes in, not out.
     if (before <= 0.0) return find_gap(whole, other, 0.001 * end, scale.target).distance < before;
     return time_of_impact(whole, other, 0.0, end, min(scale.target, 0.5 * before)).hit;
   }
 };
 
-// What is not finite is for others to deal with.
+// Sweeps that are not finite are skipped.
 bool is_sound(const Sweep& sweep) {
-  return is_finite(sweep.pose) && is_finite(sweep.moved) && is_finite(sweep.turned);
+  return is_finite(sweep.pose) && is_finite(sweep.translation) && is_finite(sweep.rotation);
 }
 
-// What is left of a motion from a time on.
-Sweep rest_of(const Sweep& sweep, double from) {
+// The motion from a time to the end of the step.
+Sweep remaining_sweep(const Sweep& sweep, double from) {
   if (from == 0.0) return sweep;
-  const float rest = float(1.0 - from);
-  return {pose_at(sweep, from), sweep.center, rest * sweep.moved, rest * sweep.turned};
+  const float remaining = float(1.0 - from);
+  return {pose_at(sweep, from), sweep.center, remaining * sweep.translation, remaining * sweep.rotation};
 }
 
-// A fast body on its way, or on the last part of it: what moves beside it does so from `from` on.
+// The sweep of a fast body, or what remains of it; other bodies move from time `from` on.
 struct SweptPath {
   const FastBody& fast;
   const Sweep& sweep;
@@ -125,122 +126,125 @@ struct SweptPath {
   bool core_only = false;
 };
 
-// Whether a shape can have a contact with something that is wanted.
-bool may_be_near(const ContinuousInput& input, const FastBody& fast, std::uint32_t index) {
-  return fast.continuous || input.contacts->near_stops.test(index);
+// True if the shape can have a contact with a blocker.
+bool is_near_blocker(const ContinuousInput& input, const FastBody& fast, std::uint32_t index) {
+  return fast.continuous || input.contacts->near_blockers.test(index);
 }
 
-// What a shape may meet inside of a box, in rising order: of that which is wanted. In a box within its fat box it may meet only what
-// it has a contact with: mostly nothing, of what falls.
-template <class Wanted>
+// Lists the shapes in a box that pass the filter, ascending. If the box lies within the shape's fat box, only its
+// contacts can be there; a falling body mostly has none.
+template <class Filter>
 void list_in_box(const ContinuousInput& input, const FastBody& fast, std::uint32_t index, const Aabb& box,
-                 const Wanted& wanted, Array<std::uint32_t>& found) {
+                 const Filter& filter, Array<std::uint32_t>& found) {
   found.clear();
   const Proxy& own = input.proxies[index];
   if (input.contacts == nullptr || !contains(own.fat_box, box)) {
     input.broadphase.query(input.proxies, box, found);
-    std::size_t kept = 0;
+    std::size_t count = 0;
     for (const std::uint32_t other : found)
-      if (wanted(own, input.proxies[other])) found[kept++] = other;
-    found.resize_uninitialized(kept);
+      if (filter(own, input.proxies[other])) found[count++] = other;
+    found.resize_uninitialized(count);
     return;
   }
-  if (!may_be_near(input, fast, index)) return;
+  if (!is_near_blocker(input, fast, index)) return;
   for_each_contact_of_shape(input.contacts->store, index, [&](std::uint32_t slot) {
-    // Most are with what is pushed. That is known without looking at them, and they lie anywhere in memory.
-    if (!fast.continuous && !input.contacts->may_stop.test(slot)) return;
+    // Most contacts are with pushed shapes. The bit shows this without a read of the contact, which lies anywhere in
+    // memory.
+    if (!fast.continuous && !input.contacts->ccd_blockers.test(slot)) return;
     const Contact& contact = input.contacts->store.contacts[slot];
     const std::uint32_t other = contact.shape_a == index ? contact.shape_b : contact.shape_a;
-    if (!wanted(own, input.proxies[other])) return;
-    std::size_t place = found.size();
-    while (place > 0 && found[place - 1] > other) --place;
-    found.insert_at(place, other);
+    if (!filter(own, input.proxies[other])) return;
+    std::size_t index_in_list = found.size();
+    while (index_in_list > 0 && found[index_in_list - 1] > other) --index_in_list;
+    found.insert_at(index_in_list, other);
   });
 }
 
-// Calls visit(shape on its way, its index, the other's index, the other on its way) for all that the shapes of a fast body
-// may come near and that `wanted` says yes to. `found` is scratch.
-template <class Wanted, class Visit>
-void for_each_in_the_way(const ContinuousInput& input, const SweptPath& way, Array<std::uint32_t>& found,
-                         const Wanted& wanted, const Visit& visit) {
-  for (const std::uint32_t index : input.shapes_of(way.fast.body)) {
+// Calls visit(swept shape, its index, index of the other, swept other) for each shape that the fast body may come near
+// and that passes the filter. `found` is scratch.
+template <class Filter, class Visit>
+void for_each_on_path(const ContinuousInput& input, const SweptPath& path, Array<std::uint32_t>& found,
+                      const Filter& filter, const Visit& visit) {
+  for (const std::uint32_t index : input.shapes_of(path.fast.body)) {
     const ColliderShape& shape = input.shapes[index];
     if (!is_convex(shape.shape.kind)) continue;
-    const SweptShape whole = make_swept_shape(shape.shape, shape.body_from_shape, way.sweep);
-    list_in_box(input, way.fast, index, box_around(whole), wanted, found);
+    const SweptShape whole = make_swept_shape(shape.shape, shape.body_from_shape, path.sweep);
+    list_in_box(input, path.fast, index, quick_box(whole), filter, found);
     if (found.empty()) continue;
     const Aabb box = swept_box(whole);
-    std::optional<Mover> mover;  // made for the first that is in the way
+    std::optional<Mover> mover;  // made for the first candidate
     for (const std::uint32_t other : found) {
       if (!overlap(box, input.proxies[other].fat_box)) continue;
       const ColliderShape& obstacle = input.shapes[other];
       if (!input.blocked.empty() &&
-          input.blocked.contains(pair_key(way.fast.body, input.proxies[other].body)))
+          input.blocked.contains(pair_key(path.fast.body, input.proxies[other].body)))
         continue;
       const Sweep all = input.sweep_of(input.proxies[other].body);
       if (!is_sound(all)) continue;
-      const Sweep other_sweep = rest_of(all, way.from);
-      if (!mover) mover.emplace(shape, whole, way.slides ? 0.0f : way.fast.least, way.slides);
+      const Sweep other_sweep = remaining_sweep(all, path.from);
+      if (!mover) mover.emplace(shape, whole, path.slides ? 0.0f : path.fast.min_fraction, path.slides);
       visit(*mover, index, other, make_swept_shape(obstacle.shape, obstacle.body_from_shape, other_sweep));
     }
   }
 }
 
-// Where a body must stop, and which of its shapes in front of which.
-struct BodyImpactTime : Stop {
+// When a body must halt, and which of its shapes meets which.
+struct BodyImpactTime : TimeOfImpact {
   std::uint32_t shape = 0, obstacle = 0;
-  bool near_gate = false;  // something on its way may be crossed
+  bool near_gate = false;  // a sensor may be crossed
 };
 
-BodyImpactTime first_stop(const ContinuousInput& input, const SweptPath& way, Array<std::uint32_t>& found,
-                          TriangleHull& triangle) {
+BodyImpactTime first_impact(const ContinuousInput& input, const SweptPath& path, Array<std::uint32_t>& found,
+                            TriangleHull& triangle) {
   BodyImpactTime first;
-  for_each_in_the_way(
-      input, way, found,
+  for_each_on_path(
+      input, path, found,
       [&](const Proxy& self, const Proxy& other) {
         first.near_gate = first.near_gate || self.sensor != other.sensor;
-        return is_obstacle(self, other, way.fast.continuous);
+        return is_obstacle(self, other, path.fast.continuous);
       },
       [&](const Mover& mover, std::uint32_t index, std::uint32_t obstacle, const SweptShape& other) {
-        if (input.lets_pass != nullptr && (*input.lets_pass)(obstacle, way.sweep.moved - other.sweep->moved))
+        if (input.lets_pass != nullptr &&
+            (*input.lets_pass)(obstacle, path.sweep.translation - other.sweep->translation))
           return;
-        const Stop stop = mover.stop_before(other, first.time, way.core_only, triangle);
-        if (!stop.hit || !(stop.time < first.time || !first.hit)) return;
-        static_cast<Stop&>(first) = stop;
+        const TimeOfImpact impact = mover.impact_with(other, first.time, path.core_only, triangle);
+        if (!impact.hit || !(impact.time < first.time || !first.hit)) return;
+        static_cast<TimeOfImpact&>(first) = impact;
         first.shape = index;
         first.obstacle = obstacle;
       });
   return first;
 }
 
-void find_crossings(const ContinuousInput& input, const SweptPath& way, double end,
+void find_crossings(const ContinuousInput& input, const SweptPath& path, double end,
                     Array<std::uint32_t>& found, Array<std::uint64_t>& crossings, TriangleHull& triangle) {
-  for_each_in_the_way(
-      input, way, found, is_gate,
-      [&](const Mover& mover, std::uint32_t index, std::uint32_t gate, const SweptShape& other) {
-        if (!mover.crosses(other, end, triangle)) return;
-        const bool senses = input.proxies[index].sensor;
-        crossings.push_back(senses ? crossing_key(index, gate) : crossing_key(gate, index));
-      });
+  for_each_on_path(input, path, found, is_gate,
+                   [&](const Mover& mover, std::uint32_t index, std::uint32_t gate, const SweptShape& other) {
+                     if (!mover.crosses(other, end, triangle)) return;
+                     const bool senses = input.proxies[index].sensor;
+                     crossings.push_back(senses ? crossing_key(index, gate) : crossing_key(gate, index));
+                   });
 }
 
-// How much of a way along an obstacle a shape can go and still touch it where both are then: the contact of the next step
-// must find it there, or nothing would ever answer for the hit. `drift` is the way against the obstacle.
-double part_in_touch(const ContinuousInput& input, const BodyImpactTime& stop, Pose pose, DVec3 drift) {
-  const ColliderShape& own = input.shapes[stop.shape];
-  const ColliderShape& other = input.shapes[stop.obstacle];
-  const Pose frame = pose_at(input.sweep_of(input.proxies[stop.obstacle].body), 1.0) * other.body_from_shape;
+// The largest share of a displacement along an obstacle after which the shape still touches it where both are then. The
+// contact of the next step must find the obstacle there, or the impact would have no response. `drift` is the
+// displacement relative to the obstacle.
+double touching_share(const ContinuousInput& input, const BodyImpactTime& impact, Pose pose, DVec3 drift) {
+  const ColliderShape& own = input.shapes[impact.shape];
+  const ColliderShape& other = input.shapes[impact.obstacle];
+  const Pose frame =
+      pose_at(input.sweep_of(input.proxies[impact.obstacle].body), 1.0) * other.body_from_shape;
   const double touching = kTouching * double(inner_radius(own.shape));
   const DVec3 start = pose.position;
-  const auto touches = [&](double part) {
-    pose.position = start + part * drift;
+  const auto touches = [&](double share) {
+    pose.position = start + share * drift;
     const Pose placed = pose * own.body_from_shape;
     const DQuat back = conjugate(normalized(to_double(frame.orientation)));
-    ClosestPair nearest;
+    ClosestPoints nearest;
     return find_closest_points(other.shape,
-                               {&own.shape, rotate(back, placed.position - frame.position),
-                                back * normalized(to_double(placed.orientation))},
-                               touching, nearest);
+                        {&own.shape, rotate(back, placed.position - frame.position),
+                         back * normalized(to_double(placed.orientation))},
+                        touching, nearest);
   };
   if (touches(1.0)) return 1.0;
   double low = 0.0, high = 1.0;
@@ -251,81 +255,81 @@ double part_in_touch(const ContinuousInput& input, const BodyImpactTime& stop, P
   return low;
 }
 
-// How a body goes that keeps its place on something that moves and turns, from a time on.
+// The sweep of a body that stays in place on a moving and rotating carrier, from a time on.
 Sweep ride_on(const Sweep& carrier, const Pose& pose, Vec3 center, double from) {
-  const double rest = 1.0 - from;
-  Sweep ride{pose, center, float(rest) * carrier.moved, float(rest) * carrier.turned};
-  if (carrier.turned == Vec3{}) return ride;
+  const double remaining = 1.0 - from;
+  Sweep ride{pose, center, float(remaining) * carrier.translation, float(remaining) * carrier.rotation};
+  if (carrier.rotation == Vec3{}) return ride;
   const Pose start = pose_at(carrier, from);
   const auto middle = [](const Pose& of, Vec3 at) { return of.position + DVec3(rotate(of.orientation, at)); };
   const DVec3 beside = middle(pose, center) - middle(start, carrier.center);
-  const DQuat turn = normalized(to_double(from_rotation_vector(ride.turned)));
-  ride.moved += to_float(rotate(turn, beside) - beside);
+  const DQuat rotation = normalized(to_double(from_rotation_vector(ride.rotation)));
+  ride.translation += to_float(rotate(rotation, beside) - beside);
   return ride;
 }
 
-bool is_at_rest(const Sweep& sweep) { return sweep.moved == Vec3{} && sweep.turned == Vec3{}; }
+bool is_still(const Sweep& sweep) { return sweep.translation == Vec3{} && sweep.rotation == Vec3{}; }
 
-// A body that was stopped spends the rest of its step on what it met: on its way along it, and with it. By itself it does not
-// turn meanwhile, so that what was between the two stays between them. Of a second obstacle it follows the crease.
+// A halted body spends the rest of its step sliding along its obstacle, and moving with it. It does not rotate by
+// itself meanwhile, so the plane between the two stays between them. At a second obstacle it follows the crease.
 class Slide {
  public:
   Slide(const ContinuousInput& input, const FastBody& fast, Array<std::uint32_t>& found,
         Array<std::uint64_t>& crossings, TriangleHull& triangle)
       : input_(input), fast_(fast), found_(found), crossings_(crossings), triangle_(triangle) {}
 
-  // How far the body goes after `stop`: into kept.slide and kept.turn.
-  void run(const Sweep& sweep, const BodyImpactTime& stop, SavedMotion& kept) {
+  // Computes the motion after `impact`: saved.slide and saved.rotation.
+  void run(const Sweep& sweep, const BodyImpactTime& impact, SavedMotion& saved) {
     DVec3 normals[2];
-    BodyImpactTime last = stop;
-    DVec3 way = (1.0 - stop.time) * DVec3(sweep.moved), gone;
-    Pose pose = pose_at(sweep, stop.time);
-    double from = stop.time;
+    BodyImpactTime last = impact;
+    DVec3 remaining = (1.0 - impact.time) * DVec3(sweep.translation), gone;
+    Pose pose = pose_at(sweep, impact.time);
+    double from = impact.time;
     for (int k = 0; k < 2; ++k) {
-      if (!may_slide(last)) break;
+      if (!can_slide(last)) break;
       Sweep ride{pose, sweep.center, {}, {}};
       if (!is_pushed(last)) ride = ride_on(sweep_of(last), pose, sweep.center, from);
-      const bool rides = !is_at_rest(ride);
-      const DVec3 carried(ride.moved);
-      normals[k] = rotate(normalized(to_double(from_rotation_vector(ride.turned))), last.normal);
-      DVec3 drift = along(way - carried, normals, k);
-      // Of what the core only is in the way the shape itself may be in, and need not stay in touch.
-      if (!stop.by_core) drift = part_in_touch(input_, last, pose_at(ride, 1.0), drift) * drift;
-      ride.moved = to_float(drift + carried);
-      const SweptPath rest{fast_, ride, from, true, stop.by_core};
-      const BodyImpactTime second = first_stop(input_, rest, found_, triangle_);
-      const double part = second.hit ? second.time : 1.0;
-      if (second.near_gate) find_crossings(input_, rest, part, found_, crossings_, triangle_);
-      // What moves on pushes the body before it whatever stands behind.
-      const DVec3 step = part * drift + carried;
+      const bool rides = !is_still(ride);
+      const DVec3 carried(ride.translation);
+      normals[k] = rotate(normalized(to_double(from_rotation_vector(ride.rotation))), last.normal);
+      DVec3 drift = along(remaining - carried, normals, k);
+      // If only the core was blocked, the shape itself may overlap and need not stay in touch.
+      if (!impact.by_core) drift = touching_share(input_, last, pose_at(ride, 1.0), drift) * drift;
+      ride.translation = to_float(drift + carried);
+      const SweptPath remaining_path{fast_, ride, from, true, impact.by_core};
+      const BodyImpactTime second = first_impact(input_, remaining_path, found_, triangle_);
+      const double share = second.hit ? second.time : 1.0;
+      if (second.near_gate) find_crossings(input_, remaining_path, share, found_, crossings_, triangle_);
+      // A moving obstacle carries the body, whatever stands behind it.
+      const DVec3 step = share * drift + carried;
       gone += step;
       pose.position += step;
-      kept.turn = ride.turned;
+      saved.rotation = ride.rotation;
       if (!second.hit || rides) break;
-      way = (1.0 - part) * drift;
-      from += part * (1.0 - from);
+      remaining = (1.0 - share) * drift;
+      from += share * (1.0 - from);
       last = second;
     }
-    kept.slide = to_float(gone);
+    saved.slide = to_float(gone);
   }
 
  private:
-  Sweep sweep_of(const BodyImpactTime& stop) const {
-    return input_.sweep_of(input_.proxies[stop.obstacle].body);
+  Sweep sweep_of(const BodyImpactTime& impact) const {
+    return input_.sweep_of(input_.proxies[impact.obstacle].body);
   }
-  bool may_slide(const BodyImpactTime& stop) const {
-    if (!stop.hit || stop.time >= 1.0 || !(length_squared(stop.normal) > 0.5)) return false;
-    return stop.by_core || !is_pushed(stop);
+  bool can_slide(const BodyImpactTime& impact) const {
+    if (!impact.hit || impact.time >= 1.0 || !(length_squared(impact.normal) > 0.5)) return false;
+    return impact.by_core || !is_pushed(impact);
   }
-  // Where what a sweep pushes will be, only its own sweep knows.
-  bool is_pushed(const BodyImpactTime& stop) const { return input_.proxies[stop.obstacle].pushes; }
-  // The way without what leads into the obstacles met so far (k + 1 of them).
-  static DVec3 along(DVec3 way, const DVec3 (&normals)[2], int k) {
-    way = way - max(dot(way, normals[k]), 0.0) * normals[k];
-    if (k == 0 || dot(way, normals[0]) <= 0.0) return way;
+  // Only the sweep of a pushed body itself knows where it will be.
+  bool is_pushed(const BodyImpactTime& impact) const { return input_.proxies[impact.obstacle].pushes; }
+  // The displacement without the component into the k + 1 obstacles so far.
+  static DVec3 along(DVec3 displacement, const DVec3 (&normals)[2], int k) {
+    displacement = displacement - max(dot(displacement, normals[k]), 0.0) * normals[k];
+    if (k == 0 || dot(displacement, normals[0]) <= 0.0) return displacement;
     const DVec3 crease = cross(normals[0], normals[1]);
     const double squared = length_squared(crease);
-    return squared > 1.0e-12 ? (dot(way, crease) / squared) * crease : DVec3{};
+    return squared > 1.0e-12 ? (dot(displacement, crease) / squared) * crease : DVec3{};
   }
 
   const ContinuousInput& input_;
@@ -337,54 +341,54 @@ class Slide {
 
 }  // namespace
 
-Aabb box_of_way(const ColliderShape& shape, const Sweep& sweep) {
+Aabb bounds_of_sweep(const ColliderShape& shape, const Sweep& sweep) {
   return swept_box(make_swept_shape(shape.shape, shape.body_from_shape, sweep));
 }
 
 void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast,
-                                            TaskSystem& tasks, std::span<SavedMotion> kept) {
+                                            TaskSystem& tasks, std::span<SavedMotion> saved) {
   crossings_.clear();
   if (fast.empty() && input.gates.empty()) return;
   workers_.resize(std::size_t(tasks.worker_count()));
   for (Worker& worker : workers_) worker.crossings.clear();
-  look_at_gates(input);
+  test_gates(input);
   for_blocks(tasks, int(fast.size()), kBodiesPerBlock, [&](int begin, int end, int worker) {
     Worker& own = workers_[worker];
     for (int i = begin; i < end; ++i) {
       const FastBody& body = fast[std::size_t(i)];
       const Sweep sweep = input.sweep_of(body.body);
-      SavedMotion& out = kept[std::size_t(i)];
+      SavedMotion& out = saved[std::size_t(i)];
       out = {};
       if (!is_sound(sweep)) continue;
-      const SweptPath way{body, sweep};
+      const SweptPath path{body, sweep};
       if (body.only_crosses) {
-        find_crossings(input, way, 1.0, own.found, own.crossings, *own.triangle);
+        find_crossings(input, path, 1.0, own.found, own.crossings, *own.triangle);
         continue;
       }
-      BodyImpactTime stop = first_stop(input, way, own.found, *own.triangle);
+      BodyImpactTime impact = first_impact(input, path, own.found, *own.triangle);
       // Rounded down: the fraction must not pass the impact.
-      const auto fraction = float(stop.time);
-      out.fraction = double(fraction) > stop.time ? fraction * (1.0f - 1.2e-7f) : fraction;
-      if (stop.near_gate)
-        find_crossings(input, way, double(out.fraction), own.found, own.crossings, *own.triangle);
-      stop.time = double(out.fraction);
-      if (stop.by_core && length_squared(stop.normal) > 0.5) {
-        out.blow = to_float(stop.normal);
-        out.blow_at = stop.point;
-        out.other = input.proxies[stop.obstacle].body;
+      const auto fraction = float(impact.time);
+      out.fraction = double(fraction) > impact.time ? fraction * (1.0f - 1.2e-7f) : fraction;
+      if (impact.near_gate)
+        find_crossings(input, path, double(out.fraction), own.found, own.crossings, *own.triangle);
+      impact.time = double(out.fraction);
+      if (impact.by_core && length_squared(impact.normal) > 0.5) {
+        out.impact_normal = to_float(impact.normal);
+        out.impact_point = impact.point;
+        out.other = input.proxies[impact.obstacle].body;
       }
-      // What lies on something already meets the next piece of it at an edge that is none: it is not to be lifted over that.
-      const bool fresh = !(body.least > 0.0f) || stop.by_core;
-      const bool slides = stop.hit && body.slides &&
-                          (fresh || !is_at_rest(input.sweep_of(input.proxies[stop.obstacle].body)));
-      if (slides) Slide(input, body, own.found, own.crossings, *own.triangle).run(sweep, stop, out);
+      // A body in contact that meets the next piece of the same ground at an internal edge must not be lifted over it.
+      const bool fresh = !(body.min_fraction > 0.0f) || impact.by_core;
+      const bool slides = impact.hit && body.slides &&
+                          (fresh || !is_still(input.sweep_of(input.proxies[impact.obstacle].body)));
+      if (slides) Slide(input, body, own.found, own.crossings, *own.triangle).run(sweep, impact, out);
     }
   });
   gather_crossings();
   even_out_room();
 }
 
-void ContinuousCollision::look_at_gates(const ContinuousInput& input) {
+void ContinuousCollision::test_gates(const ContinuousInput& input) {
   for (const GatePair& pair : input.gates) {
     const ColliderShape &shape = input.shapes[pair.convex], &surface = input.shapes[pair.surface];
     const Sweep sweep = input.sweep_of(input.proxies[pair.convex].body);
@@ -400,7 +404,8 @@ void ContinuousCollision::look_at_gates(const ContinuousInput& input) {
   }
 }
 
-// In an order that neither threads nor the broad phase know of, each pair once although both may be fast.
+// Sorts the crossings, so that neither threads nor the broad phase show in their order, and removes duplicates (both
+// bodies may be fast).
 void ContinuousCollision::gather_crossings() {
   for (const Worker& worker : workers_) {
     for (const std::uint64_t key : worker.crossings) crossings_.push_back(key);
@@ -408,20 +413,19 @@ void ContinuousCollision::gather_crossings() {
   if (crossings_.empty()) return;
   sort_scratch_.resize(crossings_.size());
   radix_sort_u64(crossings_, sort_scratch_);
-  std::size_t kept = 1;
+  std::size_t count = 1;
   for (std::size_t i = 1; i < crossings_.size(); ++i) {
-    if (crossings_[i] != crossings_[kept - 1]) crossings_[kept++] = crossings_[i];
+    if (crossings_[i] != crossings_[count - 1]) crossings_[count++] = crossings_[i];
   }
-  crossings_.resize(kept);
+  crossings_.resize(count);
 }
 
-// Which worker looks at which body changes from run to run: each gets the room that any of them needed, and for all crossings,
-// so that none grows once warm.
+// Workers get different bodies in each run, so each gets the capacity that any of them needed; none grows once warm.
 void ContinuousCollision::even_out_room() {
-  std::size_t most = 0;
-  for (const Worker& worker : workers_) most = max(most, worker.found.capacity());
+  std::size_t capacity = 0;
+  for (const Worker& worker : workers_) capacity = max(capacity, worker.found.capacity());
   for (Worker& worker : workers_) {
-    worker.found.reserve(most);
+    worker.found.reserve(capacity);
     worker.crossings.reserve(crossings_.capacity());
   }
 }

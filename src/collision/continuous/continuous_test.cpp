@@ -1,5 +1,5 @@
-// Continuous collision: nothing passes a thin wall at any speed, what slides keeps sliding, and times of impact agree with
-// dense sampling.
+// CCD: nothing passes a thin wall at any speed, sliding bodies keep sliding, and times of impact agree with dense
+// sampling.
 #include "collision/continuous/continuous.h"
 
 #include "base/memory/memory.h"
@@ -36,7 +36,7 @@ AnyShape random_convex(Random& random) {
   }
 }
 
-// Whatever is drawn, one draw stands after the other: the order in which arguments are worked out is the compiler's.
+// Draws stand in separate statements, since compilers choose the order of arguments.
 void expect_agreement_with_sampling(int rounds, int samples) {
   Random random{7};
   int hits = 0, misses = 0;
@@ -76,15 +76,15 @@ void expect_agreement_with_sampling(int rounds, int samples) {
 TEST(TimeOfImpact, AgreesWithDenseSampling) { expect_agreement_with_sampling(300, 400); }
 TEST(LongTimeOfImpact, AgreesWithDenseSampling) { expect_agreement_with_sampling(100000, 400); }
 
-TEST(TimeOfImpact, PoseAtTurnsAboutTheCentreOfMass) {
+TEST(TimeOfImpact, PoseAtRotatesAboutTheCentreOfMass) {
   const Sweep sweep{
       {{1, 2, 3}, from_axis_angle({1, 0, 1}, 0.5f)}, {0.3f, -0.2f, 0.1f}, {5, 0, -2}, {0, 2.0f, 0.5f}};
   const DVec3 center = sweep.pose * sweep.center;
   for (const double time : {0.0, 0.25, 1.0}) {
     const Pose pose = pose_at(sweep, time);
-    EXPECT_LT(length(pose * sweep.center - (center + time * DVec3(sweep.moved))), 1.0e-6);
-    const Vec3 turned = to_rotation_vector(pose.orientation * conjugate(sweep.pose.orientation));
-    EXPECT_LT(distance(turned, float(time) * sweep.turned), 1.0e-5f);
+    EXPECT_LT(length(pose * sweep.center - (center + time * DVec3(sweep.translation))), 1.0e-6);
+    const Vec3 rotation = to_rotation_vector(pose.orientation * conjugate(sweep.pose.orientation));
+    EXPECT_LT(distance(rotation, float(time) * sweep.rotation), 1.0e-5f);
   }
 }
 
@@ -114,13 +114,13 @@ class Scene {
   std::uint32_t add_fixed(const AnyShape& geometry, const Pose& pose) {
     return add(geometry, {pose, {}, {}, {}}, ProxyMotion::fixed);
   }
-  std::uint32_t add_mover(const AnyShape& geometry, const Pose& pose, Vec3 moved, Vec3 turned = {}) {
-    return add(geometry, {pose, {}, moved, turned}, ProxyMotion::moving);
+  std::uint32_t add_mover(const AnyShape& geometry, const Pose& pose, Vec3 translation, Vec3 rotation = {}) {
+    return add(geometry, {pose, {}, translation, rotation}, ProxyMotion::moving);
   }
 
   std::vector<float> clamp(const std::vector<FastBody>& fast) {
     for (std::size_t i = 0; i < proxies.size(); ++i) {
-      const BoxMotion motion{shapes[i].size, sweeps[i].moved, 0.0f};
+      const BoxMotion motion{shapes[i].size, sweeps[i].translation, 0.0f};
       proxies[i].fat_box = fat_box(
           needed_box(world_box(shapes[i].shape, sweeps[i].pose * shapes[i].body_from_shape), motion), motion);
     }
@@ -131,32 +131,32 @@ class Scene {
 
   // With the boxes of the last clamp().
   std::vector<float> clamp_as_is(const std::vector<FastBody>& fast) {
-    kept_.assign(fast.size(), {-1.0f, {}});
+    saved_.assign(fast.size(), {-1.0f, {}});
     const auto sweep_of = [&](std::uint32_t body) { return sweeps[body]; };
     const auto shapes_of = [&](std::uint32_t body) {
       return std::span<const std::uint32_t>(&indices_[body], 1);
     };
     stage_.clamp_fast_bodies(
         {shapes, proxies, *broadphase_, blocked, sweep_of, shapes_of, nullptr, {}, contacts_}, fast, tasks_,
-        kept_);
+        saved_);
     std::vector<float> fractions;
-    for (const SavedMotion& kept : kept_) fractions.push_back(kept.fraction);
+    for (const SavedMotion& saved : saved_) fractions.push_back(saved.fraction);
     return fractions;
   }
   float clamp_as_is(std::uint32_t body) { return clamp_as_is({{body, false}})[0]; }
-  // The same where all pairs of boxes have contacts, and it is known which may stop a shape.
+  // The same with contacts for all pairs of boxes and the blockers among them.
   std::vector<float> clamp_by_contacts(const std::vector<FastBody>& fast) {
     ContactStore store;
-    Bitset may_stop(proxies.size() * proxies.size()), near_stops(proxies.size());
+    Bitset ccd_blockers(proxies.size() * proxies.size()), near_blockers(proxies.size());
     for (std::uint32_t a = 0; a < proxies.size(); ++a) {
       for (std::uint32_t b = a + 1; b < proxies.size(); ++b) {
         if (!overlap(proxies[a].fat_box, proxies[b].fat_box) || !may_pair(proxies[a], proxies[b])) continue;
         const std::uint32_t slot = add_contact(store, pair_key(a, b), {a, b, false, false, {}});
         if (proxies[a].pushes && proxies[b].pushes && !proxies[a].sensor && !proxies[b].sensor) continue;
-        may_stop.set(slot), near_stops.set(a), near_stops.set(b);
+        ccd_blockers.set(slot), near_blockers.set(a), near_blockers.set(b);
       }
     }
-    const KnownContacts contacts{store, may_stop, near_stops};
+    const KnownContacts contacts{store, ccd_blockers, near_blockers};
     contacts_ = &contacts;
     const std::vector<float> fractions = clamp_as_is(fast);
     contacts_ = nullptr;
@@ -178,7 +178,7 @@ class Scene {
   TaskSystem tasks_;
   std::unique_ptr<Broadphase> broadphase_ = make_broadphase(BroadPhaseKind::bvh);
   ContinuousCollision stage_;
-  std::vector<SavedMotion> kept_;
+  std::vector<SavedMotion> saved_;
   std::vector<std::uint32_t> indices_;
   std::vector<AnyShape> geometries_;  // keeps cooked data alive
   const KnownContacts* contacts_ = nullptr;
@@ -218,17 +218,18 @@ TEST(Continuous, NothingPassesAThinWall) {
         for (int round = 0; round < 4; ++round) {
           Scene scene;
           const auto obstacle = scene.add_fixed(wall, {{0, 0, 0}, {}});
-          const float way = speed / 60.0f;
-          // Starts in front of the wall and would end beyond it.
-          const float reach = outer_radius(make_shape(projectile), {});
-          const float start = reach + 0.02f + random.between(0.0f, 0.9f) * way;
-          const Vec3 sideways{0, random.between(-0.2f, 0.2f) * way, random.between(-0.2f, 0.2f) * way};
-          const Vec3 moved = Vec3{way + 2.0f * reach + 0.1f, 0, 0} + sideways;
+          const float distance = speed / 60.0f;
+          // Starts in front of the wall and would end behind it.
+          const float radius = outer_radius(make_shape(projectile), {});
+          const float start = radius + 0.02f + random.between(0.0f, 0.9f) * distance;
+          const Vec3 sideways{0, random.between(-0.2f, 0.2f) * distance,
+                              random.between(-0.2f, 0.2f) * distance};
+          const Vec3 moved = Vec3{distance + 2.0f * radius + 0.1f, 0, 0} + sideways;
           const auto bullet = scene.add_mover(projectile, {{-double(start), 0, 0}, random.rotation()}, moved,
                                               round == 0 ? Vec3{} : random.in_box(2.0f));
           const float fraction = scene.clamp(bullet);
           ASSERT_LT(fraction, 1.0f) << wall.index() << " " << projectile.index() << " " << speed;
-          // It stands in front of the wall, and close to it.
+          // The shape stands in front of the wall, close to it.
           const float inner = inner_radius(scene.shapes[bullet].shape);
           const Pose end = pose_at(scene.sweeps[bullet], double(fraction));
           const Aabb box = bounds(scene.shapes[bullet].shape, {to_float(end.position), end.orientation});
@@ -242,7 +243,7 @@ TEST(Continuous, NothingPassesAThinWall) {
   }
 }
 
-TEST(Continuous, HeightFieldsStopWhatFalls) {
+TEST(Continuous, HeightFieldsStopFallingBodies) {
   Random random{11};
   std::vector<float> heights(33 * 33);
   for (float& height : heights) height = random.between(-0.3f, 0.3f);
@@ -271,7 +272,7 @@ TEST(Continuous, MissesAreLeftAlone) {
   EXPECT_EQ(scene.clamp({{above, false}, {away, false}, {short_of, false}}), (std::vector<float>{1, 1, 1}));
 }
 
-// Whoever comes first does all there is: the other has room for it before it ever had any of it.
+// One worker may do all the work in one run; in the next, another worker already has room for it.
 TEST(Continuous, AnotherWorkerTakesNoMemory) {
   static int first;
   first = 0;
@@ -294,15 +295,16 @@ TEST(Continuous, AnotherWorkerTakesNoMemory) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// Boxes of ways are asked of trees, whose empty lanes would overlap one without end.
-TEST(Continuous, WaysBeyondFloatsAreLookedAt) {
+// Trees get the boxes of sweeps; empty lanes would overlap an infinite box.
+TEST(Continuous, SweepsBeyondFloatsAreTested) {
   Scene scene;
   scene.add_fixed(Box{{0.5f, 0.5f, 0.5f}}, {{5, 0, 0}, {}});
   std::vector<FastBody> fast;
-  for (const float way : {1.0e30f, 3.0e38f, 3.4e38f})
-    for (const float turn : {0.0f, 1.0e30f, 3.0e38f})
+  for (const float distance : {1.0e30f, 3.0e38f, 3.4e38f})
+    for (const float angle : {0.0f, 1.0e30f, 3.0e38f})
       fast.push_back(
-          {scene.add_mover(Box{{0.1f, 0.1f, 0.1f}}, {{0, 0, 0}, {}}, {-way, way, 0}, {0, turn, 0}), false});
+          {scene.add_mover(Box{{0.1f, 0.1f, 0.1f}}, {{0, 0, 0}, {}}, {-distance, distance, 0}, {0, angle, 0}),
+           false});
   for (const float fraction : scene.clamp(fast)) {
     EXPECT_GE(fraction, 0.0f);
     EXPECT_LE(fraction, 1.0f);
@@ -323,23 +325,23 @@ TEST(Continuous, SpinningBladesStopAtAPost) {
   }
 }
 
-// A body that slides over a floor, pressed down a little in every step and lifted back as the solver would: it must get on.
+// A body slides over a floor, pressed down a little in every step and lifted back as by the solver: it must advance.
 float slide(const AnyShape& floor, const Pose& floor_pose, const AnyShape& slider, float height,
             float hover) {
   constexpr int kSteps = 40;
   double x = -15.0;
-  const float way = 100.0f / 60.0f / 4.0f;
+  const float distance = 100.0f / 60.0f / 4.0f;
   for (int step = 0; step < kSteps; ++step) {
     Scene scene;
     scene.add_fixed(floor, floor_pose);
     const double y = double(height) + double(step == 0 ? hover : 0.0f) - (step % 3 == 0 ? 0.001 : 0.0);
-    const auto body = scene.add_mover(slider, {{x, y, 0.123}, {}}, {way, -0.0027f, 0});
-    x += double(scene.clamp(body) * way);
+    const auto body = scene.add_mover(slider, {{x, y, 0.123}, {}}, {distance, -0.0027f, 0});
+    x += double(scene.clamp(body) * distance);
   }
-  return float((x + 15.0) / double(way * kSteps));
+  return float((x + 15.0) / double(distance * kSteps));
 }
 
-TEST(Continuous, WhatSlidesKeepsSliding) {
+TEST(Continuous, SlidingBodiesKeepSliding) {
   test::Triangles flat;
   for (int i = 0; i < 40; ++i) {
     for (int k = 0; k < 10; ++k) {
@@ -371,7 +373,7 @@ TEST(Continuous, GetsOnOverRoughGround) {
   EXPECT_GT(slide(field, {}, Box{{0.2f, 0.1f, 0.2f}}, 0.1f, 0.0f), 0.2f);
 }
 
-TEST(Continuous, WhatTouchesIsCaughtByItsCore) {
+TEST(Continuous, TouchingShapesAreHaltedByTheirCore) {
   const Geometry mesh = mesh_wall(4);
   for (const AnyShape& wall : std::vector<AnyShape>{Box{{0.005f, 5, 5}}, mesh, Plane{{-1, 0, 0}, 0.005f}}) {
     Scene scene;
@@ -382,7 +384,7 @@ TEST(Continuous, WhatTouchesIsCaughtByItsCore) {
   }
 }
 
-TEST(Continuous, WhoIsInTheWay) {
+TEST(Continuous, FindsTheBlocker) {
   const Pose wall_pose{{0, 0, 0}, {}}, start{{-5, 0, 0}, {}};
   const Vec3 moved{10, 0, 0};
   {
@@ -408,8 +410,9 @@ TEST(Continuous, WhoIsInTheWay) {
   }
 }
 
-// What stays in its box, what leaves it, sensors and what moves by itself: contacts tell what a walk over all boxes tells.
-TEST(Continuous, ContactsTellWhatIsInTheWay) {
+// For bodies that stay in their box or leave it, for sensors and for moving obstacles, contacts give the same result as
+// a query of all boxes.
+TEST(Continuous, ContactsGiveTheSameBlockers) {
   Random random{23};
   std::size_t stopped = 0, crossed = 0;
   for (int round = 0; round < 20; ++round) {
@@ -431,7 +434,7 @@ TEST(Continuous, ContactsTellWhatIsInTheWay) {
       fast.push_back({body, i % 8 == 0});
     }
     scene.clamp(fast);  // fits the boxes
-    for (std::size_t k = 0; k < fast.size(); k += 2) scene.sweeps[fast[k].body].moved *= 4.0f;
+    for (std::size_t k = 0; k < fast.size(); k += 2) scene.sweeps[fast[k].body].translation *= 4.0f;
     const std::vector<float> all = scene.clamp_as_is(fast);
     const std::vector<std::uint64_t> passed(scene.crossings().begin(), scene.crossings().end());
     EXPECT_EQ(scene.clamp_by_contacts(fast), all) << round;
@@ -443,22 +446,22 @@ TEST(Continuous, ContactsTellWhatIsInTheWay) {
   EXPECT_GT(crossed, 5u);
 }
 
-TEST(Continuous, WhatIsNotFiniteIsLeftAlone) {
+TEST(Continuous, SkipsMotionsThatAreNotFinite) {
   constexpr float kNan = __builtin_nanf(""), kInfinity = __builtin_inff();
   for (const float bad : {kNan, kInfinity}) {
     Scene scene;
     scene.add_fixed(Box{{0.01f, 1, 1}}, {{0, 0, 0}, {}});
     const auto body = scene.add_mover(Sphere{0.1f}, {{-5, 0, 0}, {}}, {10, 0, 0});
     scene.clamp(body);
-    scene.sweeps[body].moved.x = bad;
+    scene.sweeps[body].translation.x = bad;
     EXPECT_EQ(scene.clamp_as_is(body), 1.0f);
-    scene.sweeps[body].moved.x = 10;
-    scene.sweeps[body].turned.y = bad;
+    scene.sweeps[body].translation.x = 10;
+    scene.sweeps[body].rotation.y = bad;
     EXPECT_EQ(scene.clamp_as_is(body), 1.0f);
   }
 }
 
-TEST(Continuous, MovingObstaclesMeetHalfWay) {
+TEST(Continuous, MovingObstaclesMeetHalfway) {
   Scene scene;
   const auto door =
       scene.add(Box{{0.01f, 1, 1}}, {{{5, 0, 0}, {}}, {}, {-10, 0, 0}, {}}, ProxyMotion::moving, false);

@@ -1,4 +1,4 @@
-// A moving convex shape against the triangles of a mesh or height field: part of continuous collision.
+// CCD of a moving convex shape against the triangles of a mesh or height field.
 #pragma once
 
 #include "collision/continuous/time_of_impact.h"
@@ -6,7 +6,7 @@
 
 namespace gyre {
 
-// One triangle in the guise of a flat hull, so that GJK takes it. Made once and set again for each triangle.
+// A triangle as a flat hull, for GJK. Made once and set for each triangle.
 class TriangleHull {
  public:
   TriangleHull();
@@ -20,40 +20,41 @@ class TriangleHull {
   Shape shape_;
 };
 
-// What is left of a convex shape when about half of its inner radius is taken off all around, as a shape of its own: a
-// thinner rod of a rod, a smaller plate of a plate. A hull leaves a box in its axes, or a ball where that is larger.
+// A convex shape with about half of its inner radius removed all around: a thinner rod, a smaller plate. A hull leaves
+// a box in its axes, or a ball if that is larger.
 struct Core {
   Shape shape;
   Transform body_from_core;
 };
 Core make_core(const Shape& shape, const Transform& body_from_shape);
 
-// How near is near, in metres: set from the moving shape's size.
+// Distances of CCD in metres, from the size of the moving shape.
 struct ImpactScale {
-  double target;        // how far from each other two shapes are left
-  double touching;      // nearer than this as the step begins: only the core is swept
-  double core_target;   // the core is left this far
-  double least = 0.0;   // part of its way that the shape keeps in any case, if its core can
-  bool slides = false;  // what it touches it slides along: only what closes in stops it, and it does not turn
+  double target;              // distance that an impact leaves between two shapes
+  double touching;            // if they start nearer than this, only the core is swept
+  double core_target;         // distance that an impact leaves to the core
+  double min_fraction = 0.0;  // fraction of its motion that the shape keeps in any case, if its core is free
+  // the shape slides along what it touches: only approach halts it, and it does not rotate
+  bool slides = false;
 };
 
-// Where a shape must stop.
-struct Stop {
+// The time of impact of a body that must halt, and the impact there.
+struct TimeOfImpact {
   double time = 1.0;
   bool hit = false;
-  bool by_core = false;  // only the core was in the way
+  bool by_core = false;  // only the core was blocked
   DVec3 normal;          // unit, from the shape to what it met
-  DVec3 point;           // of the core if that was in the way: where it would have gone in, world axes
+  DVec3 point;           // if by_core: the point of the core that would have entered, world axes
 };
-// First time before `end` at which `a` must stop in front of `b`, both convex (or b a plane).
-Stop stop_before(const SweptShape& a, const SweptShape& core, const SweptShape& b, double start, double end,
-                 const ImpactScale& scale);
+// The first time before `end` at which `a` must halt in front of `b`, both convex (or b a plane).
+TimeOfImpact convex_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
+                                   double start, double end, const ImpactScale& scale);
 
-// The same for the surface `b` (a mesh or height field; its radius is not used).
-Stop stop_before_surface(const SweptShape& a, const SweptShape& core, const SweptShape& b, double end,
-                         const ImpactScale& scale, TriangleHull& triangle);
+// The same for a surface `b` (a mesh or height field; its radius is not used).
+TimeOfImpact surface_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
+                                    double end, const ImpactScale& scale, TriangleHull& triangle);
 
-// Whether `a` comes onto the surface `b` before `end`, from either side, and is farther than `clear` (m) from it at `end`.
+// True if `a` meets the surface `b` before `end`, from either side, and is farther than `clear` (m) from it at `end`.
 bool crosses_surface(const SweptShape& a, const SweptShape& b, double end, double clear,
                      const ImpactScale& scale, TriangleHull& triangle);
 

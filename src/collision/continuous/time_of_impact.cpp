@@ -9,15 +9,16 @@
 namespace gyre {
 namespace {
 
-// Grazing turns converge slowly. Where this is not enough, the time reached so far counts as the impact: never late.
+// Grazing rotations converge slowly. If this is not enough, the time reached so far counts as the impact, which is
+// early but never late.
 constexpr int kMaxSteps = 1000;
 constexpr double kTolerance = 0.25;  // of the target
-// How often the two are advanced along one normal before nearest points are searched for again.
+// The largest number of advances along one normal before the next search for the closest points.
 constexpr int kMaxNormalAdvances = 8;
 
-bool is_still(Vec3 turned) { return turned.x == 0.0f && turned.y == 0.0f && turned.z == 0.0f; }
+bool is_still(Vec3 rotation) { return rotation.x == 0.0f && rotation.y == 0.0f && rotation.z == 0.0f; }
 
-// A convex and B plane; the normal from A to B is against the plane's.
+// A convex and B a plane; the normal from A to B is opposite to the plane's.
 Gap plane_gap(const Shape& a, const Pose& frame_a, const Shape& plane, const Pose& frame_plane) {
   const DVec3 normal(rotate(frame_plane.orientation, plane.extents));
   const Vec3 down = rotate_inverse(frame_a.orientation, -to_float(normal));
@@ -28,63 +29,66 @@ Gap plane_gap(const Shape& a, const Pose& frame_a, const Shape& plane, const Pos
   return gap;
 }
 
-double turning(const SweptShape& shape, DVec3 normal) {
-  if (is_still(shape.sweep->turned)) return 0.0;
-  return length(cross(DVec3(shape.sweep->turned), normal)) * double(shape.radius);
+double rotation_rate(const SweptShape& shape, DVec3 normal) {
+  if (is_still(shape.sweep->rotation)) return 0.0;
+  return length(cross(DVec3(shape.sweep->rotation), normal)) * double(shape.radius);
 }
 
 DVec3 middle_at(const SweptShape& shape, const Pose& pose) {
   return pose.position + DVec3(rotate(pose.orientation, shape.sweep->center));
 }
 
-// At most how fast the two close along a direction that stays as it is.
-double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 way, DVec3 normal) {
-  return dot(way, normal) + turning(a, normal) + turning(b, normal);
+// An upper bound of the closing speed along a fixed direction.
+double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 velocity, DVec3 normal) {
+  return dot(velocity, normal) + rotation_rate(a, normal) + rotation_rate(b, normal);
 }
 
-// The same along a direction that turns with B, over a time; `from_b` is how far A's middle lies from B's. In B's frame the
-// middle of A begins with w = v_a - v_b - turn_b x from_b; that changes as A goes on and as the frame turns, which is of second
-// order in the time. About its middle A turns by what it turns more than B. Far out on something large that turns, this is
-// much less than the rate of its farthest point.
-double closing_rate_beside(const SweptShape& a, const SweptShape& b, DVec3 way, DVec3 from_b, DVec3 normal,
-                           double time) {
-  const DVec3 turn_a(a.sweep->turned), turn_b(b.sweep->turned);
+// The same along a direction that rotates with B, over a time; `from_b` is the vector from B's middle to A's. In B's
+// frame the middle of A starts with w = v_a - v_b - turn_b x from_b, which changes in second order of the time as A
+// moves on and the frame rotates. About its middle A rotates by its rotation relative to B. Far out on something large
+// that rotates, this is much less than the speed of its farthest point.
+double closing_rate_seen_from_b(const SweptShape& a, const SweptShape& b, DVec3 velocity, DVec3 from_b,
+                                DVec3 normal, double time) {
+  const DVec3 rotation_a(a.sweep->rotation), rotation_b(b.sweep->rotation);
   const auto radius = double(a.radius);
-  const DVec3 begin = way - cross(turn_b, from_b), more = turn_a - turn_b;
-  const double swerve = 0.5 * time * length(turn_b);
-  const double straight = length(way) * (1.0 + 2.0 * swerve) + length(begin);
-  return dot(begin, normal) + radius * length(cross(more, normal)) +
-         swerve * (straight + radius * length(more));
+  const DVec3 begin = velocity - cross(rotation_b, from_b), relative = rotation_a - rotation_b;
+  const double half_angle = 0.5 * time * length(rotation_b);
+  const double straight = length(velocity) * (1.0 + 2.0 * half_angle) + length(begin);
+  return dot(begin, normal) + radius * length(cross(relative, normal)) +
+         half_angle * (straight + radius * length(relative));
 }
 
-double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 way, DVec3 from_b, DVec3 normal,
+double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 velocity, DVec3 from_b, DVec3 normal,
                     double time) {
-  const double rate = closing_rate(a, b, way, normal);
-  return is_still(b.sweep->turned) ? rate : min(rate, closing_rate_beside(a, b, way, from_b, normal, time));
+  const double rate = closing_rate(a, b, velocity, normal);
+  return is_still(b.sweep->rotation)
+             ? rate
+             : min(rate, closing_rate_seen_from_b(a, b, velocity, from_b, normal, time));
 }
 
-// How far the core reaches along a direction from its body's middle.
-double reach_along(const SweptShape& a, double time, DVec3 normal) {
-  const Quat turn = is_still(a.sweep->turned)
-                        ? a.sweep->pose.orientation
-                        : integrate_rotation(a.sweep->pose.orientation, float(time) * a.sweep->turned);
-  const Vec3 in_body = rotate_inverse(turn, to_float(normal));
+// How far the core extends along a direction from its body's middle.
+double extent_along(const SweptShape& a, double time, DVec3 normal) {
+  const Quat orientation = is_still(a.sweep->rotation) ? a.sweep->pose.orientation
+                                                       : integrate_rotation(a.sweep->pose.orientation,
+                                                                            float(time) * a.sweep->rotation);
+  const Vec3 in_body = rotate_inverse(orientation, to_float(normal));
   const Vec3 in_shape = rotate_inverse(a.body_from_shape.orientation, in_body);
   return double(dot(in_shape, support(*a.shape, in_shape))) +
          double(dot(in_body, a.body_from_shape.position - a.sweep->center));
 }
 
-// Along one normal the two can be followed without a search: what lies between them along it is never more than their distance.
-// True if they do not come as near as `target` before `end`; else `time` is moved on as far as that normal tells. B does not
-// turn.
-bool passes_along(const SweptShape& a, DVec3 way, const Gap& gap, double closing, double target, double end,
-                  double& time) {
-  const double start = time, reach = reach_along(a, start, gap.normal), straight = dot(way, gap.normal);
-  double rest = gap.distance - target;
-  for (int i = 0; i < kMaxNormalAdvances && rest > kTolerance * target; ++i) {
-    time += rest / closing;
-    rest = gap.distance - target - straight * (time - start) - (reach_along(a, time, gap.normal) - reach);
-    if (closing * (end - time) <= rest) return true;
+// Advances along one normal without a search: the gap along it is never more than the distance. True if the shapes do
+// not come within `target` before `end`; otherwise `time` advances as far as that normal allows. B does not rotate.
+bool passes_along(const SweptShape& a, DVec3 velocity, const Gap& gap, double closing, double target,
+                  double end, double& time) {
+  const double start = time, extent_before = extent_along(a, start, gap.normal),
+               straight = dot(velocity, gap.normal);
+  double remaining = gap.distance - target;
+  for (int i = 0; i < kMaxNormalAdvances && remaining > kTolerance * target; ++i) {
+    time += remaining / closing;
+    remaining = gap.distance - target - straight * (time - start) -
+                (extent_along(a, time, gap.normal) - extent_before);
+    if (closing * (end - time) <= remaining) return true;
   }
   return false;
 }
@@ -113,13 +117,13 @@ Gap find_gap(const SweptShape& a, const SweptShape& b, const Pose& pose_a, const
 
 Pose pose_at(const Sweep& sweep, double time) {
   Pose pose = sweep.pose;
-  if (!is_still(sweep.turned)) {
-    pose.orientation = integrate_rotation(sweep.pose.orientation, float(time) * sweep.turned);
+  if (!is_still(sweep.rotation)) {
+    pose.orientation = integrate_rotation(sweep.pose.orientation, float(time) * sweep.rotation);
     const Vec3 from_center =
         rotate(sweep.pose.orientation, sweep.center) - rotate(pose.orientation, sweep.center);
     pose.position += from_center;
   }
-  pose.position += time * DVec3(sweep.moved);
+  pose.position += time * DVec3(sweep.translation);
   return pose;
 }
 
@@ -132,27 +136,27 @@ Gap find_gap(const SweptShape& a, const SweptShape& b, double time, double max_d
 }
 
 Impact time_of_impact(const SweptShape& a, const SweptShape& b, double start, double end, double target) {
-  const DVec3 way = DVec3(a.sweep->moved) - DVec3(b.sweep->moved);
+  const DVec3 velocity = DVec3(a.sweep->translation) - DVec3(b.sweep->translation);
   double time = start;
   for (int i = 0; i < kMaxSteps; ++i) {
-    // Nothing can close faster than this, whatever the direction.
-    double reach = length(way);
-    if (!is_still(a.sweep->turned)) reach += double(length(a.sweep->turned)) * double(a.radius);
-    if (!is_still(b.sweep->turned)) reach += double(length(b.sweep->turned)) * double(b.radius);
+    // An upper bound of the closing speed in any direction.
+    double max_rate = length(velocity);
+    if (!is_still(a.sweep->rotation)) max_rate += double(length(a.sweep->rotation)) * double(a.radius);
+    if (!is_still(b.sweep->rotation)) max_rate += double(length(b.sweep->rotation)) * double(b.radius);
     const Pose pose_a = pose_at(*a.sweep, time), pose_b = pose_at(*b.sweep, time);
-    const Gap gap = find_gap(a, b, pose_a, pose_b, target + reach * (end - time));
+    const Gap gap = find_gap(a, b, pose_a, pose_b, target + max_rate * (end - time));
     if (gap.beyond) return {};
-    const double rest = gap.distance - target;
-    if (rest <= kTolerance * target) return {true, time};
+    const double remaining = gap.distance - target;
+    if (remaining <= kTolerance * target) return {true, time};
     const DVec3 from_b = middle_at(a, pose_a) - middle_at(b, pose_b);
-    const double closing = closing_rate(a, b, way, from_b, gap.normal, end - time);
-    // Both the line and the rate of turning are constant: what does not close along one normal now never does.
-    if (closing * (end - time) <= rest) return {};
+    const double closing = closing_rate(a, b, velocity, from_b, gap.normal, end - time);
+    // Velocity and angular velocity are constant: a pair that does not close along one normal now never does.
+    if (closing * (end - time) <= remaining) return {};
     const bool searched = a.shape->kind != ShapeKind::plane && b.shape->kind != ShapeKind::plane;
-    if (searched && !is_still(a.sweep->turned) && is_still(b.sweep->turned)) {
-      if (passes_along(a, way, gap, closing, target, end, time)) return {};
+    if (searched && !is_still(a.sweep->rotation) && is_still(b.sweep->rotation)) {
+      if (passes_along(a, velocity, gap, closing, target, end, time)) return {};
     } else {
-      time += rest / closing;
+      time += remaining / closing;
     }
   }
   return {true, time};
@@ -165,13 +169,13 @@ bool stays_clear(const SweptShape& a, const SweptShape& b, double start, double 
   const Pose frame_b = pose_b * b.body_from_shape;
   const Transform b_from_a = inverse_times(frame_b, pose_a * a.body_from_shape);
   const Aabb box_a = bounds(*a.shape, b_from_a), box_b = bounds(*b.shape, {});
-  // As for world_box: bounds() loses some digits.
+  // As in world_box: bounds() loses some digits.
   const bool has_disc = a.shape->kind == ShapeKind::cylinder || a.shape->kind == ShapeKind::cone;
   const float scale = max(max(largest(absolute(box_a.low)), largest(absolute(box_a.high))),
                           max(largest(absolute(box_b.low)), largest(absolute(box_b.high))));
   const double slack =
       distance + 4.0e-6 * double(scale) + (has_disc ? 6.0e-4 * double(a.shape->radius) : 0.0);
-  const DVec3 way = DVec3(a.sweep->moved) - DVec3(b.sweep->moved);
+  const DVec3 velocity = DVec3(a.sweep->translation) - DVec3(b.sweep->translation);
   const DVec3 from_b = middle_at(a, pose_a) - middle_at(b, pose_b);
   for (int axis = 0; axis < 3; ++axis) {
     const double above = double(box_a.low[axis]) - double(box_b.high[axis]);
@@ -181,7 +185,7 @@ bool stays_clear(const SweptShape& a, const SweptShape& b, double start, double 
     const float sign = above > below ? -1.0f : 1.0f;
     const Vec3 side{axis == 0 ? sign : 0.0f, axis == 1 ? sign : 0.0f, axis == 2 ? sign : 0.0f};
     const DVec3 normal(rotate(frame_b.orientation, side));  // from A to B
-    if ((end - start) * closing_rate(a, b, way, from_b, normal, end - start) < apart) return true;
+    if ((end - start) * closing_rate(a, b, velocity, from_b, normal, end - start) < apart) return true;
   }
   return false;
 }

@@ -1,10 +1,9 @@
-// Questions to a whole world of shapes: rays, moving shapes, overlaps, closest points, penetrations.
+// Queries on a whole world of shapes: rays, shape casts, overlaps, closest points, penetrations.
 //
-// In: the shapes, where they are, and a broad phase that holds their boxes. Out: answers that name shapes by their index,
-// in the world's axes. Candidates come from the broad phase and each is looked at exactly (geometry/query/cast, geometry/query/closest_points,
-// manifolds). They come in an order that differs between broad phases: to sort the answers, with the lowest index first among
-// equals, is the caller's part, who alone knows how many are wanted. Nothing here allocates, and any number of threads may
-// ask at once.
+// In: the shapes, their poses, and a broad phase with their boxes. Out: results with shape indices, in world axes. The
+// broad phase gives candidates, and each is tested exactly (geometry/query/cast, geometry/query/closest_points, manifolds).
+// The order of results differs between broad phases; the caller sorts them, the lowest index first among equals.
+// Nothing here allocates, and any number of threads may query at once.
 #pragma once
 
 #include "base/function_ref.h"
@@ -19,22 +18,22 @@ namespace gyre {
 struct QueryInput {
   ColliderShapes shapes;
   std::span<const Proxy> proxies;
-  const Broadphase& broadphase;  // has been shown all proxies
+  const Broadphase& broadphase;  // has received all proxies
   FunctionRef<Pose(std::uint32_t shape)> pose_of;
   FunctionRef<bool(std::uint32_t shape)> accepts;
-  bool back_faces = false;  // of surfaces too
+  bool back_faces = false;  // also hits back faces of surfaces
 };
 
 struct WorldRay {
   DVec3 origin;
-  Vec3 way;
+  Vec3 translation;
 };
 
-// A convex shape somewhere in the world, and where it goes (nowhere for questions about one place).
+// A convex shape in the world, and its translation in a cast (zero for other queries).
 struct WorldShape {
   Shape shape;
   Pose pose;
-  Vec3 way;
+  Vec3 translation;
   float skin = 0.0f;
 };
 
@@ -43,16 +42,15 @@ struct ShapeHit {
   std::uint32_t triangle = kNoTriangle;
   double fraction = 0.0;
   DVec3 point;
-  Vec3 normal;  // out of the shape that is hit
+  Vec3 normal;  // out of the shape that was hit
   bool inside = false;
   float depth = 0.0f;
 };
 
-// Told of an answer; returns up to where answers are still wanted: a fraction of the way (what lies at it included), below 0 for
-// no more.
+// Receives a hit and returns the fraction up to which hits still count (inclusive); below 0 ends the cast.
 using HitVisit = FunctionRef<double(const ShapeHit& hit)>;
 
-// The first hit of every shape on the way.
+// Reports the first hit of every shape along the cast.
 void cast_ray(const QueryInput& input, const WorldRay& ray, HitVisit found);
 void cast_shape(const QueryInput& input, const WorldShape& shape, HitVisit found);
 
@@ -60,15 +58,15 @@ struct ShapeNear {
   std::uint32_t shape = 0;
   std::uint32_t triangle = kNoTriangle;
   double distance = 0.0;
-  DVec3 point;      // of the shape that is near
-  DVec3 query_point;  // of the one that asks
-  Vec3 normal;      // from the near shape to the one that asks
+  DVec3 point;      // on the near shape
+  DVec3 own_point;  // on the query shape
+  Vec3 normal;      // from the near shape to the query shape
 };
 
-// Every shape within `max_distance`, until `found` says false.
+// Reports every shape within `max_distance`, until `found` returns false.
 void find_near(const QueryInput& input, const WorldShape& shape, double max_distance,
                FunctionRef<bool(const ShapeNear& near)> found);
-// The nearest within `max_distance`, of equal ones that of the lowest index; false if there is none.
+// The nearest shape within `max_distance`, the lowest index among equals; false if there is none.
 bool find_nearest_shape(const QueryInput& input, const WorldShape& shape, double max_distance,
                         ShapeNear& nearest);
 
@@ -76,12 +74,12 @@ struct ShapePenetration {
   std::uint32_t shape = 0;
   std::uint32_t triangle = kNoTriangle;
   double depth = 0.0;  // m
-  DVec3 point;         // midway between the surfaces, where they are deepest
-  Vec3 normal;  // unit: moving the asking shape by depth * normal parts the two, as far as this contact goes
+  DVec3 point;         // midway between the surfaces, where they overlap most
+  Vec3 normal;         // unit: moving the query shape by depth * normal resolves this contact
 };
 
-// Every contact in which the shape overlaps another: one of each convex shape or plane, up to kMaxMeshManifolds of a mesh or
-// height field.
+// Reports every contact in which the shape overlaps another: one for each convex shape or plane, up to
+// kMaxMeshManifolds for a mesh or height field.
 void find_penetrations(const QueryInput& input, const WorldShape& shape,
                        FunctionRef<void(const ShapePenetration& deep)> found);
 

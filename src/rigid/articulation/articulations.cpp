@@ -142,7 +142,7 @@ class ArticulationBuilder {
       return false;
     }
     for (std::size_t i = 0; i < pairs; ++i) {
-      const BlockPlace block = find_block(plan, edges[i].a, edges[i].b);
+      const BlockLocation block = find_block(plan, edges[i].a, edges[i].b);
       ArticulationCoupling& c = couplings[i];
       c.offset = block.offset;
       if (block.first_is_row) continue;
@@ -306,9 +306,9 @@ class ArticulationBuilder {
                           std::span<const ArticulationCoupling> couplings) {
     shape.plan = plan;
     for (std::size_t i = 0; i < shape.nodes.size(); ++i) {
-      const BlockColumn& column = plan.columns[plan.place_of[i]];
+      const BlockColumn& column = plan.columns[plan.index_of[i]];
       shape.nodes[i].row = column.row;
-      shape.nodes[i].column = plan.place_of[i];
+      shape.nodes[i].column = plan.index_of[i];
       shape.nodes[i].diagonal = column.diagonal;
     }
     shape.couplings = arena_.make<LaneCoupling>(couplings.size());

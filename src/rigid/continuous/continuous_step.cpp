@@ -42,7 +42,7 @@ DVec3 middle_of(const RigidWorld& w, std::uint32_t body) {
 class BodyImpulse {
  public:
   BodyImpulse(RigidWorld& w, std::uint32_t body, const SavedMotion& kept)
-      : w_(w), bodies_{body, kept.other}, normal_(kept.blow), at_(kept.blow_at) {}
+      : w_(w), bodies_{body, kept.other}, normal_(kept.impact_normal), at_(kept.impact_point) {}
 
   void take() {
     for (int k = 0; k < 2; ++k) lever_[k] = to_float(at_ - middle_of(w_, bodies_[k]));
@@ -90,9 +90,9 @@ class BodyImpulse {
 float way_against(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame, std::uint32_t body) {
   const Sweep own = sweep_of_body(w.bodies, body);
   const Vec3 apart = difference(w.bodies.places[body].center, w.bodies.places[seen_from].center);
-  return length(own.moved - frame.moved - cross(frame.turned, apart)) +
-         0.5f * length_squared(frame.turned) * length(apart) +
-         length(own.turned - frame.turned) * w.bodies.masses[body].reach;
+  return length(own.translation - frame.translation - cross(frame.rotation, apart)) +
+         0.5f * length_squared(frame.rotation) * length(apart) +
+         length(own.rotation - frame.rotation) * w.bodies.masses[body].reach;
 }
 
 // What moves by itself runs over what stands in its way, however slow that is: such bodies are fast against it, unless they go
@@ -107,7 +107,7 @@ class Overrun {
     for (const std::uint32_t i : w_.bodies.awake) {
       if (w_.bodies.flags[i].type != BodyType::kinematic || w_.bodies.shapes[i].empty()) continue;
       const Sweep sweep = sweep_of_body(w_.bodies, i);
-      if (sweep.moved != Vec3{} || sweep.turned != Vec3{}) add_those_before(i, sweep);
+      if (sweep.translation != Vec3{} || sweep.rotation != Vec3{}) add_those_before(i, sweep);
     }
   }
 
@@ -117,7 +117,7 @@ class Overrun {
       const ColliderShape& shape = w_.shapes.colliders[id.index];
       if (shape.shape.kind == ShapeKind::plane) continue;
       scratch_.found.clear();
-      w_.broadphase->query(w_.shapes.proxies, box_of_way(shape, sweep), scratch_.found);
+      w_.broadphase->query(w_.shapes.proxies, bounds_of_sweep(shape, sweep), scratch_.found);
       for (const std::uint32_t found : scratch_.found) {
         const Proxy &own = w_.shapes.proxies[id.index], &other = w_.shapes.proxies[found];
         if (!may_pair(own, other)) continue;
@@ -208,7 +208,7 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
 void mark_near_blockers(const RigidWorld& w, Bitset& near) {
   near.resize(w.shapes.colliders.size());
   near.reset_all();
-  w.touches.may_stop.for_each_set([&](std::size_t slot) {
+  w.touches.ccd_blockers.for_each_set([&](std::size_t slot) {
     const Contact& contact = w.contacts.contacts[slot];
     if (contact.manifold_room == 0) return;
     near.set(contact.shape_a);
@@ -230,7 +230,7 @@ void leave_out_free(const RigidWorld& w, ContinuousScratch& scratch, Arena& aren
   const auto is_free = [&](std::size_t k) {
     if (!stay[k] || fast[k].continuous || fast[k].only_crosses) return false;
     for (const ShapeId id : w.bodies.shapes[fast[k].body])
-      if (scratch.near_stops.test(id.index)) return false;
+      if (scratch.near_blockers.test(id.index)) return false;
     return true;
   };
   std::size_t kept = 0;
@@ -263,7 +263,7 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
   const auto shapes_of = [&](std::uint32_t body) { return shapes[body]; };
   const auto passes = [&](std::uint32_t shape, Vec3 way) { return lets_pass(w, shape, way); };
   const FunctionRef<bool(std::uint32_t shape, Vec3 way)> one_way(passes);
-  const KnownContacts contacts{w.contacts, w.touches.may_stop, scratch.near_stops};
+  const KnownContacts contacts{w.contacts, w.touches.ccd_blockers, scratch.near_blockers};
   const ContinuousInput input{w.shapes.colliders,
                               w.shapes.proxies,
                               *w.broadphase,
@@ -304,13 +304,14 @@ std::span<const HaltedBody> remove_error(RigidWorld& w, ContinuousScratch& scrat
       stopped[stopped_count++] = {i, kept.fraction, motion.moved, motion.turned};
     const Quat stopped_at = pose_at(sweep_of_body(w.bodies, i), double(kept.fraction)).orientation;
     const Quat end = w.bodies.orientations[i];
-    w.bodies.orientations[i] = kept.turn == Vec3{} ? stopped_at : integrate_rotation(stopped_at, kept.turn);
+    w.bodies.orientations[i] =
+        kept.rotation == Vec3{} ? stopped_at : integrate_rotation(stopped_at, kept.rotation);
     motion.angular_velocity = spin_at(w.bodies.masses[i], w.bodies.flags[i], end, w.bodies.orientations[i],
                                       motion.angular_velocity);
     motion.moved = kept.fraction * motion.moved + kept.slide;
-    motion.turned = kept.fraction * motion.turned + kept.turn;
+    motion.turned = kept.fraction * motion.turned + kept.rotation;
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
-    if (!(kept.blow == Vec3{})) BodyImpulse(w, i, kept).take();
+    if (!(kept.impact_normal == Vec3{})) BodyImpulse(w, i, kept).take();
   }
   return stopped;
 }
@@ -321,7 +322,7 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const SolverKe
                        TaskSystem& tasks) {
   list_fast_bodies(w, scratch, arena, tasks);
   if (!scratch.fast.empty()) {
-    mark_near_blockers(w, scratch.near_stops);
+    mark_near_blockers(w, scratch.near_blockers);
     leave_out_free(w, scratch, arena, tasks);
   }
   if (scratch.fast.empty() && scratch.gates.empty()) return;

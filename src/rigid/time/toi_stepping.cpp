@@ -33,7 +33,7 @@ struct SweptPair {
   // `moved`: on their way; else where they are as the step begins.
   SweptPair(const RigidWorld& w, const Contact& contact, bool moved)
       : sweep_a(sweep_of_body(w.bodies, contact.body_a)), sweep_b(sweep_of_body(w.bodies, contact.body_b)) {
-    if (!moved) sweep_a.moved = sweep_a.turned = sweep_b.moved = sweep_b.turned = {};
+    if (!moved) sweep_a.translation = sweep_a.rotation = sweep_b.translation = sweep_b.rotation = {};
     const ColliderShape &shape_a = w.shapes.colliders[contact.shape_a],
                         &shape_b = w.shapes.colliders[contact.shape_b];
     a = make_swept_shape(shape_a.shape, shape_a.body_from_shape, sweep_a);

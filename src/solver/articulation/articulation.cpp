@@ -352,7 +352,7 @@ void solve_rows(const Articulation& articulation, const ArticulationSolve& s, bo
     const JointRecord& joint = s.records[node.record];
     const JointConstraint& work = s.work[node.work];
     const NodeBodies bodies(node, s.bodies);
-    double* x = &articulation.vector[articulation.plan.columns[articulation.plan.place_of[n]].row];
+    double* x = &articulation.vector[articulation.plan.columns[articulation.plan.index_of[n]].row];
     float speeds[kRowLanes];
     bodies.speeds(node.rows, node.count, speeds);
     for (int i = 0; i < node.count; ++i) {
@@ -368,7 +368,7 @@ void solve_rows(const Articulation& articulation, const ArticulationSolve& s, bo
     const ArticulationNode& node = articulation.nodes[n];
     JointRecord& joint = s.records[node.record];
     NodeBodies bodies(node, s.bodies);
-    const double* x = &articulation.vector[articulation.plan.columns[articulation.plan.place_of[n]].row];
+    const double* x = &articulation.vector[articulation.plan.columns[articulation.plan.index_of[n]].row];
     for (int i = 0; i < node.count; ++i) {
       const float impulse = float(x[i]);
       bodies.direction(node.rows, i, impulse);
@@ -406,7 +406,7 @@ void prepare_articulation(const Articulation& articulation, const ArticulationSo
   raise_inertias(articulation, s);
   for (std::size_t n = 0; n < articulation.nodes.size(); ++n) {
     make_own_block(articulation.nodes[n], articulation, s,
-                   &articulation.values[articulation.plan.columns[articulation.plan.place_of[n]].diagonal]);
+                   &articulation.values[articulation.plan.columns[articulation.plan.index_of[n]].diagonal]);
   }
   for (const ArticulationCoupling& coupling : articulation.couplings) {
     add_coupling(coupling, articulation.nodes[coupling.row], articulation.nodes[coupling.column],

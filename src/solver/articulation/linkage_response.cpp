@@ -78,7 +78,7 @@ double dot_rows(std::span<const double> a, std::span<const double> b) {
 }
 
 std::size_t first_row(const Articulation& articulation, std::size_t node) {
-  return articulation.plan.columns[articulation.plan.place_of[node]].row;
+  return articulation.plan.columns[articulation.plan.index_of[node]].row;
 }
 
 // Six numbers a body.

@@ -194,7 +194,7 @@ struct Shape {
     }
     EXPECT_TRUE(plan_blocks(sizes, edges, 100000, arena, plan));
     for (ArticulationCoupling& c : couplings) {
-      const BlockPlace block = find_block(plan, c.row, c.column);
+      const BlockLocation block = find_block(plan, c.row, c.column);
       if (!block.first_is_row) c = {c.column, c.row, 0, c.body, c.column_has_b, c.row_has_b};
       c.offset = block.offset;
       const bool is_first = std::none_of(lane_couplings.begin(), lane_couplings.end(),
@@ -207,9 +207,9 @@ struct Shape {
       node.a = kMembers[i].a == kNoBody ? kBodies : std::uint32_t(kMembers[i].a);
       node.b = std::uint32_t(kMembers[i].b);
       node.rows = sizes[i];
-      node.row = plan.columns[plan.place_of[i]].row;
-      node.column = plan.place_of[i];
-      node.diagonal = plan.columns[plan.place_of[i]].diagonal;
+      node.row = plan.columns[plan.index_of[i]].row;
+      node.column = plan.index_of[i];
+      node.diagonal = plan.columns[plan.index_of[i]].diagonal;
     }
   }
 };

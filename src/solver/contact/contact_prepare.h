@@ -3,6 +3,7 @@
 // floats at a time, W records side by side (math/wide_vec.h: Rows).
 #pragma once
 
+#include "geometry/manifold/manifold_layout.h"
 #include "solver/contact/contact_kernel.h"
 #include "solver/contact/contact_normal_rows.h"
 
@@ -26,20 +27,9 @@ constexpr float kMaxFriction = 1.0e6f;
 
 // ----------------------------------------------------------------------------------------------- records, side by side
 
-// Where the fours begin in the records, in floats.
-constexpr int kManifoldNormal = 0, kManifoldPoints = 4, kManifoldFriction = 52, kManifoldTwist = 56, kManifoldTotals = 61,
-              kPointA = 0, kPointB = 4, kPointImpulse = 8, kPointFloats = 12, kInertiaMass = 4, kConstraintFriction = 0,
-              kConstraintSize = 4, kConstraintVelocity = 6, kConstraintKinds = 10;
-static_assert(offsetof(Manifold, normal) == 4 * kManifoldNormal && offsetof(Manifold, points) == 4 * kManifoldPoints);
-static_assert(offsetof(Manifold, load_age) == 4 * kManifoldFriction &&
-              offsetof(Manifold, friction_impulse) == 4 * kManifoldFriction + 4);
-static_assert(offsetof(Manifold, twist_impulse) == 4 * kManifoldTwist && offsetof(Manifold, rolling_impulse) == 4 * kManifoldTwist + 4);
-static_assert(offsetof(Manifold, count) == 4 * kManifoldNormal + 12);
-static_assert(offsetof(Manifold, total_friction) == 4 * kManifoldTotals && offsetof(Manifold, sliding) == 4 * kManifoldTotals + 12);
-static_assert(sizeof(ContactPointState) == 4 * kPointFloats && offsetof(ContactPointState, from_b) == 4 * kPointB);
-static_assert(offsetof(ContactPointState, normal_impulse) == 4 * kPointImpulse && offsetof(ContactPointState, separation) == 12);
-static_assert(offsetof(ContactPointState, total_impulse) == 4 * kPointImpulse + 4 &&
-              offsetof(ContactPointState, mean_impulse) == 4 * kPointImpulse + 8);
+// Where the fours begin in the other records, in floats.
+constexpr int kInertiaMass = 4, kConstraintFriction = 0, kConstraintSize = 4, kConstraintVelocity = 6,
+              kConstraintKinds = 10;
 static_assert(offsetof(BodyInertia, inverse_mass) == 4 * kInertiaMass + 8);
 static_assert(offsetof(ContactConstraint, static_friction) == 4 * kConstraintFriction);
 static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize && offsetof(ContactConstraint, push_speed) == 4 * kConstraintSize + 4);

@@ -241,7 +241,7 @@ class Solver {
   const ContactConstraint& constraint(std::uint32_t i) const {
     return solve_.constraints[s_.contacts[i].constraint];
   }
-  const BlockColumn& column(std::uint32_t node) const { return plan_.columns[plan_.place_of[node]]; }
+  const BlockColumn& column(std::uint32_t node) const { return plan_.columns[plan_.index_of[node]]; }
   double* rows_at(std::span<double> x, std::uint32_t node) const { return x.data() + column(node).row; }
 
   // What the contacts must bear: what they do, less the momentum that is left over.

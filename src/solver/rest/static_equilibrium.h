@@ -33,7 +33,7 @@ struct StructureContact {
   std::uint32_t constraint = 0;
   std::uint32_t block = 0, lane = 0;                 // where the kernels hold it
   std::uint32_t node_a = kNoNode, node_b = kNoNode;  // kNoNode: the fixed world
-  BlockPlace coupling;  // the block of the two in the matrix, `a` first; while it is solved
+  BlockLocation coupling;  // the block of the two in the matrix, `a` first; while it is solved
 
   bool is_between() const { return node_a != kNoNode && node_b != kNoNode; }
 };

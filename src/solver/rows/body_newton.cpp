@@ -136,7 +136,7 @@ class BodyNewton {
       for (int k = 0; k < kLuBlock; ++k) lu_.lower[column.diagonal + std::uint32_t(7 * k)] = 1.0;
     }
     std::int32_t last_a = kNoRowBody, last_b = kNoRowBody;
-    BlockPlace between;
+    BlockLocation between;
     for (std::size_t i = 0; i < rows(); ++i) {
       const Row& row = p_.rows[i];
       const double* const gain = &gains_[kSeen * i];
@@ -168,7 +168,7 @@ class BodyNewton {
   }
 
   const BlockColumn& column_of(std::int32_t body) const {
-    return lu_.plan->columns[lu_.plan->place_of[std::size_t(body)]];
+    return lu_.plan->columns[lu_.plan->index_of[std::size_t(body)]];
   }
   // Where the body's part of the step lies; null if no row moves it.
   double* at(std::int32_t body) const { return body == kNoRowBody ? nullptr : &step_[column_of(body).row]; }

@@ -1,17 +1,17 @@
-// Keeping the order of sweep and prune. See broadphase_sweep.h.
-#include "collision/broadphase/broadphase_sweep.h"
+// Maintains the order of sweep and prune. See broadphase_sap.h.
+#include "collision/broadphase/broadphase_sap.h"
 
 #include <limits>
 
 namespace gyre {
 namespace {
 
-// Insertion sort gives up after so many moves an item, for a sort from scratch.
+// After this many moves an item, insertion sort gives way to a full sort.
 constexpr std::size_t kMovesPerItem = 16;
-// The axis is chosen anew after so many times as many changes as there are items.
+// The axis is chosen again after this many changes an item.
 constexpr std::size_t kRoundsPerAxis = 16;
 
-// Ascending as unsigned numbers, as the floats are.
+// The bits of a float as an unsigned number with the same order.
 std::uint32_t bits_in_order(float x) {
   const auto bits = __builtin_bit_cast(std::uint32_t, x + 0.0f);
   return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
@@ -23,8 +23,8 @@ void SortedAxis::clear() {
   for (std::uint8_t& present : present_) present = 0;
   order_.clear();
   blocks_.clear();
-  farthest_.clear();
-  farthest_so_far_.clear();
+  group_high_.clear();
+  running_high_.clear();
   size_ = 0;
   gone_ = 0;
   changes_since_axis_ = 0;
@@ -59,7 +59,7 @@ void SortedAxis::finish_build() {
   improve(0);
 }
 
-// The axis along which the centres vary most.
+// The axis with the largest variance of centres.
 int SortedAxis::best_axis() const {
   DVec3 sum, squares;
   for (const Ordered& each : order_) {
@@ -74,16 +74,16 @@ int SortedAxis::best_axis() const {
   return spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;
 }
 
-// An item that was removed and added again stands in the order twice: one of the two is dropped.
+// An item that was removed and added again appears twice in the order; one entry is dropped.
 void SortedAxis::improve(std::size_t changes) {
   if (gone_ > 0) {
-    std::size_t kept = 0;
+    std::size_t kept_count = 0;
     for (const Ordered& each : order_) {
       if (present_[each.item] != 1) continue;
       present_[each.item] = 2;
-      order_[kept++] = each;
+      order_[kept_count++] = each;
     }
-    order_.resize_uninitialized(kept);
+    order_.resize_uninitialized(kept_count);
     for (const Ordered& each : order_) present_[each.item] = 1;
     gone_ = 0;
   }
@@ -97,16 +97,17 @@ void SortedAxis::improve(std::size_t changes) {
   std::size_t moves = axis_ == before ? kMovesPerItem * order_.size() : 0;
   for (std::size_t i = 1; i < order_.size(); ++i) {
     const Ordered each = order_[i];
-    std::size_t place = i;
-    for (; place > 0 && each.low < order_[place - 1].low; --place) order_[place] = order_[place - 1];
-    order_[place] = each;
-    if (i - place > moves) {
+    std::size_t position = i;
+    for (; position > 0 && each.low < order_[position - 1].low; --position)
+      order_[position] = order_[position - 1];
+    order_[position] = each;
+    if (i - position > moves) {
       sort_all();
       break;
     }
-    moves -= i - place;
+    moves -= i - position;
   }
-  lay_out();
+  write_blocks();
 }
 
 void SortedAxis::sort_all() {
@@ -123,11 +124,11 @@ void SortedAxis::sort_all() {
   for (std::size_t i = 0; i < count; ++i) order_[i] = {boxes_[values_[i]].low[axis_], values_[i]};
 }
 
-// The boxes in their order, and how far groups reach.
-void SortedAxis::lay_out() {
+// Writes the boxes in their order, and the high ends of groups.
+void SortedAxis::write_blocks() {
   const std::size_t blocks = (order_.size() + kWidth - 1) / kWidth;
   blocks_.resize(blocks);
-  farthest_.assign((blocks + kGroup - 1) / kGroup, -std::numeric_limits<float>::infinity());
+  group_high_.assign((blocks + kGroup - 1) / kGroup, -std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < blocks * kWidth; ++i) {
     Block& block = blocks_[i / kWidth];
     const int lane = int(i % kWidth);
@@ -140,12 +141,12 @@ void SortedAxis::lay_out() {
     const Aabb& box = boxes_[item];
     set_lane_box(block, lane, box);
     block.item[lane] = item;
-    float& farthest = farthest_[i / kWidth / kGroup];
-    farthest = max(farthest, box.high[axis_]);
+    float& high = group_high_[i / kWidth / kGroup];
+    high = max(high, box.high[axis_]);
   }
-  farthest_so_far_.assign(farthest_);
-  for (std::size_t i = 1; i < farthest_so_far_.size(); ++i) {
-    farthest_so_far_[i] = max(farthest_so_far_[i], farthest_so_far_[i - 1]);
+  running_high_.assign(group_high_);
+  for (std::size_t i = 1; i < running_high_.size(); ++i) {
+    running_high_[i] = max(running_high_[i], running_high_[i - 1]);
   }
 }
 
@@ -158,8 +159,8 @@ void SortedAxis::trim() {
 }
 
 std::size_t SortedAxis::bytes() const {
-  return boxes_.bytes() + present_.bytes() + order_.bytes() + blocks_.bytes() + farthest_.bytes() +
-         farthest_so_far_.bytes() + keys_.bytes() + keys_scratch_.bytes() + values_.bytes() +
+  return boxes_.bytes() + present_.bytes() + order_.bytes() + blocks_.bytes() + group_high_.bytes() +
+         running_high_.bytes() + keys_.bytes() + keys_scratch_.bytes() + values_.bytes() +
          values_scratch_.bytes();
 }
 
@@ -170,46 +171,46 @@ const char* SortedAxis::find_fault() const {
   if (present != size_) return "an item is there twice";
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const std::uint32_t item = item_at(i);
-    if (item != order_[i].item || present_[item] != 1) return "the order holds what is gone";
+    if (item != order_[i].item || present_[item] != 1) return "the order contains a removed item";
     if (!(lane_box(blocks_[i / kWidth], int(i % kWidth)) == boxes_[item]))
       return "the order knows an item by another box";
-    if (i > 0 && order_[i].low < order_[i - 1].low) return "the order is none";
-    if (farthest_[i / kWidth / kGroup] < boxes_[item].high[axis_])
+    if (i > 0 && order_[i].low < order_[i - 1].low) return "the order is not sorted";
+    if (group_high_[i / kWidth / kGroup] < boxes_[item].high[axis_])
       return "an item reaches farther than its group";
   }
   return nullptr;
 }
 
-void BroadphaseSweep::find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved,
-                                 PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) {
+void BroadphaseSap::find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved,
+                               PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) {
   const SortedAxis& order = indices_[kMoving];
   const SortedAxis& fixed = indices_[kFixed];
-  // A sweep looks at all that can move, whether it did or not.
-  bool sweeps = moved.size() > order.size() / 2;
+  // The sweep visits all moving proxies, so it pays only if most have moved.
+  bool uses_sweep = moved.size() > order.size() / 2;
   moved_fixed_.clear();
   for (const std::uint32_t index : moved) {
-    if (homes_[index] == kUnboundedList) sweeps = false;
+    if (homes_[index] == kUnboundedList) uses_sweep = false;
     if (homes_[index] == kFixed) moved_fixed_.push_back(index);
   }
-  if (!sweeps) {
+  if (!uses_sweep) {
     BroadphaseBase::find_pairs(proxies, moved, filter, tasks, pairs);
     return;
   }
   const auto is_moved = [&](std::uint32_t index) { return collector_.is_moved(index); };
   const int count = int(order.size() + moved_fixed_.size());
   collector_.collect_from(proxies, moved, count, filter, tasks, pairs, [&](int i, const auto& emit) {
-    const auto place = std::size_t(i);
-    if (place >= order.size()) {
-      const std::uint32_t self = moved_fixed_[place - order.size()];
+    const auto position = std::size_t(i);
+    if (position >= order.size()) {
+      const std::uint32_t self = moved_fixed_[position - order.size()];
       order.for_each_overlap(proxies[self].fat_box, [&](std::uint32_t other) {
         if (!is_moved(other)) emit(self, other);
       });
       for (const std::uint32_t other : unbounded_) emit(self, other);
       return;
     }
-    const std::uint32_t self = order.item_at(place);
+    const std::uint32_t self = order.item_at(position);
     const bool self_moved = is_moved(self);
-    order.for_each_behind(place, proxies[self].fat_box, [&](std::uint32_t other) {
+    order.for_each_behind(position, proxies[self].fat_box, [&](std::uint32_t other) {
       if (self_moved || is_moved(other)) emit(self, other);
     });
     if (!self_moved) return;
