@@ -247,7 +247,7 @@ Error ServedRecording::open() {
 
 Result<std::string> ServedRecording::scene() {
   const std::lock_guard lock(mutex_);
-  if (Error why = open(); why.code != ErrorCode::none) return why;
+  if (Error why = open()) return why;
   Answer answer;
   JsonWriter& json = answer.json;
   json.begin_object();
@@ -272,7 +272,7 @@ Result<std::string> ServedRecording::scene() {
 Result<std::string> ServedRecording::frames(std::size_t group) {
   const std::lock_guard lock(mutex_);
   if (!track_) {
-    if (Error why = open(); why.code != ErrorCode::none) return why;
+    if (Error why = open()) return why;
   }
   const std::size_t begin = group * frames_in_group_;
   const std::size_t end = std::min(begin + frames_in_group_, track_->frame_count());
@@ -283,14 +283,14 @@ Result<std::string> ServedRecording::frames(std::size_t group) {
   answer.json.begin_object();
   answer.json.key("frames").begin_array();
   for (std::size_t i = begin; i < end; ++i) {
-    if (Error why = track_->seek(i); why.code != ErrorCode::none) return why;
+    if (Error why = track_->seek(i)) return why;
     if (known.insert(track_->frame().set_version).second) sets.push_back(i);
     place(answer, track_->frame(), origin_);
   }
   answer.json.end_array();
   answer.json.key("sets").begin_object();
   for (const std::size_t i : sets) {
-    if (Error why = track_->seek(i); why.code != ErrorCode::none) return why;
+    if (Error why = track_->seek(i)) return why;
     answer.json.key(std::to_string(track_->frame().set_version));
     describe_set(answer.json, *track_, track_->frame());
   }
