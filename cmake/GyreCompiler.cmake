@@ -2,6 +2,7 @@
 #
 #   gyre_target_defaults(target)  language level, warnings, floating point: everything of ours
 #   gyre_core_flags(target)       the core library alone: no exceptions, no RTTI
+#   gyre_quick_to_compile(target)  for programs whose time passes in the libraries
 #   gyre_kernel_flags()           per-file instruction sets of the SIMD kernels
 #   gyre_unity_rooms(target sources)  what CMAKE_UNITY_BUILD compiles at once
 #   gyre_room_of(source result)  the room of a source, as one word
@@ -105,6 +106,13 @@ function(gyre_core_flags target)
   endif()
 endfunction()
 
+# Optimised only as far as it is cheap. Results are the same bits at any level.
+function(gyre_quick_to_compile target)
+  if(gyre_gnu_like)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+endfunction()
+
 # Kernel files are named <unit>_kernels_<target>.cpp. The caller passes all sources; those for another processor are
 # removed, and the rest get their instruction set. Never -mfma: contraction stays off, and so do the fused operations.
 # -Wno-psabi silences GCC's note about passing wide vectors, which never cross a library boundary here.
@@ -168,9 +176,11 @@ endfunction()
 
 # With CMAKE_UNITY_BUILD a room (a folder without its sub-folders) is one unit: its headers, most of the work, are read once. So names
 # without linkage are unique within their room. Kernels stay apart, each with its flags.
+#
+# IN_RELEASE asks for it in every release build: for programs of ours, whose files nobody else compiles.
 function(gyre_unity_rooms target sources)
   set(unity OFF)
-  if(CMAKE_UNITY_BUILD)
+  if(CMAKE_UNITY_BUILD OR ("IN_RELEASE" IN_LIST ARGN AND CMAKE_BUILD_TYPE STREQUAL "Release"))
     set(unity ON)
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${unity} UNITY_BUILD_MODE GROUP)

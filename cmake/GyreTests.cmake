@@ -15,6 +15,13 @@ set(GYRE_LONG_TEST_TIMEOUT 1800 CACHE STRING "Seconds that a long test may take"
 function(gyre_add_gtest name)
   add_executable(${name} ${ARGN})
   gyre_target_defaults(${name})
+  gyre_quick_to_compile(${name})
+  foreach(source IN LISTS ARGN)
+    # Kernels must be inlined; and a test of the compiler's rounding wants the optimiser that the library gets.
+    if(gyre_gnu_like AND source MATCHES "(_kernels_[a-z0-9]+|/math/.*_test)\\.cpp$")
+      set_property(SOURCE ${source} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
+    endif()
+  endforeach()
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE
     GYRE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

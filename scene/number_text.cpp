@@ -91,6 +91,12 @@ void append_rounded(std::string& out, double value, int digits) {
   append_with_point(out, {text, std::size_t(size)});
 }
 
+std::string rounded(double value, int digits) {
+  std::string out;
+  append_rounded(out, value, digits);
+  return out;
+}
+
 bool parse_number(std::string_view token, double& out) {
   constexpr std::size_t kLongest = 400;  // more digits than any double has
   if (token.size() > kLongest || !is_decimal(token)) return false;

@@ -12,6 +12,7 @@ void append_number(std::string& out, float value);
 
 // With `digits` significant digits; NaN and infinity as "nan", "inf" and "-inf".
 void append_rounded(std::string& out, double value, int digits);
+std::string rounded(double value, int digits = 6);
 
 // A whole token as a decimal number ("-1.5e3"). False if it is anything else or does not fit a double.
 bool parse_number(std::string_view token, double& out);

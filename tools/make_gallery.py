@@ -83,7 +83,7 @@ def draw(gyre, name, out, options):
 def page_text():
     parts = ["# Gallery", "",
              "`gyre render` draws every scene in [scenes/](../scenes) without a graphics card. `tools/make_gallery.py` makes this page.",
-             "The command that draws a picture is below it. `./run view SCENE` shows a scene from all sides."]
+             "The command that draws a picture is below it. `./run SCENE --live` shows a scene from all sides."]
     for name in scene_names():
         words, picture, options = picture_of(name)
         title = json.loads((SCENES / f"{name}.gyre.json").read_text(encoding="utf-8"))["name"]

@@ -86,9 +86,9 @@ build() {
   cmake --build "build/$preset" --parallel "$gyre_cores" ${1+--target "$@"} >&2
 }
 
-gyre_build_packages=(
-  g++ cmake ninja-build pkg-config ccache nlohmann-json3-dev libcli11-dev zlib1g-dev libgtest-dev libbenchmark-dev
-)
+# For the gyre program, and for everything else.
+gyre_run_packages=(g++ cmake ninja-build pkg-config nlohmann-json3-dev libcli11-dev)
+gyre_build_packages=("${gyre_run_packages[@]}" ccache zlib1g-dev libgtest-dev libbenchmark-dev)
 
 # For gyre render, which is left out where they are missing: the libraries it is built with, and OpenGL without a graphics card.
 gyre_render_packages=(libepoxy-dev libegl-dev libpng-dev libgif-dev libegl1 libgl1 libgl1-mesa-dri)

@@ -32,12 +32,6 @@ int fail(const std::string& message, int code = kExitInvalid) {
   return code;
 }
 
-std::string number(double value) {
-  std::string out;
-  append_rounded(out, value, 6);
-  return out;
-}
-
 // Wavefront OBJ, one object for each hull.
 std::string to_obj(const Decomposition& made) {
   std::string out = "# " + std::to_string(made.hulls.size()) + " convex hulls\n";
@@ -77,18 +71,18 @@ struct Run {
 void print_text(const Run& run) {
   const DecompositionReport& r = run.made.report;
   const auto share = [&](float length) {
-    return number(double(length)) + " m (" + number(double(length) / double(r.size)) + " of the size)";
+    return rounded(double(length)) + " m (" + rounded(double(length) / double(r.size)) + " of the size)";
   };
   std::string out = std::to_string(run.made.hulls.size()) + " hulls, " + std::to_string(run.hull_vertices()) +
                     " vertices, of " + std::to_string(run.triangles) + " triangles, in " +
-                    number(run.seconds) + " s" + (run.cached ? " from the cache\n" : "\n");
-  out += "size       " + number(double(r.size)) + " m, diameter of the smallest sphere around\n";
-  out += "overhang   " + share(r.overhang) + ", at most " + number(double(r.overhang_bound)) +
+                    rounded(run.seconds) + " s" + (run.cached ? " from the cache\n" : "\n");
+  out += "size       " + rounded(double(r.size)) + " m, diameter of the smallest sphere around\n";
+  out += "overhang   " + share(r.overhang) + ", at most " + rounded(double(r.overhang_bound)) +
          " m: hull beyond the solid\n";
   out += "depth      " + share(r.depth) + ": surface below a hull\n";
   out += "uncovered  " + share(r.uncovered) + ": surface outside of all hulls\n";
-  out += "volume     " + number(r.solid_volume) + " m^3 of the solid, " + number(r.hull_volume) +
-         " m^3 of the hulls: " + number(r.excess_volume) + " m^3 too much, " + number(r.missing_volume) +
+  out += "volume     " + rounded(r.solid_volume) + " m^3 of the solid, " + rounded(r.hull_volume) +
+         " m^3 of the hulls: " + rounded(r.excess_volume) + " m^3 too much, " + rounded(r.missing_volume) +
          " m^3 missing\n";
   const std::string findings = describe_findings(r);
   if (!findings.empty()) out += "note       " + findings + "\n";

@@ -50,14 +50,9 @@ Counts count(const Scene& scene) {
   return out;
 }
 
-std::string number(double value) {
-  std::string out;
-  append_rounded(out, value, 6);
-  return out;
-}
 template <class V>
 std::string vector(const V& v) {
-  return "(" + number(double(v[0])) + ", " + number(double(v[1])) + ", " + number(double(v[2])) + ")";
+  return "(" + rounded(double(v[0])) + ", " + rounded(double(v[1])) + ", " + rounded(double(v[2])) + ")";
 }
 
 // "12: 3 box, 9 sphere".
@@ -80,7 +75,7 @@ void print_text(const SceneRunner& runner) {
   out += "bodies  " + listed(counts.bodies, kBodyWords) + "\n";
   out += "shapes  " + listed(counts.shapes, kShapeWords) + "\n";
   out += "joints  " + listed(counts.joints, kJointWords) + "\n";
-  out += "step    " + number(scene.world.time_step) + " s in " + std::to_string(scene.world.substeps) +
+  out += "step    " + rounded(scene.world.time_step) + " s in " + std::to_string(scene.world.substeps) +
          " sub-steps, gravity " + vector(scene.world.gravity) + " m/s^2\n";
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const SceneBody& body = scene.bodies[i];
@@ -90,13 +85,13 @@ void print_text(const SceneRunner& runner) {
     const MassProperties mass = plain(runner.world().mass_properties(runner.bodies()[i]));
     const PrincipalAxes principal = principal_axes(mass.inertia);
     const Mat3 axes = to_matrix(principal.orientation);
-    out += "  mass             " + number(double(mass.mass)) + " kg\n";
+    out += "  mass             " + rounded(double(mass.mass)) + " kg\n";
     out += "  centre of mass   " + vector(mass.center) + " m in the body, " +
            vector(runner.world().center_of_mass(runner.bodies()[i])) + " m in the world\n";
-    out += "  inertia          xx " + number(double(mass.inertia.xx)) + ", yy " +
-           number(double(mass.inertia.yy)) + ", zz " + number(double(mass.inertia.zz)) + ", xy " +
-           number(double(mass.inertia.xy)) + ", xz " + number(double(mass.inertia.xz)) + ", yz " +
-           number(double(mass.inertia.yz)) + " kg m^2\n";
+    out += "  inertia          xx " + rounded(double(mass.inertia.xx)) + ", yy " +
+           rounded(double(mass.inertia.yy)) + ", zz " + rounded(double(mass.inertia.zz)) + ", xy " +
+           rounded(double(mass.inertia.xy)) + ", xz " + rounded(double(mass.inertia.xz)) + ", yz " +
+           rounded(double(mass.inertia.yz)) + " kg m^2\n";
     out += "  principal        " + vector(principal.moments) + " kg m^2 about " + vector(axes.x) + ", " +
            vector(axes.y) + ", " + vector(axes.z) + "\n";
   }

@@ -222,12 +222,12 @@ int Simulation::run() {
 
 // With hulls for concave meshes, which take seconds when they are new.
 SceneResult<Scene> load_decomposed(const SimulateOptions& options) {
-  constexpr std::uint64_t kTicks = 1000;
-  Progress progress(!options.quiet, kTicks, "permille of a mesh");
+  constexpr std::uint64_t ticks = 1000;
+  Progress progress(!options.quiet, ticks, "permille of a mesh");
   SplitOptions split;
   split.threads = options.threads;
   split.progress = [](void* user, float done) {
-    static_cast<Progress*>(user)->show(std::uint64_t(done * float(kTicks)));
+    static_cast<Progress*>(user)->show(std::uint64_t(done * float(ticks)));
     return !interrupted();
   };
   split.user = &progress;

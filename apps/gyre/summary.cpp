@@ -26,12 +26,6 @@ WallTimes wall_times(std::vector<float> times) {
           double(times.back())};
 }
 
-std::string rounded(double value, int digits = 4) {
-  std::string out;
-  append_rounded(out, value, digits);
-  return out;
-}
-
 std::string counted(long long count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
@@ -52,7 +46,7 @@ std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
   std::string out;
   if (!runner.scene().name.empty()) out += runner.scene().name + ": ";
   out += counted(counts.bodies, "body", "bodies") + ", " + counted(counts.joints, "joint", "joints") + "\n";
-  out += counted(static_cast<long long>(runner.steps()), "step", "steps") + ", " + rounded(runner.time()) +
+  out += counted(static_cast<long long>(runner.steps()), "step", "steps") + ", " + rounded(runner.time(), 4) +
          " s simulated in " + rounded(figures.wall_seconds, 3) + " s";
   if (figures.wall_seconds > 0 && runner.steps() > 0) {
     out += " (" + rounded(runner.time() / figures.wall_seconds, 3) + " times real time)";
@@ -65,9 +59,9 @@ std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
   out += "end: " + counted(counts.awake_bodies, "body", "bodies") + " awake, " +
          counted(counts.contact_points, "contact point", "contact points") + ", deepest overlap " +
          rounded(1.0e3 * double(world.max_penetration()), 3) + " mm\n";
-  out += "energy: " + rounded(energy.kinetic + energy.potential + energy.elastic) + " J (kinetic " +
-         rounded(energy.kinetic) + ", potential " + rounded(energy.potential) + ", elastic " +
-         rounded(energy.elastic) + ")\n";
+  out += "energy: " + rounded(energy.kinetic + energy.potential + energy.elastic, 4) + " J (kinetic " +
+         rounded(energy.kinetic, 4) + ", potential " + rounded(energy.potential, 4) + ", elastic " +
+         rounded(energy.elastic, 4) + ")\n";
   return out;
 }
 

@@ -1,7 +1,10 @@
 // gyre view as a browser and as somebody with bad intentions see it: requests byte by byte.
 #include "run_program.h"
 
+#include <gyre/track.h>
+
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -296,6 +299,118 @@ TEST_F(View, ServesRecordingsAndSaysWhatIsWrongWithThem) {
   EXPECT_EQ(refused.code, 3);
   EXPECT_EQ(refused.out, "");
   EXPECT_NE(refused.err.find("empty.gyrec: recording: "), std::string::npos) << refused.err;
+}
+
+// What a page without the engine asks for: a JSON text behind its length, and arrays behind that.
+struct Poses {
+  explicit Poses(const std::string& answer) {
+    const std::string body = body_of(answer);
+    std::uint32_t length = 0;
+    if (status_of(answer) != 200 || body.size() < sizeof length) return;
+    std::memcpy(&length, body.data(), sizeof length);
+    if (body.size() < sizeof length + length) return;
+    text = nlohmann::json::parse(body.substr(sizeof length, length), nullptr, false);
+    bytes = body.substr(sizeof length + length);
+  }
+  template <typename T>
+  std::vector<T> array(const nlohmann::json& place) const {
+    std::vector<T> out(place.at(1).get<std::size_t>());
+    const std::size_t begin = place.at(0);
+    if (begin + out.size() * sizeof(T) > bytes.size()) return {};
+    std::memcpy(out.data(), bytes.data() + begin, out.size() * sizeof(T));
+    return out;
+  }
+  nlohmann::json text;
+  std::string bytes;
+};
+
+TEST_F(View, DecodesARecordingForAPageWithoutTheEngine) {
+  const std::vector<std::string> record = {"simulate", "s.gyre.json", "--steps",
+                                           "150",      "--quiet",     "--record"};
+  const auto recorded = [&](const std::string& name, const std::string& as) {
+    std::vector<std::string> arguments = record;
+    arguments.insert(arguments.end(), {name, "--record-as", as});
+    ASSERT_EQ(run_program(arguments, folder_).code, 0);
+  };
+  recorded("run.gyrec", "all");
+  recorded("commands.gyrec", "commands");
+  const std::string stored = file_text(folder_ / "run.gyrec");
+  const auto* const begin = reinterpret_cast<const std::byte*>(stored.data());
+  Result<PoseTrack> track = PoseTrack::open({begin, begin + stored.size()});
+  ASSERT_TRUE(track);
+  for (const char* file : {"run.gyrec", "commands.gyrec"}) {
+    RunningView view(arguments({file}), folder_);
+    const std::string path = std::string("/files/") + file;
+    const std::string answer = view.get(path + "?scene");
+    EXPECT_TRUE(has_header(answer, "Content-Type: application/vnd.gyre.poses")) << answer.substr(0, 400);
+    const Poses scene(answer);
+    ASSERT_EQ(scene.text.value("frames", 0), 151);
+    ASSERT_EQ(scene.text["models"].size(), 2u);
+    EXPECT_EQ(scene.text["models"][0]["type"], "fixed");
+    EXPECT_EQ(scene.text["models"][1]["shapes"][0]["geometry"]["halfExtents"],
+              nlohmann::json({0.5, 0.5, 0.5}));
+    ASSERT_EQ(scene.text["surfaces"].size(), 1u);
+    const nlohmann::json& tile = scene.text["surfaces"][0];
+    EXPECT_EQ(tile["key"], scene.text["models"][0]["shapes"][0]["geometry"]["surface"]);
+    EXPECT_EQ(scene.array<float>(tile["vertices"]).size(), 12u);
+    EXPECT_EQ(scene.array<std::uint32_t>(tile["indices"]).size(), 6u);
+
+    // Group by group, all that the track holds.
+    const int group = scene.text["group"];
+    ASSERT_GT(group, 0);
+    for (int first = 0; first < 151; first += group) {
+      const Poses poses(view.get(path + "?frames=" + std::to_string(first / group)));
+      ASSERT_EQ(poses.text["frames"].size(), std::size_t(std::min(group, 151 - first)));
+      for (std::size_t i = 0; i < poses.text["frames"].size(); ++i) {
+        const nlohmann::json& frame = poses.text["frames"][i];
+        ASSERT_EQ(track->seek(std::size_t(first) + i).code, ErrorCode::none);
+        const TrackFrame expected = track->frame();
+        EXPECT_EQ(frame["step"], expected.step);
+        EXPECT_EQ(frame["time"], expected.time);
+        const std::vector<float> numbers = poses.array<float>(frame["poses"]);
+        const std::vector<std::uint8_t> awake = poses.array<std::uint8_t>(frame["awake"]);
+        ASSERT_EQ(numbers.size(), 14u);
+        ASSERT_EQ(awake.size(), 2u);
+        const Pose& box = expected.poses[1];
+        EXPECT_EQ(numbers[8], float(box.position.y));
+        EXPECT_EQ(numbers[13], box.orientation.w);
+        EXPECT_EQ(awake[1], expected.awake[1]);
+        const nlohmann::json& set = poses.text["sets"][std::to_string(frame["set"].get<int>())];
+        EXPECT_EQ(set["ids"].size(), 2u);
+        // Commands alone hold no names.
+        EXPECT_EQ(set["names"], std::strcmp(file, "run.gyrec") == 0 ? nlohmann::json({"ground", "box"})
+                                                                    : nlohmann::json({"", ""}));
+        EXPECT_EQ(set["models"], nlohmann::json({0, 1}));
+      }
+    }
+    for (const char* wrong :
+         {"?frames=99", "?frames=-1", "?frames=", "?frames=0x0", "?frames=99999999999999999999"})
+      EXPECT_EQ(status_of(view.get(path + wrong)), 404) << wrong;
+    EXPECT_EQ(body_of(view.get(path)),
+              file_text(folder_ / file));  // and the file itself, for a page with the engine
+  }
+  // Damaged while it is served: words, and no crash.
+  RunningView view(arguments({"run.gyrec"}), folder_);
+  write("run.gyrec", stored.substr(0, 40));
+  const std::string broken = view.get("/files/run.gyrec?scene");
+  EXPECT_EQ(status_of(broken), 500);
+  EXPECT_NE(body_of(broken).find("recording: "), std::string::npos) << broken;
+  EXPECT_EQ(view.finish(), 0);
+}
+
+TEST_F(View, SaysThatAViewerWithoutTheEngineRunsNoScenes) {
+  ASSERT_EQ(
+      run_program({"simulate", "s.gyre.json", "--steps", "3", "--record", "r.gyrec", "--quiet"}, folder_)
+          .code,
+      0);
+  write("site/without_engine.txt", "");
+  const auto words = [&](const char* file) {
+    RunningView view(arguments({file}), folder_);
+    view.finish();
+    return file_text(folder_ / "view.err");
+  };
+  EXPECT_NE(words("s.gyre.json").find("./run --live"), std::string::npos);
+  EXPECT_EQ(words("r.gyrec").find("./run --live"), std::string::npos);
 }
 
 TEST_F(View, RefusesWhatCannotBeShown) {

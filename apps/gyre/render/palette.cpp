@@ -15,7 +15,7 @@ constexpr int kPatternReach = 3;  // of 255: about half of what neighbouring col
 using Cells = std::vector<ColorCount::Cell>;
 
 // A run of cells, what their colours are on average, and how far they are off.
-struct Box {
+struct ColorBox {
   std::size_t begin = 0, end = 0;
   int axis = 0;
   double error = 0;
@@ -44,9 +44,9 @@ Moments moments_of(const Cells& cells, std::size_t begin, std::size_t end) {
   return out;
 }
 
-Box make_box(const Cells& cells, std::size_t begin, std::size_t end) {
+ColorBox make_box(const Cells& cells, std::size_t begin, std::size_t end) {
   const Moments moments = moments_of(cells, begin, end);
-  Box box{begin, end, 0, moments.error()};
+  ColorBox box{begin, end, 0, moments.error()};
   for (std::size_t k = 1; k < 3; ++k) {
     if (moments.error(k) > moments.error(std::size_t(box.axis))) box.axis = int(k);
   }
@@ -54,7 +54,7 @@ Box make_box(const Cells& cells, std::size_t begin, std::size_t end) {
 }
 
 // Where to cut a sorted run so that both parts together err least.
-std::size_t best_cut(const Cells& cells, const Box& box) {
+std::size_t best_cut(const Cells& cells, const ColorBox& box) {
   const Moments all = moments_of(cells, box.begin, box.end);
   Moments low;
   std::size_t best = box.begin + 1;
@@ -141,10 +141,10 @@ Cells ColorCount::cells() const {
 std::vector<Rgb> make_palette(const ColorCount& counted, std::size_t most) {
   Cells cells = counted.cells();
   if (cells.empty()) return {{0, 0, 0}};
-  std::vector<Box> boxes{make_box(cells, 0, cells.size())};
+  std::vector<ColorBox> boxes{make_box(cells, 0, cells.size())};
   while (boxes.size() < most) {
-    const auto worst = std::max_element(boxes.begin(), boxes.end(),
-                                        [](const Box& a, const Box& b) { return a.error < b.error; });
+    const auto worst = std::max_element(
+        boxes.begin(), boxes.end(), [](const ColorBox& a, const ColorBox& b) { return a.error < b.error; });
     if (worst->end - worst->begin < 2 || !(worst->error > 0)) break;
     const auto axis = std::size_t(worst->axis);
     std::stable_sort(cells.begin() + std::ptrdiff_t(worst->begin), cells.begin() + std::ptrdiff_t(worst->end),
@@ -155,7 +155,7 @@ std::vector<Rgb> make_palette(const ColorCount& counted, std::size_t most) {
     boxes.push_back(make_box(cells, cut, end));
   }
   std::vector<std::array<double, 3>> colors;
-  for (const Box& box : boxes) {
+  for (const ColorBox& box : boxes) {
     const Moments moments = moments_of(cells, box.begin, box.end);
     colors.push_back(
         {moments.sum[0] / moments.count, moments.sum[1] / moments.count, moments.sum[2] / moments.count});

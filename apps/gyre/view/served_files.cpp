@@ -28,6 +28,16 @@ void ServedFiles::add_folder(const std::string& prefix, const std::string& folde
 
 void ServedFiles::add_file(const std::string& path, const std::string& file) { files_[path] = file; }
 
+void ServedFiles::add_recording(const std::string& path, const std::string& file) {
+  add_file(path, file);
+  recordings_[path] = std::make_unique<ServedRecording>(file);
+}
+
+ServedRecording* ServedFiles::find_recording(const std::string& path) const {
+  const auto found = recordings_.find(path);
+  return found == recordings_.end() ? nullptr : found->second.get();
+}
+
 const std::string* ServedFiles::find(const std::string& path) const {
   const auto found = files_.find(path);
   return found == files_.end() ? nullptr : &found->second;

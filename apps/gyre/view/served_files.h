@@ -2,7 +2,10 @@
 // it is, so no path that a request could think of leads anywhere else.
 #pragma once
 
+#include "view/served_recording.h"
+
 #include <map>
+#include <memory>
 #include <string>
 
 namespace gyre {
@@ -14,11 +17,17 @@ class ServedFiles {
   // One file.
   void add_file(const std::string& path, const std::string& file);
 
+  // One recording, which can also be asked for its poses.
+  void add_recording(const std::string& path, const std::string& file);
+
   // Where the file lies; null if the path is not one of those.
   const std::string* find(const std::string& path) const;
+  // Null if the path is not one of a recording.
+  ServedRecording* find_recording(const std::string& path) const;
 
  private:
   std::map<std::string, std::string> files_;
+  std::map<std::string, std::unique_ptr<ServedRecording>> recordings_;
 };
 
 // By the name's end; application/octet-stream if it says nothing.

@@ -25,7 +25,12 @@ namespace fs = std::filesystem;
 
 constexpr int kUsualPort = 8642;
 constexpr const char* kBuilder = "tools/build_viewer.sh";
-constexpr const char* kBuilderNeeds = " (it needs Node.js 20.19 or newer, npm and emscripten)";
+constexpr const char* kBuilderNeeds =
+    " (it needs Node.js 20.19 or newer, npm and emscripten; with the word recordings behind it no "
+    "emscripten, "
+    "for a page that plays recordings only)";
+// In the folder of a viewer that was built so (web/viewer/vite.config.ts).
+constexpr const char* kWithoutEngine = "/without_engine.txt";
 
 void say(const std::string& message) { std::fprintf(stderr, "gyre: %s\n", message.c_str()); }
 
@@ -45,8 +50,9 @@ fs::path program_folder() {
 fs::path find_viewer() {
   if (const char* const given = std::getenv("GYRE_VIEWER"); given != nullptr && *given != 0) return given;
   const fs::path here = program_folder();
-  // Installed: bin/gyre and share/gyre/viewer. Built: build/release/bin/gyre and web/viewer/dist.
-  for (const fs::path& folder : {here / "../share/gyre/viewer", here / "../../../web/viewer/dist"}) {
+  // Installed: bin/gyre and share/gyre/viewer. Built: build/release/bin/gyre and web/viewer/dist; without the engine dist-recordings.
+  for (const fs::path& folder : {here / "../share/gyre/viewer", here / "../../../web/viewer/dist",
+                                 here / "../../../web/viewer/dist-recordings"}) {
     if (!here.empty() && is_viewer(folder)) return folder;
   }
   return {};
@@ -104,16 +110,17 @@ bool add_shown(const std::string& path, const std::string& name, ServedFiles& fi
   }
   if (begins_like_a_recording(path)) {
     if (!check_recording(path)) return false;
-  } else {
-    const SceneResult<Scene> scene = load_scene(path);
-    if (!scene) {
-      say(scene.error().text());
-      return false;
-    }
-    for (const SceneMesh& mesh : scene->meshes) {
-      if (mesh.file.empty()) continue;
-      files.add_file("/files/" + mesh.file, (fs::path(path).parent_path() / mesh.file).string());
-    }
+    files.add_recording("/files/" + name, path);
+    return true;
+  }
+  const SceneResult<Scene> scene = load_scene(path);
+  if (!scene) {
+    say(scene.error().text());
+    return false;
+  }
+  for (const SceneMesh& mesh : scene->meshes) {
+    if (mesh.file.empty()) continue;
+    files.add_file("/files/" + mesh.file, (fs::path(path).parent_path() / mesh.file).string());
   }
   files.add_file("/files/" + name, path);
   return true;
@@ -144,8 +151,8 @@ int view(const ViewOptions& options) {
   }
   if (!viewer.empty()) files.add_folder("/", viewer.string());
   std::string query, shown_path;
+  const std::string name = fs::path(options.file).filename().string();
   if (!options.file.empty()) {
-    const std::string name = fs::path(options.file).filename().string();
     if (!add_shown(options.file, name, files)) return kExitInvalid;
     shown_path = "/files/" + percent_encoded(name);
     query = "?file=" + shown_path;
@@ -154,6 +161,10 @@ int view(const ViewOptions& options) {
   if (!has_viewer)
     say(std::string("the viewer is not built, so there is little to see; this builds it: ") + kBuilder +
         kBuilderNeeds);
+  if (files.find(kWithoutEngine) != nullptr && files.find_recording("/files/" + name) == nullptr)
+    say("this viewer was built without the engine: it plays recordings and runs no scenes; in the source "
+        "tree "
+        "./run --live builds it with the engine");
 
   ViewServer server(std::move(files), page_without_viewer(shown_path));
   const int port = bind(server, options);

@@ -4,6 +4,7 @@
 #include <httplib.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -33,6 +34,22 @@ const httplib::Headers kHeaders = {
 void give_text(httplib::Response& response, int status, const std::string& text) {
   response.status = status;
   response.set_content(text, "text/plain; charset=utf-8");
+}
+
+// With ?scene or ?frames=N (served_recording.h).
+void give_poses(httplib::Response& response, const httplib::Request& request, ServedRecording& recording) {
+  const std::string group = request.get_param_value("frames");
+  const bool numbers =
+      !group.empty() && group.size() < 10 && group.find_first_not_of("0123456789") == std::string::npos;
+  if (request.has_param("frames") && !numbers) return give_text(response, 404, "There are no such frames.\n");
+  const Result<std::string> answer =
+      numbers ? recording.frames(std::size_t(std::atoll(group.c_str()))) : recording.scene();
+  if (!answer) {
+    const bool unknown = answer.error().code == ErrorCode::invalid_argument;
+    return give_text(response, unknown ? 404 : 500, std::string(answer.error().message) + "\n");
+  }
+  response.status = 200;
+  response.set_content(*answer, "application/vnd.gyre.poses");
 }
 
 // Piece by piece, so that a large recording needs no memory. The length is that of the moment. The status is left to the library,
@@ -87,6 +104,11 @@ struct ViewServer::Inside {
     if (request.method != "GET" && request.method != "HEAD") {
       response.set_header("Allow", "GET, HEAD");
       return give_text(response, 405, "Only reading is possible here.\n");
+    }
+    if (request.has_param("scene") || request.has_param("frames")) {
+      if (ServedRecording* const recording = files.find_recording(request.path)) {
+        return give_poses(response, request, *recording);
+      }
     }
     if (const std::string* const file = files.find(request.path == "/" ? "/index.html" : request.path)) {
       return give_file(response, *file);

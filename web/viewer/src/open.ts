@@ -48,6 +48,7 @@ export async function openFile(viewer: Viewer, file: File): Promise<boolean> {
 }
 
 export async function loadSceneList(): Promise<void> {
+  if (!store.hasEngine) return;
   try {
     const response = await fetch('./scenes/index.json');
     if (response.ok) store.sceneList.value = ((await response.json()) as { scenes: SceneEntry[] }).scenes;

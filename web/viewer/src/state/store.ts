@@ -3,6 +3,9 @@
 import { signal } from '@preact/signals';
 import type { BodyReport, SceneDescription, Stats } from '../protocol';
 
+// Whether the page can run scenes; one without the engine plays recordings (vite.config.ts).
+export const hasEngine: boolean = import.meta.env.MODE !== 'recordings';
+
 export type Panel = 'inspect' | 'overlays' | 'world' | 'charts';
 
 export interface SceneEntry {

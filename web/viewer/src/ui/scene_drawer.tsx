@@ -8,6 +8,10 @@ import * as store from '../state/store';
 import type { Viewer } from '../viewer';
 import { IconButton } from './parts';
 
+const WITHOUT_SCENES = store.hasEngine
+  ? 'No list of scenes lies beside this page. Open a file instead.'
+  : 'This page was built without the engine: it plays recordings. In the source tree, ./run SCENE records a scene and shows it; ./run --live builds the page with the engine.';
+
 export function SceneDrawer({ viewer }: { viewer: Viewer }): JSX.Element | null {
   const input = useRef<HTMLInputElement>(null);
   if (!store.scenesOpen.value) return null;
@@ -19,9 +23,11 @@ export function SceneDrawer({ viewer }: { viewer: Viewer }): JSX.Element | null 
       <div class="panel-head">
         <h2>Scenes</h2>
         <div class="head-actions">
-          <button type="button" class="quiet" onClick={() => input.current?.click()}>
-            <FolderOpen size={16} /> Open a file
-          </button>
+          {store.hasEngine && (
+            <button type="button" class="quiet" onClick={() => input.current?.click()}>
+              <FolderOpen size={16} /> Open a file
+            </button>
+          )}
           <IconButton label="Close" shortcut="Esc" onClick={close}>
             <X size={18} />
           </IconButton>
@@ -59,7 +65,7 @@ export function SceneDrawer({ viewer }: { viewer: Viewer }): JSX.Element | null 
             </span>
           </button>
         ))}
-        {store.sceneList.value.length === 0 && <p class="hint">No list of scenes lies beside this page. Open a file instead.</p>}
+        {store.sceneList.value.length === 0 && <p class="hint">{WITHOUT_SCENES}</p>}
       </div>
     </aside>
   );

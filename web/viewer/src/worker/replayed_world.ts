@@ -1,6 +1,11 @@
 // The world of a recording, for what its poses do not tell: contacts, forces, trees, islands, joints, masses, energies. A recording
 // that also holds commands is simulated again beside its track, to the last bit; one that holds poses only has no such world.
 import type { Gyre, Replay, World } from 'gyre-physics';
+import type { BodyDescription, BodyReport, OverlayData, OverlayName, Stats, Vec3 } from '../protocol';
+import { placeOf, worldPart } from './keys';
+import type { PoseFrame } from './poses';
+import type { WorldAtFrame, WorldBehind } from './world_behind';
+import { readLinks, readOverlays, readRows, readStats, reportOn, withNames } from './world_reader';
 
 const PATIENCE = 80; // ms that a frame may wait for numbers that nobody asked for
 
@@ -14,22 +19,26 @@ export function trackOf(gyre: Gyre, commands: Uint8Array): Uint8Array {
   return track;
 }
 
-export class ReplayedWorld {
+export class ReplayedWorld implements WorldBehind {
   private msPerStep = 0.5;
   private readonly firstStep: number;
   private readonly world: World;
-  stepMs = 0; // of the last way here, a step
+  private stepMs = 0; // of the last way here, a step
 
-  private constructor(private readonly replay: Replay) {
+  private constructor(
+    private readonly gyre: Gyre,
+    private readonly replay: Replay,
+    private readonly origin: Vec3,
+  ) {
     this.world = replay.world();
     this.world.setTiming(true);
     this.firstStep = Number(this.world.stepCount());
   }
 
   // The world, or in words why there is none.
-  static open(gyre: Gyre, bytes: Uint8Array): ReplayedWorld | string {
+  static open(gyre: Gyre, bytes: Uint8Array, origin: Vec3): ReplayedWorld | string {
     try {
-      return new ReplayedWorld(gyre.openReplay(bytes));
+      return new ReplayedWorld(gyre, gyre.openReplay(bytes), origin);
     } catch (error) {
       return (error as Error).message;
     }
@@ -43,9 +52,17 @@ export class ReplayedWorld {
     return this.world.readTimes().stages.name;
   }
 
+  at(frame: PoseFrame, needed: boolean): WorldAtFrame | null {
+    const world = this.after(frame.step, needed);
+    const own = world?.bodies().ids;
+    if (!world || !own || own.length !== frame.ids.length) return null;
+    if (!own.every((id, row) => placeOf(id) === frame.ids[row])) return null;
+    return new WorldAtStep(this.gyre, world, this.origin, frame.ids, this.stepMs);
+  }
+
   // The world after so many steps (as it counts them itself); null where the commands end before, or the way there is long and
   // nothing depends on it. Going back is short: keyframes are kept on the way.
-  at(step: number, needed: boolean): World | null {
+  private after(step: number, needed: boolean): World | null {
     const { replay } = this;
     const target = step - this.firstStep;
     if (target < 0 || target > replay.stepCount()) return null;
@@ -67,5 +84,42 @@ export class ReplayedWorld {
 
   close(): void {
     this.replay.dispose();
+  }
+}
+
+class WorldAtStep implements WorldAtFrame {
+  constructor(
+    private readonly gyre: Gyre,
+    private readonly world: World,
+    private readonly origin: Vec3,
+    private readonly ids: ArrayLike<number>,
+    private readonly stepMs: number,
+  ) {}
+
+  velocities(): Float32Array {
+    return readRows(this.world, this.origin).velocities;
+  }
+
+  stats(): Stats {
+    return readStats(this.world, this.stepMs);
+  }
+
+  links(): Float32Array {
+    return readLinks(this.world, this.origin);
+  }
+
+  overlays(names: ReadonlySet<OverlayName>): OverlayData {
+    return readOverlays(this.world, names, this.origin);
+  }
+
+  mass(id: number): Pick<BodyDescription, 'mass' | 'centerOfMass' | 'inertia'> {
+    const { mass, center, inertia } = this.world.massProperties(id + worldPart(this.world.bodies().ids[0] ?? 0));
+    return { mass, centerOfMass: center, inertia };
+  }
+
+  report(row: number, key: number, nameOf: (id: number) => string): BodyReport {
+    const id = this.world.bodies().ids[row]!;
+    const words = withNames(this.world.explain(id).words, this.ids, nameOf);
+    return reportOn(this.gyre, this.world, id, key, nameOf(placeOf(id)), words);
   }
 }

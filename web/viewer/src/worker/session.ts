@@ -5,8 +5,8 @@ export interface Session {
   describe(): SceneDescription;
   // The frame as it stands. `fresh`: the page knows nothing yet.
   frame(fresh?: boolean): FrameMessage;
-  advance(steps: number, commands: readonly Command[]): FrameMessage;
-  seek(step: number): FrameMessage;
+  advance(steps: number, commands: readonly Command[]): FrameMessage | Promise<FrameMessage>;
+  seek(step: number): FrameMessage | Promise<FrameMessage>;
   setOverlays(names: readonly OverlayName[]): void;
   configure(settings: NewWorldSettings): void;
   inspect(key: number): BodyReport | null;

@@ -1,6 +1,5 @@
-// A recording that is played: the poses of its track, frame by frame, forward and back. What poses do not tell comes from the world
-// behind them, where the recording holds its commands too (replayed_world.ts).
-import { type Gyre, type PoseTrack, type TrackFrame, type World, BodyType, ErrorCode, GyreError } from 'gyre-physics';
+// A recording that is played: its poses, frame by frame, forward and back (poses.ts). What poses do not tell comes from the world
+// behind them, where there is one (world_behind.ts).
 import {
   type BodyDescription,
   BodyFlag,
@@ -17,12 +16,11 @@ import {
   type Structure,
   type Vec3,
 } from '../protocol';
-import { Describer, typeName } from './describe';
 import { extent } from './extent';
-import { Keys, placeOf, worldPart } from './keys';
-import { ReplayedWorld, trackOf } from './replayed_world';
+import { Keys } from './keys';
+import type { PoseFrame, PoseSource } from './poses';
 import type { Session } from './session';
-import { readLinks, readOverlays, readRows, readStats, reportOn, withNames } from './world_reader';
+import type { WorldAtFrame, WorldBehind } from './world_behind';
 
 const NO_STATS: Stats = {
   stepMs: 0, stageMs: [], bodies: 0, awake: 0, pairs: 0, touching: 0, contactPoints: 0, kinetic: 0, potential: 0, elastic: 0,
@@ -38,103 +36,97 @@ interface SceneNote {
 }
 
 export class TrackSession implements Session {
-  private readonly track: PoseTrack;
-  private readonly describer: Describer;
-  private readonly models: ReturnType<PoseTrack['models']>;
   private readonly keys = new Keys();
   private readonly note: SceneNote;
-  private readonly frames: number;
-  private readonly origin: Vec3;
   private readonly sent = new Map<number, number>(); // key to model, as the page knows it
   private set = -1;
   private structure = 0;
-  private readonly behind: ReplayedWorld | string;
   private overlays: ReadonlySet<OverlayName> = new Set();
   private weighed = false; // whether the page has been told the masses
 
-  constructor(
-    private readonly gyre: Gyre,
-    bytes: Uint8Array,
+  private constructor(
+    private readonly source: PoseSource,
+    private readonly behind: WorldBehind | string, // or in words why there is none
     private readonly file: string,
+    private position: number,
+    private at: PoseFrame,
   ) {
-    this.track = openTrack(gyre, bytes);
-    this.frames = this.track.frameCount();
-    this.models = this.track.models();
-    this.behind = ReplayedWorld.open(gyre, bytes);
-    this.describer = new Describer(gyre);
-    this.note = readNote(this.track.note('scene'));
-    const { positions } = this.track.frame();
-    const middle: Vec3 = [0, 0, 0];
-    for (let i = 0; i < positions.length; i++) middle[i % 3]! += (3 * positions[i]!) / positions.length;
-    this.origin = middle.every((value) => Math.abs(value) < 1000) ? [0, 0, 0] : (middle.map(Math.round) as Vec3);
+    this.note = readNote(source.note);
+  }
+
+  static async open(source: PoseSource, behind: WorldBehind | string, file: string): Promise<TrackSession> {
+    return new TrackSession(source, behind, file, 0, await source.frame(0));
   }
 
   describe(): SceneDescription {
     const { view } = this.note;
-    const here = (place: readonly number[]): Vec3 => place.map((value, i) => value - this.origin[i]!) as Vec3;
-    const accuracy = this.track.accuracy();
+    const { origin, accuracy, frames, truncated, timeStep } = this.source;
+    const here = (place: readonly number[]): Vec3 => place.map((value, i) => value - origin[i]!) as Vec3;
     return {
       title: this.note.name || this.file,
       file: this.file,
       live: false,
-      origin: this.origin,
+      origin,
       bounds: this.bounds(),
       view: view ? { eye: here(view.eye), target: here(view.target), fieldOfView: view.field_of_view ?? 0.7 } : null,
-      stages: this.behind instanceof ReplayedWorld ? this.behind.stages : [],
+      stages: typeof this.behind === 'string' ? [] : this.behind.stages,
       settings: {
         gravity: [0, -9.81, 0],
         substeps: 0,
         sleeping: true,
-        timeStep: this.frames > 1 ? this.track.time(1) - this.track.time(0) : 1 / 60,
+        timeStep,
         solver: '', integrator: '', broadPhase: '', threads: 1, simdWidth: 0,
       },
       choices: { solver: [], integrator: [], broadPhase: [], simdWidth: [], maxThreads: 1 },
       engine: `Poses as recorded, to within ${(1000 * accuracy.position).toPrecision(2)} mm and ${(1000 * accuracy.orientation).toPrecision(2)} mrad`,
-      lastStep: this.frames - 1,
-      truncated: this.track.truncated() || (this.behind instanceof ReplayedWorld && this.behind.truncated),
-      posesOnly: this.behind instanceof ReplayedWorld ? '' : this.behind,
+      lastStep: frames - 1,
+      truncated: truncated || (typeof this.behind !== 'string' && this.behind.truncated),
+      posesOnly: typeof this.behind === 'string' ? this.behind : '',
     };
   }
 
   private bounds(): Box {
-    const at = this.track.frame();
-    const bodies = Array.from(at.ids, (id, row) => this.describeBody(id, 0, at.models[row]!));
-    return extent(bodies, this.poses(at), (surface) => this.describer.vertices(surface));
+    const { ids, models, poses } = this.at;
+    const bodies = Array.from(ids, (id, row) => this.describeBody(id, 0, models[row]!));
+    return extent(bodies, poses, (surface) => this.source.vertices(surface));
   }
 
-  advance(steps: number, _commands: readonly Command[]): FrameMessage {
-    return this.seek(this.track.position() + steps);
+  advance(steps: number, _commands: readonly Command[]): Promise<FrameMessage> {
+    return this.seek(this.position + steps);
   }
 
-  seek(step: number): FrameMessage {
-    const wanted = Math.min(Math.max(step, 0), this.frames - 1);
-    if (wanted !== this.track.position()) this.track.seek(wanted);
+  async seek(step: number): Promise<FrameMessage> {
+    const wanted = Math.min(Math.max(step, 0), this.source.frames - 1);
+    this.at = await this.source.frame(wanted);
+    this.position = wanted;
     return this.frame();
   }
 
   frame(fresh = false): FrameMessage {
-    const at = this.track.frame();
-    const world = this.world(at, [...this.overlays].some((name) => NEEDS_WORLD.has(name)));
-    const structure = this.restructure(at, world, fresh);
-    const count = at.ids.length;
+    const { ids, models, awake, poses, time } = this.at;
+    const world = this.world([...this.overlays].some((name) => NEEDS_WORLD.has(name)));
+    const structure = this.restructure(world, fresh);
+    const count = ids.length;
     const flags = new Uint8Array(count);
+    let awakeCount = 0;
     for (let row = 0; row < count; row++) {
-      const type = this.models[at.models[row]!]!.type;
-      flags[row] = (type === BodyType.dynamic ? BodyFlag.dynamic : type === BodyType.kinematic ? BodyFlag.kinematic : 0) | (at.awake[row] ? BodyFlag.awake : 0);
+      const { type } = this.source.model(models[row]!);
+      flags[row] = (type === 'dynamic' ? BodyFlag.dynamic : type === 'kinematic' ? BodyFlag.kinematic : 0) | (awake[row] ? BodyFlag.awake : 0);
+      if (awake[row]) awakeCount++;
     }
     return {
       frame: {
-        step: this.track.position(),
-        time: at.time,
-        lastStep: this.frames - 1,
+        step: this.position,
+        time,
+        lastStep: this.source.frames - 1,
         structure: this.structure,
-        poses: this.poses(at),
-        velocities: world ? readRows(world, this.origin).velocities : new Float32Array(6 * count),
+        poses: poses.slice(), // the page takes it over
+        velocities: world ? world.velocities() : new Float32Array(6 * count),
         flags,
-        stats: world ? readStats(world, (this.behind as ReplayedWorld).stepMs) : { ...NO_STATS, bodies: count, awake: at.awake.reduce((sum, awake) => sum + awake, 0) },
+        stats: world ? world.stats() : { ...NO_STATS, bodies: count, awake: awakeCount },
         measured: world !== null,
-        links: world ? readLinks(world, this.origin) : new Float32Array(0),
-        overlays: world ? readOverlays(world, this.overlays, this.origin) : {},
+        links: world ? world.links() : new Float32Array(0),
+        overlays: world ? world.overlays(this.overlays) : {},
         settings: null,
         problem: null,
       },
@@ -142,54 +134,39 @@ export class TrackSession implements Session {
     };
   }
 
-  // The world at this frame, if there is one and its bodies are those of the frame. `needed`: however long the way there is.
-  private world({ step, ids }: TrackFrame, needed: boolean): World | null {
-    if (!(this.behind instanceof ReplayedWorld)) return null;
-    const world = this.behind.at(Number(step), needed);
-    const own = world?.bodies().ids;
-    if (!world || !own || own.length !== ids.length) return null;
-    return own.every((id, row) => placeOf(id) === placeOf(ids[row]!)) ? world : null;
+  private world(needed: boolean): WorldAtFrame | null {
+    return typeof this.behind === 'string' ? null : this.behind.at(this.at, needed);
   }
 
-  private poses({ ids, positions, orientations }: TrackFrame): Float32Array {
-    const poses = new Float32Array(7 * ids.length);
-    for (let row = 0; row < ids.length; row++) {
-      for (let i = 0; i < 3; i++) poses[7 * row + i] = positions[3 * row + i]! - this.origin[i]!;
-      for (let i = 0; i < 4; i++) poses[7 * row + 3 + i] = orientations[4 * row + i]!;
-    }
-    return poses;
-  }
-
-  private restructure(at: TrackFrame, world: World | null, fresh: boolean): Structure | null {
+  private restructure(world: WorldAtFrame | null, fresh: boolean): Structure | null {
+    const { ids, models, set } = this.at;
     const weigh = world !== null && !this.weighed;
-    if (at.setVersion === this.set && !fresh && !weigh) return null;
-    this.set = at.setVersion;
+    if (set === this.set && !fresh && !weigh) return null;
+    this.set = set;
     if (fresh || weigh) this.sent.clear();
     this.weighed = world !== null;
-    const keys = Uint32Array.from(at.ids, (id) => this.keys.key(id));
+    const keys = Uint32Array.from(ids, (id) => this.keys.key(id));
     const added: BodyDescription[] = [];
     keys.forEach((key, row) => {
-      const model = at.models[row]!;
+      const model = models[row]!;
       if (this.sent.get(key) === model) return;
       this.sent.set(key, model);
-      added.push({ ...this.describeBody(at.ids[row]!, key, model), ...(world ? massOf(world, at.ids[row]!) : {}) });
+      added.push({ ...this.describeBody(ids[row]!, key, model), ...(world ? world.mass(ids[row]!) : {}) });
     });
-    return { number: ++this.structure, keys, added, surfaces: this.describer.takeSurfaces() };
+    return { number: ++this.structure, keys, added, surfaces: this.source.takeSurfaces() };
   }
 
   private nameOf(id: number): string {
-    return this.track.label(id).name || `body ${this.keys.key(id)}`;
+    return this.source.label(id).name || `body ${this.keys.key(id)}`;
   }
 
   private describeBody(id: number, key: number, index: number): BodyDescription {
-    const model = this.models[index]!;
-    const { colors } = this.track.label(id);
-    const shapes = model.shapes.map((shape, i) => ({
-      ...this.describer.shape(shape.geometry, shape.local),
-      sensor: shape.sensor,
-      color: i < colors.count ? (colors.red[i]! << 16) | (colors.green[i]! << 8) | colors.blue[i]! : null,
-    }));
-    return { key, name: this.nameOf(id), type: typeName(model.type), mass: 0, centerOfMass: [0, 0, 0], inertia: [0, 0, 0, 0, 0, 0], shapes };
+    const { type, shapes } = this.source.model(index);
+    const { colors } = this.source.label(id);
+    return {
+      key, name: this.nameOf(id), type, mass: 0, centerOfMass: [0, 0, 0], inertia: [0, 0, 0, 0, 0, 0],
+      shapes: shapes.map((shape, i) => ({ ...shape, color: colors[i] ?? null })),
+    };
   }
 
   setOverlays(names: readonly OverlayName[]): void {
@@ -201,25 +178,22 @@ export class TrackSession implements Session {
   }
 
   inspect(key: number): BodyReport | null {
-    const at = this.track.frame();
-    const row = at.ids.findIndex((id) => this.keys.key(id) === key);
+    const { ids, models, awake, poses } = this.at;
+    const row = Array.prototype.findIndex.call(ids, (id: number) => this.keys.key(id) === key);
     if (row < 0) return null;
-    const world = this.world(at, true);
-    if (world) {
-      const id = placeOf(at.ids[row]!) + worldPart(world.bodies().ids[row]!);
-      return reportOn(this.gyre, world, id, key, this.nameOf(id), withNames(world.explain(id).words, at.ids, (other) => this.nameOf(other)));
-    }
-    const position = Array.from(at.positions.slice(3 * row, 3 * row + 3)) as DoubleVec3;
+    const world = this.world(true);
+    if (world) return world.report(row, key, (id) => this.nameOf(id));
+    const position = this.source.origin.map((value, i) => value + poses[7 * row + i]!) as DoubleVec3;
     return {
       key,
-      name: this.nameOf(at.ids[row]!),
-      type: typeName(this.models[at.models[row]!]!.type),
-      awake: at.awake[row] !== 0,
+      name: this.nameOf(ids[row]!),
+      type: this.source.model(models[row]!).type,
+      awake: awake[row] !== 0,
       mass: 0,
       principalMoments: [0, 0, 0],
       position,
       centerOfMass: position,
-      rotation: Array.from(at.orientations.slice(4 * row, 4 * row + 4)) as Quat,
+      rotation: Array.from(poses.slice(7 * row + 3, 7 * row + 7)) as Quat,
       linear: [0, 0, 0],
       angular: [0, 0, 0],
       kinetic: 0,
@@ -236,23 +210,9 @@ export class TrackSession implements Session {
   }
 
   close(): void {
-    if (this.behind instanceof ReplayedWorld) this.behind.close();
-    this.track.dispose();
+    if (typeof this.behind !== 'string') this.behind.close();
+    this.source.close();
   }
-}
-
-function openTrack(gyre: Gyre, bytes: Uint8Array): PoseTrack {
-  try {
-    return gyre.openPoseTrack(bytes);
-  } catch (error) {
-    if (!(error instanceof GyreError) || error.code !== ErrorCode.unsupported) throw error;
-    return gyre.openPoseTrack(trackOf(gyre, bytes)); // it holds commands only
-  }
-}
-
-function massOf(world: World, id: number): Pick<BodyDescription, 'mass' | 'centerOfMass' | 'inertia'> {
-  const { mass, center, inertia } = world.massProperties(placeOf(id) + worldPart(world.bodies().ids[0] ?? 0));
-  return { mass, centerOfMass: center, inertia };
 }
 
 function readNote(text: string): SceneNote {

@@ -1,10 +1,7 @@
 // The worker: answers the page's requests one after the other. What goes wrong is sent back in words.
 import type { AnswerMessage, FrameMessage, RequestMessage, RequestName, Requests } from '../protocol';
-import { engine } from './engine';
-import { LiveSession } from './live_session';
-import { bytesOf, isRecording, sceneText } from './scene_source';
 import type { Session } from './session';
-import { TrackSession } from './track_session';
+import { open } from './with_engine';
 
 let session: Session | null = null;
 
@@ -13,18 +10,12 @@ function opened(): Session {
   return session;
 }
 
-async function open({ source, settings }: Requests['open']['ask']): Promise<Session> {
-  const [gyre, bytes] = await Promise.all([engine(), bytesOf(source)]);
-  if (isRecording(bytes, source.name)) return new TrackSession(gyre, bytes, source.name);
-  return new LiveSession(gyre, await sceneText(source, bytes), settings);
-}
-
 type Handlers = { [N in RequestName]: (ask: Requests[N]['ask']) => Requests[N]['answer'] | Promise<Requests[N]['answer']> };
 
 const handlers: Handlers = {
-  async open(ask) {
+  async open({ source, settings }) {
     // What is open stays so until the next one is there.
-    const next = await open(ask);
+    const next = await open(source, settings);
     session?.close();
     session = next;
     return { scene: next.describe(), frame: next.frame(true) };
