@@ -294,7 +294,7 @@ class GroundProof {
 
 // True if shape and closest point are on the front side of every triangle around it; surfaces have no contacts from
 // behind. The front of a double-sided surface is the side of the shape's centre.
-bool seen_from_front(const Ground& ground, const Nearest& near, DVec3 middle, double slack) {
+bool seen_from_front(const Ground& ground, const ClosestPair& near, DVec3 middle, double slack) {
   for (const Corners& t : ground.triangles) {
     DVec3 n = cross(t[1] - t[0], t[2] - t[0]);
     if (length(nearest_of(t, near.on_target) - near.on_target) > slack) continue;
