@@ -42,7 +42,7 @@ struct LimitDelassus {
   std::uint32_t renewed, cleared;
 };
 
-constexpr float kUnbounded = 3.0e38f;  // how far a stop's impulse may grow
+constexpr float kUnboundedImpulse = 3.0e38f;  // how far a stop's impulse may grow
 
 // As many slots stand in registers while they are swept.
 constexpr std::uint32_t kFewSlots = 8;

@@ -463,7 +463,7 @@ class LimitSolver {
     const bool has_servos = b_.plain.servo_count > 0;
     // Only a servo knows a bound above.
     if (has_servos)
-      for (std::uint32_t i = 0; i < slots; ++i) slots_[i].most = Wide<W>(kUnbounded);
+      for (std::uint32_t i = 0; i < slots; ++i) slots_[i].most = Wide<W>(kUnboundedImpulse);
     fill_slots(slots, counts);
     if (has_servos)
       for (std::uint32_t i = 0; i < slots; ++i) slots_[i].room = Wide<W>(0.0f);
