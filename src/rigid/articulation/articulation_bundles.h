@@ -1,4 +1,4 @@
-// Lays linkages that hang together alike side by side (solver/articulation/linkage_lanes.h): the kernels' W to a bundle, what is left over
+// Lays linkages that hang together alike side by side (solver/articulation/articulation_lanes.h): the kernels' W to a bundle, what is left over
 // in kernels of fewer lanes.
 //
 // In: the linkages of a batch (rigid/articulation/articulations.h). Out: bundles in the step's arena; as the step ends, impulses in the joints.
@@ -11,7 +11,7 @@ namespace gyre {
 
 struct BundledArticulations {
   ArticulationBundle lanes;
-  std::span<const GroupedArticulation*> linkages;  // by lane
+  std::span<const GroupedArticulation*> articulations;  // by lane
 };
 
 struct BundleSolve {

@@ -42,11 +42,11 @@ TEST(LinkageBundles, HaveEachLinkageOnce) {
       Arena arena;
       std::map<const GroupedArticulation*, int> times;
       for (const BundledArticulations& bundle : crowd.lay_out(width, arena).bundles) {
-        ASSERT_LE(bundle.linkages.size(), std::size_t(bundle.lanes.kernels->width));
-        for (const GroupedArticulation* articulation : bundle.linkages) {
+        ASSERT_LE(bundle.articulations.size(), std::size_t(bundle.lanes.kernels->width));
+        for (const GroupedArticulation* articulation : bundle.articulations) {
           ++times[articulation];
-          EXPECT_EQ(articulation->shape, bundle.linkages[0]->shape);
-          EXPECT_EQ(bundle.lanes.nodes, crowd.shapes[articulation->shape].nodes.data());
+          EXPECT_EQ(articulation->topology, bundle.articulations[0]->topology);
+          EXPECT_EQ(bundle.lanes.nodes, crowd.shapes[articulation->topology].nodes.data());
         }
       }
       EXPECT_EQ(times.size(), crowd.alike.size());
@@ -64,7 +64,7 @@ TEST(LinkageBundles, LeaveNoHalfOfTheLanesIdleWhereFewerWouldDo) {
       Crowd crowd({count});
       Arena arena;
       for (const BundledArticulations& bundle : crowd.lay_out(width, arena).bundles) {
-        const int used = int(bundle.linkages.size()), lanes = bundle.lanes.kernels->width;
+        const int used = int(bundle.articulations.size()), lanes = bundle.lanes.kernels->width;
         EXPECT_EQ(lanes, used == 1 ? 1 : used <= narrow ? narrow : kernels.width) << used << " at " << width;
       }
     }

@@ -8,12 +8,12 @@ namespace gyre {
 
 struct ProjectionJoints {
   std::span<JointRecord> records;
-  JointConstraints works;
+  JointConstraints constraints;
 };
 
-constexpr JointSettings kClosingSettings{kProjectionStep, {1.0f / kProjectionStep, 1.0f, 0.0f}, false};
+constexpr JointSettings kProjectionSettings{kProjectionStep, {1.0f / kProjectionStep, 1.0f, 0.0f}, false};
 
 // Copies of the joints in these slots.
-ProjectionJoints copy_closing_joints(const RigidWorld& w, std::span<const std::uint32_t> slots, Arena& arena);
+ProjectionJoints copy_projection_joints(const RigidWorld& w, std::span<const std::uint32_t> slots, Arena& arena);
 
 }  // namespace gyre

@@ -13,21 +13,21 @@ namespace gyre {
 struct HaltedBody {
   std::uint32_t body = 0;
   float fraction = 1.0f;  // of its way, up to where it met something
-  Vec3 moved, turned;     // the whole way, as BodyMotion has it
+  Vec3 delta_position, delta_rotation;     // the whole way, as BodyMotion has it
 };
 
 // A body of a group, and its way.
 struct ProjectionMember {
-  const HaltedBody* stopped = nullptr;  // null: it was not
+  const HaltedBody* halted = nullptr;  // null: it was not
   std::uint32_t body = 0;
   bool moves = false;  // all of its joints are in the group; others go where they go anyway
-  bool goes = false;   // moves, or does not stand still
-  bool held = false;   // stopped, and not to be moved any more
-  Vec3 start_moved;    // where the first of the group was stopped
+  bool is_in_motion = false;   // moves, or does not stand still
+  bool fixed = false;   // stopped, and not to be moved any more
+  Vec3 start_displacement;    // where the first of the group was stopped
   Quat start_orientation;
-  Vec3 rest_moved, rest_turned;  // from there to where it is
-  Vec3 kept_moved;               // where it was when joints were last closed
-  Quat kept_orientation;
+  Vec3 remaining_displacement, remaining_rotation;  // from there to where it is
+  Vec3 saved_displacement;               // where it was when joints were last closed
+  Quat saved_orientation;
 };
 
 struct ProjectionGroup {
@@ -37,7 +37,7 @@ struct ProjectionGroup {
 };
 
 // In the order of the stopped bodies; those of which all joints are in groups of others have none of their own.
-std::span<ProjectionGroup> find_projection_groups(const RigidWorld& w, std::span<const HaltedBody> stopped,
+std::span<ProjectionGroup> find_projection_groups(const RigidWorld& w, std::span<const HaltedBody> halted,
                                                   Arena& arena);
 
 }  // namespace gyre

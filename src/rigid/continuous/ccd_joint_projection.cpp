@@ -20,7 +20,7 @@ ProjectionBodies make_bodies(const RigidWorld& w, Arena& arena) {
 }
 
 // Puts the group where it was led to.
-void write(RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
+void store_poses(RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
            Array<std::uint32_t>& moved) {
   for (const ProjectionMember& member : group.members) {
     if (!member.moves) continue;
@@ -28,11 +28,11 @@ void write(RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& 
     BodyMotion& motion = w.bodies.motion[body];
     const BodyMass& mass = w.bodies.masses[body];
     const Quat orientation = bodies.orientations[body];
-    const Vec3 way = bodies.motion[body].moved - motion.moved;
-    const Vec3 turn = to_rotation_vector(orientation * conjugate(w.bodies.orientations[body]));
-    if (is_fast(way, turn, mass.reach, mass.size)) moved.push_back(body);
-    motion.moved = bodies.motion[body].moved + Vec3{};
-    motion.turned = to_rotation_vector(orientation * conjugate(w.bodies.places[body].orientation)) + Vec3{};
+    const Vec3 displacement = bodies.motion[body].delta_position - motion.delta_position;
+    const Vec3 rotation = to_rotation_vector(orientation * conjugate(w.bodies.orientations[body]));
+    if (is_fast(displacement, rotation, mass.reach, mass.size)) moved.push_back(body);
+    motion.delta_position = bodies.motion[body].delta_position + Vec3{};
+    motion.delta_rotation = to_rotation_vector(orientation * conjugate(w.bodies.places[body].orientation)) + Vec3{};
     w.bodies.orientations[body] = orientation;
     w.bodies.inertia[body] = world_inertia(mass, w.bodies.flags[body], orientation);
   }
@@ -48,17 +48,17 @@ bool constrains_position(const RigidWorld& w, std::uint32_t joint) {
           kind == JointKind::cone || kind == JointKind::universal);
 }
 
-void project_joints_after_ccd(RigidWorld& w, std::span<const HaltedBody> stopped, bool stop_at_impact,
+void project_joints_after_ccd(RigidWorld& w, std::span<const HaltedBody> halted, bool stop_at_impact,
                               const ContactKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
                               Arena& arena) {
   const ArenaScope scope(arena);
   const ProjectionBodies bodies = make_bodies(w, arena);
-  const std::span<const ProjectionGroup> groups = find_projection_groups(w, stopped, arena);
-  const std::span<const std::uint8_t> is_led =
+  const std::span<const ProjectionGroup> groups = find_projection_groups(w, halted, arena);
+  const std::span<const std::uint8_t> is_projected =
       project_batched(w, groups, bodies, stop_at_impact, kernels, tasks, arena);
   for (std::size_t i = 0; i < groups.size(); ++i)
-    if (is_led[i] != 0 || follow_by_rows(w, groups[i], bodies, stop_at_impact, arena))
-      write(w, groups[i], bodies, moved);
+    if (is_projected[i] != 0 || project_by_rows(w, groups[i], bodies, stop_at_impact, arena))
+      store_poses(w, groups[i], bodies, moved);
 }
 
 }  // namespace gyre

@@ -15,7 +15,7 @@ bool constrains_position(const RigidWorld& w, std::uint32_t joint);
 // closed and within their limits again: places and orientations alone, no velocities. Stopped ones are moved but for a little.
 // `stays`: nothing goes on beyond where the first that it hangs together with was stopped. Adds to `moved` what ends far, against its
 // size, from where it would have ended: it was not swept on that way.
-void project_joints_after_ccd(RigidWorld& w, std::span<const HaltedBody> stopped, bool stop_at_impact,
+void project_joints_after_ccd(RigidWorld& w, std::span<const HaltedBody> halted, bool stop_at_impact,
                               const ContactKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
                               Arena& arena);
 

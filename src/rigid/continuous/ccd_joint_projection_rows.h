@@ -8,7 +8,7 @@
 namespace gyre {
 
 // Where there is nothing to solve, or too much, bodies stay where they are. Returns whether they moved.
-bool follow_by_rows(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
+bool project_by_rows(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
                     bool stop_at_impact, Arena& arena);
 
 }  // namespace gyre

@@ -1,5 +1,5 @@
 // Leads groups along side by side: those that are whole linkages of ball, cone and hinge joints with hard stops, as limbs of ragdolls
-// are, by the kernels that solve these in the sub-steps (solver/articulation/linkage_lanes.h). A short step's speeds stand for displacements: the
+// are, by the kernels that solve these in the sub-steps (solver/articulation/articulation_lanes.h). A short step's speeds stand for displacements: the
 // equations are solved directly, stops with them, and both take errors back wholly. Joints are measured and placed anew for each
 // motion, as in closing_rows.h, but one solution after another takes the place of Newton's steps.
 //

@@ -31,20 +31,20 @@ class ChainsFollow : public ::testing::Test {
     add_joint(last, first + 3, {});
     const std::uint32_t body = std::uint32_t(first) + 2;
     BodyMotion& motion = world_.bodies.motion[body];
-    stopped_.push_back({body, 0.3f, motion.moved, motion.turned});
-    motion.moved = 0.3f * motion.moved;
+    stopped_.push_back({body, 0.3f, motion.delta_position, motion.delta_rotation});
+    motion.delta_position = 0.3f * motion.delta_position;
   }
   std::span<const std::uint8_t> project_batched(std::size_t chains) {
     begin(chains);
     return gyre::project_batched(world_, groups_, bodies_, false, select_contact_kernels(8), tasks_, arena_);
   }
-  void follow_by_rows() {
+  void project_by_rows() {
     begin(stopped_.size());
     for (const ProjectionGroup& group : groups_)
-      ASSERT_TRUE(gyre::follow_by_rows(world_, group, bodies_, false, arena_));
+      ASSERT_TRUE(gyre::project_by_rows(world_, group, bodies_, false, arena_));
   }
   DVec3 place(std::size_t body) const {
-    return world_.bodies.places[body].center + DVec3(bodies_.motion[body].moved);
+    return world_.bodies.places[body].center + DVec3(bodies_.motion[body].delta_position);
   }
   // How far apart the joint's ends are, and how far the cone leans.
   double gap(const JointRecord& joint) const {
@@ -88,9 +88,9 @@ class ChainsFollow : public ::testing::Test {
     store.masses.set(body, mass);
     store.places[body] = {at, {}};
     const float share = 1.0f + spread_ * float(body / kLinks);
-    store.motion[body].moved = share * Vec3{0, 0.1f + 0.002f * float(body % kLinks), 0.01f};
-    store.motion[body].turned = share * Vec3{0.05f, 0, 0};
-    store.orientations[body] = from_rotation_vector(store.motion[body].turned);
+    store.motion[body].delta_position = share * Vec3{0, 0.1f + 0.002f * float(body % kLinks), 0.01f};
+    store.motion[body].delta_rotation = share * Vec3{0.05f, 0, 0};
+    store.orientations[body] = from_rotation_vector(store.motion[body].delta_rotation);
   }
   void add_joint(JointKind kind, std::int32_t a, Quat frame) {
     const std::uint32_t slot = std::uint32_t(world_.joints.records.size());
@@ -125,7 +125,7 @@ TEST_F(ChainsFollow, WhereJointsAndLimitsHoldAndAsRowsDo) {
   expect_closed();
   std::vector<DVec3> places;
   for (std::size_t i = 0; i < world_.bodies.motion.size(); ++i) places.push_back(place(i));
-  follow_by_rows();
+  project_by_rows();
   expect_closed();
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LT(length(place(i) - places[i]), 2.0e-3) << i;
   // The ends go on, the one that was stopped hardly.
@@ -140,7 +140,7 @@ TEST_F(ChainsFollow, WithTheSameBitsWhateverStandsBeside) {
   const ProjectionBodies alone = bodies_;
   project_batched(5);
   for (std::size_t i = 0; i < kLinks; ++i) {
-    EXPECT_EQ(std::memcmp(&alone.motion[i].moved, &bodies_.motion[i].moved, sizeof(Vec3)), 0) << i;
+    EXPECT_EQ(std::memcmp(&alone.motion[i].delta_position, &bodies_.motion[i].delta_position, sizeof(Vec3)), 0) << i;
     EXPECT_EQ(std::memcmp(&alone.orientations[i], &bodies_.orientations[i], sizeof(Quat)), 0) << i;
   }
 }
@@ -151,7 +151,7 @@ TEST_F(ChainsFollow, WithOtherJointsByRows) {
   const std::span<const std::uint8_t> led = project_batched(2);
   EXPECT_EQ(led[0], 1);
   EXPECT_EQ(led[1], 0);
-  follow_by_rows();
+  project_by_rows();
   expect_closed();
 }
 

@@ -27,7 +27,7 @@ class ProjectionPath {
  public:
   enum class Next : std::uint8_t {
     solve,
-    look,  // bodies have been put elsewhere: asks again how far the joints are off
+    measure,  // bodies have been put elsewhere: asks again how far the joints are off
     done,
   };
 
@@ -37,29 +37,29 @@ class ProjectionPath {
                  bool stop_at_impact);
 
   // `open`: m or rad, the farthest that a joint or a limit is off.
-  Next next(float open);
+  Next next(float error);
   void advance();
 
  private:
-  void place_inertia() const;
+  void update_inertia() const;
   void find_displacements() const;
-  int count_parts() const;
+  int count_segments() const;
   void set_velocities(float share) const;
   Next correct();
-  Next end_start(float open);
-  Next begin_part();
-  Next end_part(float open);
-  bool hold_those_moved_far() const;
-  void keep() const;
-  void put_back() const;
+  Next end_start(float error);
+  Next begin_segment();
+  Next end_segment(float error);
+  bool fix_displaced_bodies() const;
+  void save() const;
+  void restore() const;
 
   const RigidWorld* w_ = nullptr;
   std::span<ProjectionMember> members_;
   ProjectionBodies bodies_;
-  bool stays_ = false, goes_ = false, was_put_back_ = false;
-  int part_ = 0, parts_ = 0, corrections_ = 0;
-  float first_open_ = 0.0f;  // m or rad, as the step began
-  float least_ = 0.0f;       // what is off by less is closed
+  bool stop_at_impact_ = false, is_moving_ = false, was_restored_ = false;
+  int segment_ = 0, segments_ = 0, corrections_ = 0;
+  float initial_error_ = 0.0f;  // m or rad, as the step began
+  float max_error_ = 0.0f;       // what is off by less is closed
 };
 
 }  // namespace gyre

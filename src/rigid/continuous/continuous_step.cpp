@@ -32,8 +32,8 @@ void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
 }
 
 // The middle of mass as the body will be once its motion is done.
-DVec3 middle_of(const RigidWorld& w, std::uint32_t body) {
-  return w.bodies.places[body].center + DVec3(w.bodies.motion[body].moved);
+DVec3 center_of_mass_of(const RigidWorld& w, std::uint32_t body) {
+  return w.bodies.places[body].center + DVec3(w.bodies.motion[body].delta_position);
 }
 
 // Takes the speed with which a body goes on into what its core met: first by an impulse without bounce at the point where the
@@ -44,20 +44,20 @@ class BodyImpulse {
   BodyImpulse(RigidWorld& w, std::uint32_t body, const SavedMotion& kept)
       : w_(w), bodies_{body, kept.other}, normal_(kept.blow), at_(kept.blow_at) {}
 
-  void take() {
-    for (int k = 0; k < 2; ++k) lever_[k] = to_float(at_ - middle_of(w_, bodies_[k]));
-    push();
+  void apply() {
+    for (int k = 0; k < 2; ++k) lever_[k] = to_float(at_ - center_of_mass_of(w_, bodies_[k]));
+    apply_impulse();
     // Through the middle of the body that was stopped.
     lever_[0] = {};
-    push();
+    apply_impulse();
   }
 
  private:
   bool is_moved(std::uint32_t i) const {
     return is_movable(w_.bodies.flags[i]) && w_.bodies.flags[i].awake != 0;
   }
-  void push() {
-    Vec3 turn[2];
+  void apply_impulse() {
+    Vec3 spin[2];
     float mass = 0.0f, closing = 0.0f;
     for (int k = 0; k < 2; ++k) {
       const std::uint32_t i = bodies_[k];
@@ -65,8 +65,8 @@ class BodyImpulse {
       const Vec3 speed = motion.linear_velocity + cross(motion.angular_velocity, lever_[k]);
       closing += (k == 0 ? 1.0f : -1.0f) * dot(speed, normal_);
       if (!is_moved(i)) continue;
-      turn[k] = w_.bodies.inertia[i].inverse * cross(lever_[k], normal_);
-      mass += motion.inverse_mass + dot(cross(turn[k], lever_[k]), normal_);
+      spin[k] = w_.bodies.inertia[i].inverse * cross(lever_[k], normal_);
+      mass += motion.inverse_mass + dot(cross(spin[k], lever_[k]), normal_);
     }
     if (!(closing > 0.0f) || !(mass > 0.0f)) return;
     for (int k = 0; k < 2; ++k) {
@@ -74,7 +74,7 @@ class BodyImpulse {
       BodyMotion& motion = w_.bodies.motion[bodies_[k]];
       const float impulse = (k == 0 ? -closing : closing) / mass;
       motion.linear_velocity += impulse * motion.inverse_mass * normal_;
-      motion.angular_velocity += impulse * turn[k];
+      motion.angular_velocity += impulse * spin[k];
     }
   }
 
@@ -87,7 +87,7 @@ class BodyImpulse {
 
 // A bound on the way that the farthest points of a body go in the step as seen from another one: that of its middle, and what
 // its turning against the other adds. (A rotation differs from its first order by half the angle squared at most.)
-float way_against(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame, std::uint32_t body) {
+float relative_displacement_bound(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame, std::uint32_t body) {
   const Sweep own = sweep_of_body(w.bodies, body);
   const Vec3 apart = difference(w.bodies.places[body].center, w.bodies.places[seen_from].center);
   return length(own.moved - frame.moved - cross(frame.turned, apart)) +
@@ -107,12 +107,12 @@ class Overrun {
     for (const std::uint32_t i : w_.bodies.awake) {
       if (w_.bodies.flags[i].type != BodyType::kinematic || w_.bodies.shapes[i].empty()) continue;
       const Sweep sweep = sweep_of_body(w_.bodies, i);
-      if (sweep.moved != Vec3{} || sweep.turned != Vec3{}) add_those_before(i, sweep);
+      if (sweep.moved != Vec3{} || sweep.turned != Vec3{}) add_bodies_in_path(i, sweep);
     }
   }
 
  private:
-  void add_those_before(std::uint32_t i, const Sweep& sweep) {
+  void add_bodies_in_path(std::uint32_t i, const Sweep& sweep) {
     for (const ShapeId id : w_.bodies.shapes[i]) {
       const ColliderShape& shape = w_.shapes.colliders[id.index];
       if (shape.shape.kind == ShapeKind::plane) continue;
@@ -125,7 +125,7 @@ class Overrun {
         const bool surface = !is_convex(shape.shape.kind) && is_convex(w_.shapes.colliders[found].shape.kind);
         if (surface && own.sensor != other.sensor) scratch_.gates.push_back({found, id.index});
         if (moves) {
-          if (way_against(w_, i, sweep, other.body) > kFastShare * w_.bodies.masses[other.body].size)
+          if (relative_displacement_bound(w_, i, sweep, other.body) > kFastShare * w_.bodies.masses[other.body].size)
             add(other.body, false);
         } else if (own.sensor != other.sensor) {
           add(other.body, true);
@@ -151,7 +151,7 @@ class Overrun {
   bool any_ = false;
 };
 
-std::size_t count_stopped_with_joints(const RigidWorld& w, const ContinuousScratch& scratch) {
+std::size_t count_halted_with_joints(const RigidWorld& w, const ContinuousScratch& scratch) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < scratch.fast.size(); ++k)
     count += scratch.kept[k].fraction < 1.0f && !joints_of(w.bodies, scratch.fast[k].body).empty() ? 1 : 0;
@@ -159,13 +159,13 @@ std::size_t count_stopped_with_joints(const RigidWorld& w, const ContinuousScrat
 }
 
 // Of two stopped bodies with a joint between them both keep what the one that is stopped first keeps.
-void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<SavedMotion> kept,
+void halt_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<SavedMotion> kept,
                    Arena& arena) {
   constexpr int kMaxPasses = 16;
-  const std::span<std::uint32_t> place = arena.make<std::uint32_t>(w.bodies.motion.size());
-  for (std::uint32_t& p : place) p = kNoIndex;
+  const std::span<std::uint32_t> index = arena.make<std::uint32_t>(w.bodies.motion.size());
+  for (std::uint32_t& p : index) p = kNoIndex;
   for (std::uint32_t k = 0; k < kept.size(); ++k) {
-    if (kept[k].fraction < 1.0f) place[scratch.fast[k].body] = k;
+    if (kept[k].fraction < 1.0f) index[scratch.fast[k].body] = k;
   }
   bool changed = true;
   for (int pass = 0; pass < kMaxPasses && changed; ++pass) {
@@ -176,9 +176,9 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
       for (const std::uint32_t slot : joints_of(w.bodies, std::uint32_t(body))) {
         const JointRecord& joint = w.joints.records[slot];
         const std::int32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
-        if (other == kNoBody || place[std::size_t(other)] == kNoIndex || !constrains_position(w, slot))
+        if (other == kNoBody || index[std::size_t(other)] == kNoIndex || !constrains_position(w, slot))
           continue;
-        const float others = kept[place[std::size_t(other)]].fraction;
+        const float others = kept[index[std::size_t(other)]].fraction;
         changed = changed || others < kept[k].fraction;
         kept[k].fraction = min(kept[k].fraction, others);
       }
@@ -193,14 +193,14 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
     const std::uint32_t i = w.bodies.awake[n];
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
-    return is_fast(motion.moved, motion.turned, mass.reach, mass.size) && is_movable(w.bodies.flags[i]) &&
+    return is_fast(motion.delta_position, motion.delta_rotation, mass.reach, mass.size) && is_movable(w.bodies.flags[i]) &&
            !w.bodies.shapes[i].empty();
   };
   for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), goes_fast).list) {
     const std::uint32_t i = w.bodies.awake[n];
     // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
-    const float least = w.bodies.flags[i].touched != 0 ? kMinProgress : 0.0f;
-    scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, joints_of(w.bodies, i).empty(), false});
+    const float min_fraction = w.bodies.flags[i].touched != 0 ? kMinProgress : 0.0f;
+    scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, min_fraction, joints_of(w.bodies, i).empty(), false});
   }
   Overrun(w, scratch).add_all();
 }
@@ -218,7 +218,7 @@ void mark_near_blockers(const RigidWorld& w, Bitset& near) {
 }
 
 // Leaves those out that stay in their fat boxes, in which nothing is that may stop them: most of what falls.
-void leave_out_free(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
+void remove_unblocked(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   Array<FastBody>& fast = scratch.fast;
   const std::span<std::uint32_t> bodies = arena.make<std::uint32_t>(fast.size());
@@ -262,8 +262,8 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
   }
   const auto sweep_of = [&](std::uint32_t body) { return sweep_of_body(w.bodies, body); };
   const auto shapes_of = [&](std::uint32_t body) { return shapes[body]; };
-  const auto passes = [&](std::uint32_t shape, Vec3 way) { return lets_pass(w, shape, way); };
-  const FunctionRef<bool(std::uint32_t shape, Vec3 way)> one_way(passes);
+  const auto passes = [&](std::uint32_t shape, Vec3 direction) { return lets_pass(w, shape, direction); };
+  const FunctionRef<bool(std::uint32_t shape, Vec3 direction)> one_way(passes);
   const KnownContacts contacts{w.contacts, w.touches.may_stop, scratch.near_stops};
   const ContinuousInput input{w.shapes.colliders,
                               w.shapes.proxies,
@@ -292,28 +292,28 @@ Vec3 spin_at(const BodyMass& mass, const BodyFlags& flags, Quat from, Quat to, V
 }
 
 // Puts the listed bodies where they stay. Returns those that were stopped and hang on joints.
-std::span<const HaltedBody> remove_error(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
-  const std::span<HaltedBody> stopped = arena.make<HaltedBody>(count_stopped_with_joints(w, scratch));
-  std::size_t stopped_count = 0;
-  if (!stopped.empty()) stop_together(w, scratch, scratch.kept, arena);
+std::span<const HaltedBody> halt_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
+  const std::span<HaltedBody> halted = arena.make<HaltedBody>(count_halted_with_joints(w, scratch));
+  std::size_t halted_count = 0;
+  if (!halted.empty()) halt_together(w, scratch, scratch.kept, arena);
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
     const SavedMotion& kept = scratch.kept[k];
     if (!(kept.fraction < 1.0f)) continue;
     BodyMotion& motion = w.bodies.motion[i];
     if (!joints_of(w.bodies, i).empty())
-      stopped[stopped_count++] = {i, kept.fraction, motion.moved, motion.turned};
-    const Quat stopped_at = pose_at(sweep_of_body(w.bodies, i), double(kept.fraction)).orientation;
+      halted[halted_count++] = {i, kept.fraction, motion.delta_position, motion.delta_rotation};
+    const Quat impact_orientation = pose_at(sweep_of_body(w.bodies, i), double(kept.fraction)).orientation;
     const Quat end = w.bodies.orientations[i];
-    w.bodies.orientations[i] = kept.turn == Vec3{} ? stopped_at : integrate_rotation(stopped_at, kept.turn);
+    w.bodies.orientations[i] = kept.turn == Vec3{} ? impact_orientation : integrate_rotation(impact_orientation, kept.turn);
     motion.angular_velocity = spin_at(w.bodies.masses[i], w.bodies.flags[i], end, w.bodies.orientations[i],
                                       motion.angular_velocity);
-    motion.moved = kept.fraction * motion.moved + kept.slide;
-    motion.turned = kept.fraction * motion.turned + kept.turn;
+    motion.delta_position = kept.fraction * motion.delta_position + kept.slide;
+    motion.delta_rotation = kept.fraction * motion.delta_rotation + kept.turn;
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
-    if (!(kept.blow == Vec3{})) BodyImpulse(w, i, kept).take();
+    if (!(kept.blow == Vec3{})) BodyImpulse(w, i, kept).apply();
   }
-  return stopped;
+  return halted;
 }
 
 }  // namespace
@@ -323,17 +323,17 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const ContactK
   list_fast_bodies(w, scratch, arena, tasks);
   if (!scratch.fast.empty()) {
     mark_near_blockers(w, scratch.near_stops);
-    leave_out_free(w, scratch, arena, tasks);
+    remove_unblocked(w, scratch, arena, tasks);
   }
   if (scratch.fast.empty() && scratch.gates.empty()) return;
   for (int round = 1; round <= kMaxRounds; ++round) {
     sweep_fast_bodies(w, scratch, arena, tasks);
     if (round == 1) report_crossings(w, scratch.collision.crossings());
-    const std::span<const HaltedBody> stopped = remove_error(w, scratch, arena);
-    if (stopped.empty()) return;
+    const std::span<const HaltedBody> halted = halt_bodies(w, scratch, arena);
+    if (halted.empty()) return;
     // What hangs on those that were stopped comes after, on ways that have not been looked at.
     scratch.moved.clear();
-    project_joints_after_ccd(w, stopped, round == kMaxRounds, kernels, tasks, scratch.moved, arena);
+    project_joints_after_ccd(w, halted, round == kMaxRounds, kernels, tasks, scratch.moved, arena);
     list_moved_bodies(w, scratch);
     if (scratch.fast.empty()) return;
   }

@@ -24,19 +24,19 @@ struct Motions {
 
 // The fastest turn in a sub-step (rad) that the kernels make. Their error is of order angle^3 / 12 where there is a
 // gyroscopic torque: below a float's resolution. Without one it is that of how fast the axis itself turns.
-constexpr float kKernelAngle = 0.01f;
-constexpr float kKernelAngleIsotropic = 0.1f;
+constexpr float kMaxKernelAngle = 0.01f;
+constexpr float kMaxKernelAngleIsotropic = 0.1f;
 
 // Whether a body spins so fast, or is so bound, that the motion kernels leave its rotation to rotate_exactly.
 inline bool needs_exact_rotation(const BodyStore& bodies, std::uint32_t body, float substep) {
   const BodyFlags& flags = bodies.flags[body];
   if (flags.type != BodyType::dynamic || flags.locked_angular != 0) return true;
-  const float most = bodies.masses[body].isotropic != 0 ? kKernelAngleIsotropic : kKernelAngle;
-  return !(substep * length(bodies.motion[body].angular_velocity) <= most);
+  const float max_angle = bodies.masses[body].isotropic != 0 ? kMaxKernelAngleIsotropic : kMaxKernelAngle;
+  return !(substep * length(bodies.motion[body].angular_velocity) <= max_angle);
 }
 
 // A body of which constraints are made, as the motion kernels want it. `shown`: somebody looks at its place in each sub-step.
-MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool shown);
+MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool pose_read);
 
 // A whole step of bodies that no constraint acts on, kinematic ones among them.
 void integrate_free_bodies(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,

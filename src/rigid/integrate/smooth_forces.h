@@ -10,7 +10,7 @@
 // floats when the step is over.
 #pragma once
 
-#include "rigid/integrate/free_rotation.h"
+#include "solver/motion/torque_free_rotation.h"
 #include "rigid/field/medium.h"
 
 #include <span>
@@ -29,10 +29,10 @@ struct SmoothBody {
   std::uint32_t body = 0;
   double mass = 1.0;
   Tensor inertia, inverse_inertia;                     // body frame
-  DVec3 geometric_stiffness;                           // m/s^2: gravity, and forces that the user gave
+  DVec3 acceleration;                           // m/s^2: gravity, and forces that the user gave
   DVec3 torque;                                        // N m, that the user gave
   double linear_damping = 0.0, angular_damping = 0.0;  // 1/s
-  double reach = 0.0;                                  // m
+  double bounding_radius = 0.0;                                  // m
   std::uint8_t locked_linear = 0, locked_angular = 0;
   std::span<const std::uint32_t> fields{};  // that act on it: slots
   SmoothState start;                        // as the step began
@@ -40,7 +40,7 @@ struct SmoothBody {
 
 // One end of a spring: a body of the system, or a point that is carried along by what is none of it.
 struct SpringEnd {
-  int place = -1;          // in the system; -1: carried
+  int index = -1;          // in the system; -1: carried
   std::int32_t body = -1;  // kNoBody: the fixed world
   DVec3 arm;               // from the centre of mass, body frame
   DVec3 point, velocity;   // carried: as the part began, world
@@ -68,7 +68,7 @@ struct SmoothSystem {
   bool carried = false;  // a spring has an end on something that moves and is none of the system
   bool damped = false;   // forces depend on velocities
   double begin = 0.0;    // s, as the step began: for fields that change by themselves
-  double part = 0.0;     // s after that, as the part began: since then carried points move
+  double substep_begin = 0.0;     // s after that, as the part began: since then carried points move
 };
 
 // World angular velocity.

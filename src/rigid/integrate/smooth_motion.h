@@ -24,10 +24,10 @@ struct SmoothMotion {
   std::span<SmoothSystem> systems{};
   std::span<SchemeRoom> rooms{};         // of each
   std::span<SchemeRoom> second_rooms{};  // for the same step with twice the parts; empty if parts are fixed
-  std::span<std::uint32_t> parts_used{};
+  std::span<std::uint32_t> substeps_used{};
   std::span<double> errors{};       // m, estimated, of the step
   std::span<SmoothSpring> loose{};  // with no end in a system
-  int parts = 0;
+  int substeps = 0;
   double h = 0.0;     // s, a part
   double time = 0.0;  // s since the step began, of the part at hand
   bool any_carried = false;
@@ -36,8 +36,8 @@ struct SmoothMotion {
 };
 
 // All free bodies of the batch, also kinematic ones with springs: those are marked as shown to the solver.
-SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                                int parts, float h, Arena& arena);
+SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> body_indices,
+                                int substeps, float h, Arena& arena);
 
 // Stages of the program of sub-steps, a block being a system; the context is the SmoothMotion.
 void move_smooth_stage(void* context, int begin, int end, int worker);    // once, before all parts

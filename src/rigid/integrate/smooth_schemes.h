@@ -20,7 +20,7 @@ namespace gyre {
 struct SchemeRoom {
   std::span<SmoothState> states;  // where the system is
   std::span<LastMove> moves;      // Verlet: how it came there. `linear` and `angular` are not used.
-  std::span<DVec3> turned;        // rotation vector since the step began, as the sum of those of its parts
+  std::span<DVec3> delta_rotation;        // rotation vector since the step began, as the sum of those of its parts
   std::span<SmoothState> stage;   // Runge-Kutta: the stage's state, and sums over stages
   std::span<Rates> rates, sum;
   std::span<DVec3> drift;
@@ -32,7 +32,7 @@ SchemeRoom make_room(std::size_t bodies, Arena& arena);
 void integrate(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time, double h);
 
 // The state with the velocities that go with the place it has come to, into `stage`: Verlet's own are those of half a step before.
-void show_velocities(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time);
+void set_pose_velocities(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time);
 
 // The order of the error in places.
 constexpr int order_of(IntegratorKind kind) {

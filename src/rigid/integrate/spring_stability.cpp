@@ -70,9 +70,9 @@ SpringRow make_row(const RigidWorld& w, std::uint32_t slot) {
     point[k] = w.bodies.places[i].center + row.lever[k];
     if (is_active(w, std::uint32_t(i))) row.body[k] = bodies[k];
   }
-  const DVec3 way = point[1] - point[0];
-  const double size = length(way);
-  row.along = size > 0.0 ? way / size : DVec3{0, 1, 0};
+  const DVec3 offset = point[1] - point[0];
+  const double size = length(offset);
+  row.along = size > 0.0 ? offset / size : DVec3{0, 1, 0};
   row.root = std::sqrt(double(joint.stiffness));
   row.damping = double(joint.damping);
   return row;
@@ -152,11 +152,11 @@ SpringMode find_fastest_mode(const RigidWorld& w, Arena& arena) {
   mode.frequency = std::sqrt(value);
   // In the mode's velocities the dampers take  sum c s^2  of  sum of m u^2 = z' z = 1.
   respond(w, rows, z, twists, next, root);
-  double most = 0.0, power = 0.0, inertia = 0.0;
+  double largest = 0.0, power = 0.0, inertia = 0.0;
   for (std::size_t n = 0; n < count; ++n) {
     power += rows[n].damping * next[n] * next[n];
     inertia += z[n] * rows[n].root * next[n];
-    if (absolute(z[n]) > most) most = absolute(z[n]), mode.joint = rows[n].joint;
+    if (absolute(z[n]) > largest) largest = absolute(z[n]), mode.joint = rows[n].joint;
   }
   mode.decay = inertia > 0.0 ? 0.5 * power / inertia : 0.0;
   return mode;

@@ -28,9 +28,9 @@ class Run {
   void begin() const {
     prepare_motion(s_, begin_, end_);
     begin_bundles(s_.bundles, first_, last_, s_.w, s_.lane_start);
-    for_bundles(&ArticulationKernels::place);
+    for_bundles(&ArticulationKernels::prepare);
     predict_motion(s_, begin_, end_, false);
-    for_bundles(&ArticulationKernels::ask);
+    for_bundles(&ArticulationKernels::compute_bias);
   }
   void solve_first() const {
     record_velocity_change(s_, begin_, end_);
@@ -38,15 +38,15 @@ class Run {
   }
   void between_contacts() const {
     finish_part();
-    for_bundles(&ArticulationKernels::place);
-    for_bundles(&ArticulationKernels::pass, is_apart() || spins_, is_apart());
+    for_bundles(&ArticulationKernels::prepare);
+    for_bundles(&ArticulationKernels::end_half_step, is_apart() || spins_, is_apart());
     predict_motion(s_, begin_, end_, true, lanes_);
     solve(is_apart());
   }
   void end() const {
     finish_part();
-    for_bundles(&ArticulationKernels::place);
-    for_bundles(&ArticulationKernels::finish, is_apart() || spins_, true);
+    for_bundles(&ArticulationKernels::prepare);
+    for_bundles(&ArticulationKernels::end_step, is_apart() || spins_, true);
     finish_bundles(s_.bundles, first_, last_, s_.w);
   }
 
@@ -57,14 +57,14 @@ class Run {
     if (run.bundles != 1) return {};
     const BundledArticulations& bundle = s_.bundles.bundles[std::size_t(first_)];
     const ArticulationKernels& kernels = *bundle.lanes.kernels;
-    const bool is_full = kernels.width == s_.kernels.width && int(bundle.linkages.size()) == kernels.width;
-    if (!is_full || s_.kernels.motion.predict_in_lanes == nullptr) return {};
+    const bool is_full = kernels.width == s_.kernels.width && int(bundle.articulations.size()) == kernels.width;
+    if (!is_full || s_.kernels.motion.integrate_velocities_in_lanes == nullptr) return {};
     return {reinterpret_cast<float*>(bundle.lanes.bodies + kernels.velocities_at),
             kernels.body_bytes / sizeof(float), begin_};
   }
 
   // Velocities go from hand to hand by the records.
-  bool is_apart() const { return !lanes_.is_given(); }
+  bool is_apart() const { return !lanes_.is_set(); }
 
   // `loads`, `stores`: as LaneArrays. (Cold: what it calls is long.)
   GYRE_COLD void for_bundles(BundleKernel kernel, bool loads = true, bool stores = true) const {
@@ -83,7 +83,7 @@ class Run {
   // Since solve() only contacts have changed velocities in the records, and only of bodies that are watched: lanes have the others'.
   GYRE_COLD void finish_part() const {
     record_velocity_change(s_, begin_, end_, lanes_);
-    for_bundles(&ArticulationKernels::solve_again, is_apart(), is_apart() || spins_);
+    for_bundles(&ArticulationKernels::solve_after_contacts, is_apart(), is_apart() || spins_);
     advance_motion(s_, begin_, end_, true, spins_ ? LaneVelocities{} : lanes_);
     rotate_fast_spinning(s_, begin_, end_);
   }
@@ -110,7 +110,7 @@ GYRE_COLD FusedStages::FusedStages(const BundleSolve& bundles, std::size_t bodie
     if (filled == 0) add({int(i), 0, count_blocks(), 0});
     FusedRange& run = runs_[used_ - 1];
     ++run.bundles;
-    filled += bundle.lanes.moving_count * bundle.linkages.size();
+    filled += bundle.lanes.moving_count * bundle.articulations.size();
     run.blocks = gyre::count_blocks(int(filled), width);
     if (filled >= kMinBodies) filled = 0;
   }
@@ -131,10 +131,10 @@ GYRE_COLD void list_pushed(const BundleSolve& bundles, const FusedRange& run,
   for (int i = run.first_bundle; i < run.first_bundle + run.bundles; ++i) {
     const BundledArticulations& bundle = bundles.bundles[std::size_t(i)];
     const ArticulationBundle& shape = bundle.lanes;
-    const std::size_t lanes = bundle.linkages.size();
+    const std::size_t lanes = bundle.articulations.size();
     for (std::uint32_t n = 0; n < shape.node_count; ++n) {
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const ArticulationJoint& joint = bundle.linkages[lane]->joints[n];
+        const ArticulationJoint& joint = bundle.articulations[lane]->joints[n];
         const auto list = [&](std::uint32_t place, std::int32_t body) {
           if (place < shape.moving_count) bodies[first + place * lanes + lane] = body;
         };

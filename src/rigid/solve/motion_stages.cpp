@@ -29,17 +29,17 @@ const BatchContext& solve_of(void* context) { return *static_cast<const BatchCon
 void integrate_free_bodies_stage(void* context, int begin, int end, int) {
   const BatchContext& s = solve_of(context);
   integrate_free_bodies(s.w.bodies, block_of(s.free_bodies, begin, end, kBodiesPerBlock), s.motions,
-                        s.kernels.turns);
+                        s.kernels.rotation);
 }
 void rotate_exactly_stage(void* context, int begin, int end, int) {
   const BatchContext& s = solve_of(context);
   rotate_exactly(s.w.bodies, block_of(s.fast_spinning, begin, end, kFastSpinningPerClaim), s.h,
-                 s.kernels.turns);
+                 s.kernels.rotation);
 }
 void apply_rotations_stage(void* context, int begin, int end, int) {
   const BatchContext& s = solve_of(context);
   apply_rotations(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
-                  block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
+                  block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.rotation);
 }
 
 }  // namespace
@@ -50,31 +50,31 @@ void prepare_motion(const BatchContext& s, int begin, int end) {
 }
 void predict_motion(const BatchContext& s, int begin, int end, bool warm, const LaneVelocities& lanes) {
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
-    if (lanes.is_given())
-      return s.kernels.motion.predict_in_lanes(s.motion_blocks, first, last, lanes, warm && watched, watched);
-    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, warm && watched, watched);
+    if (lanes.is_set())
+      return s.kernels.motion.integrate_velocities_in_lanes(s.motion_blocks, first, last, lanes, warm && watched, watched);
+    s.kernels.motion.integrate_velocities(s.motion_blocks, first, last, s.contact_bodies.motion, warm && watched, watched);
   });
 }
 void record_velocities(const BatchContext& s, int begin, int end, const LaneVelocities& lanes) {
   const int last = min(end, s.recorded_blocks);
   if (begin >= last) return;
-  if (lanes.is_given()) return s.kernels.motion.watch_in_lanes(s.motion_blocks, begin, last, lanes);
-  s.kernels.motion.watch(s.motion_blocks, begin, last, s.contact_bodies.motion);
+  if (lanes.is_set()) return s.kernels.motion.record_velocities_in_lanes(s.motion_blocks, begin, last, lanes);
+  s.kernels.motion.record_velocities(s.motion_blocks, begin, last, s.contact_bodies.motion);
 }
 void record_velocity_change(const BatchContext& s, int begin, int end, const LaneVelocities& lanes) {
   const int last = min(end, s.recorded_blocks);
   if (begin >= last) return;
-  if (lanes.is_given())
-    return s.kernels.motion.note_in_lanes(s.motion_blocks, begin, last, s.contact_bodies.motion, lanes);
-  s.kernels.motion.note(s.motion_blocks, begin, last, s.contact_bodies.motion);
+  if (lanes.is_set())
+    return s.kernels.motion.record_velocity_change_in_lanes(s.motion_blocks, begin, last, s.contact_bodies.motion, lanes);
+  s.kernels.motion.record_velocity_change(s.motion_blocks, begin, last, s.contact_bodies.motion);
 }
 void advance_motion(const BatchContext& s, int begin, int end, bool noted, const LaneVelocities& lanes) {
   BodyStore& bodies = s.w.bodies;
   const MotionArrays arrays{bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()};
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
-    if (lanes.is_given())
-      return s.kernels.motion.advance_in_lanes(s.motion_blocks, first, last, arrays, lanes, s.h);
-    s.kernels.motion.advance(s.motion_blocks, first, last, arrays, s.h, watched && !noted);
+    if (lanes.is_set())
+      return s.kernels.motion.integrate_positions_in_lanes(s.motion_blocks, first, last, arrays, lanes, s.h);
+    s.kernels.motion.integrate_positions(s.motion_blocks, first, last, arrays, s.h, watched && !noted);
   });
 }
 bool has_fast_spinning(const BatchContext& s, int begin, int end) {
@@ -85,7 +85,7 @@ void rotate_fast_spinning(const BatchContext& s, int begin, int end) {
   if (!has_fast_spinning(s, begin, end)) return;
   const std::uint32_t first = s.fast_spinning_starts[std::size_t(begin)],
                       last = s.fast_spinning_starts[std::size_t(end)];
-  rotate_exactly(s.w.bodies, s.fast_spinning.subspan(first, last - first), s.h, s.kernels.turns);
+  rotate_exactly(s.w.bodies, s.fast_spinning.subspan(first, last - first), s.h, s.kernels.rotation);
 }
 
 void prepare_motion_stage(void* context, int begin, int end, int) {
@@ -99,7 +99,7 @@ void predict_warm_stage(void* context, int begin, int end, int) {
 }
 void warm_motion_stage(void* context, int begin, int end, int) {
   const BatchContext& s = solve_of(context);
-  s.kernels.motion.warm(s.motion_blocks, begin, end, s.contact_bodies.motion);
+  s.kernels.motion.warm_start(s.motion_blocks, begin, end, s.contact_bodies.motion);
 }
 void record_velocities_stage(void* context, int begin, int end, int) {
   record_velocities(solve_of(context), begin, end);

@@ -18,7 +18,7 @@ std::uint8_t rotation_mode(const BatchContext& solve, std::uint32_t body) {
 bool may_go_in_runs(const BatchContext& solve) {
   const BatchScratch& s = solve.scratch;
   return !solve.bundles.bundles.empty() && !solve.is_smooth && s.impacts.empty() && s.swept_joints.empty() &&
-         solve.linkages.linkages.empty() && solve.fields.blocks() == 0;
+         solve.linkages.scalar.empty() && solve.fields.blocks() == 0;
 }
 
 // The bodies of runs of bundles come first, run by run. Marks them in `kinds`, by place in the batch.

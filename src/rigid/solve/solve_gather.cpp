@@ -124,13 +124,13 @@ class ContactGatherer {
     constraint.rolling_friction = contact.surface.rolling_friction;
     constraint.spinning_friction = contact.surface.spinning_friction;
     constraint.size = contact.size;
-    constraint.push_speed = ends.push_speed;
+    constraint.pushout_speed = ends.push_speed;
     constraint.surface_velocity = {};
     constraint.restitution = contact.surface.restitution;
     constraint.body_a = ends.body_a;
     constraint.body_b = ends.body_b;
     constraint.rigid = false;
-    constraint.linked = ends.linked;
+    constraint.has_joint = ends.linked;
   }
   // The rest of the members.
   bool add_manifold(const Contact& contact, Manifold& manifold, ContactConstraint& constraint) const {
@@ -138,10 +138,10 @@ class ContactGatherer {
     constraint.manifold = &manifold;
     constraint.point_count = std::int16_t(manifold.count);
     constraint.loaded = loads.any;
-    constraint.may_roll = false;
-    constraint.hold = manifold.age >= kRigidContactAge ? ContactStiffness::held
-                      : manifold.age > 0.0f            ? ContactStiffness::sprung
-                                                       : ContactStiffness::none;
+    constraint.can_roll = false;
+    constraint.stiffness = manifold.age >= kRigidContactAge ? ContactStiffness::rigid
+                      : manifold.age > 0.0f            ? ContactStiffness::soft
+                                                       : ContactStiffness::fresh;
     if (loads.all) {
       constraint.fast = false;
       for (int k = 0; k < manifold.count; ++k) manifold.points[k].approach_speed = 0.0f;
@@ -150,7 +150,7 @@ class ContactGatherer {
     }
     if (manifold.count == 0) return false;
     if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
-    if (contact.recycled == 0) constraint.may_roll = may_roll(w_, contact, constraint);
+    if (contact.recycled == 0) constraint.can_roll = may_roll(w_, contact, constraint);
     constraint.spinning_friction +=
         manifold.count == 1 ? contact_patch_spin_friction(w_, contact, constraint) : 0.0f;
     return true;
@@ -261,7 +261,7 @@ void gather_joints(BatchContext& solve) {
     return body == kNoBody ? ColoringPair::kNone : solve.places[std::size_t(body)];
   };
   for (std::uint32_t i = 0; i < most; ++i) {
-    if (solve.linkages.swept[i] == 0) continue;
+    if (solve.linkages.iterative[i] == 0) continue;
     if (solve.is_smooth && is_explicit_spring(solve.w, solve.batch.joints[i])) continue;
     const JointEdge& joint = solve.joint_edges[i];
     s.swept_joints[count] = i;

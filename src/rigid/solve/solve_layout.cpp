@@ -109,7 +109,7 @@ void make_contact_blocks(BatchContext& solve, std::span<const Group> groups, Are
   const std::uint32_t blocks = groups.empty() ? 0 : groups.back().first + groups.back().count;
   if (!solve.rolling.contacts.empty()) mark_rolling_lanes(solve, blocks, arena);
   solve.blocks = arena.make<std::byte>(std::size_t(blocks) * solve.kernels.block_bytes).data();
-  solve.cold_blocks = arena.make<std::byte>(std::size_t(blocks) * solve.kernels.aside_bytes).data();
+  solve.cold_blocks = arena.make<std::byte>(std::size_t(blocks) * solve.kernels.cold_bytes).data();
 }
 
 namespace {

@@ -95,7 +95,7 @@ void advance_contact_points(const Group& g, int begin, int end) {
   };
   const auto follow_block = [&] {
     if (count == 0) return;
-    s.kernels.follow(s.blocks, present, lanes, count);
+    s.kernels.advance_points(s.blocks, present, lanes, count);
     for (int i = 0; i < count; ++i) {
       Vec3& spin = s.contact_bodies.motion[contacts[i]->body].angular_velocity;
       spin = spin + contacts[i]->drift;
@@ -224,7 +224,7 @@ void prepare_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
+    return balls.kernels.prepare(balls.blocks, balls.begin, balls.end, balls.arrays);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets& places) {
     prepare_joint(joint, work, places, g.solve->joint_bodies, g.solve->joint_settings);
@@ -234,7 +234,7 @@ void update_joint_bias_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.second_order_bias(balls.blocks, balls.begin, balls.end, balls.settings);
+    return balls.kernels.update_bias(balls.blocks, balls.begin, balls.end, balls.settings);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
     update_joint_bias(joint, work, g.solve->joint_bodies, g.solve->joint_settings);
@@ -244,7 +244,7 @@ void warm_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.warm(balls.blocks, balls.begin, balls.end);
+    return balls.kernels.warm_start(balls.blocks, balls.begin, balls.end);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
     warm_start_joint(joint, work, g.solve->joint_bodies);
@@ -269,7 +269,7 @@ void relax_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
+    balls.kernels.prepare(balls.blocks, balls.begin, balls.end, balls.arrays);
     return balls.kernels.relax(balls.blocks, balls.begin, balls.end);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
@@ -302,7 +302,7 @@ void articulation_stage(void* context, int begin, int end, int worker) {
   const BatchContext& s = *static_cast<BatchContext*>(context);
   ArticulationSolve own = s.articulation_solve;
   if (!s.stop_rooms.empty()) own.room = s.stop_rooms[std::size_t(worker)];
-  for (int i = begin; i < end; ++i) kernel(s.linkages.linkages[std::size_t(i)], own);
+  for (int i = begin; i < end; ++i) kernel(s.linkages.scalar[std::size_t(i)], own);
 }
 
 // Of linkages side by side.
@@ -328,7 +328,7 @@ void bundle_stage(void* context, int begin, int end, int) {
 // Of how many bodies, the first, somebody asks what contacts gave them: where there may be any. (The look clears negative zeros
 // away, too, which joints that are not in lanes leave.)
 std::size_t count_watched(const BatchContext& s, bool has_contacts) {
-  const bool has_lanes = !s.bundles.bundles.empty(), has_articulations = !s.linkages.linkages.empty();
+  const bool has_lanes = !s.bundles.bundles.empty(), has_articulations = !s.linkages.scalar.empty();
   if (s.joint_groups.empty() && !has_articulations) {
     if (has_lanes) return has_contacts ? s.moved_in_contact : 0;
     return s.moved.size();
@@ -354,7 +354,7 @@ struct HalfStep {
         bodies(count_blocks(int(solve.moved.size()), solve.kernels.width)),
         watched(solve.recorded_blocks),
         impacts(solve.scratch.impacts.empty() ? 0 : 1),
-        linkages(int(solve.linkages.linkages.size())),
+        linkages(int(solve.linkages.scalar.size())),
         bundles(int(solve.bundles.bundles.size())),
         fields(solve.fields.blocks()),
         slices(joints.empty() ? 0 : kJointSlices),
@@ -380,7 +380,7 @@ void add_before_contacts(ProgramWriter& program, BatchContext& solve, const Half
   program.add(articulation_stage<warm_start_articulation>, &solve, part.linkages);
   // Later they have been asked as the last part ended: velocities are as they were but for what turns no joint. (Blows of the batch must
   // not be a reason to ask again: they may be another island's.)
-  if (first) program.add(bundle_stage<&ArticulationKernels::ask>, &solve, part.bundles);
+  if (first) program.add(bundle_stage<&ArticulationKernels::compute_bias>, &solve, part.bundles);
   program.add_groups(warm_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
   program.add(joint_islands_stage<limit_gain>, &solve, part.islands);
@@ -419,7 +419,7 @@ void add_after_contacts(ProgramWriter& program, BatchContext& solve, const HalfS
   if (part.has_joints) add_motion(program, solve, record_velocity_change_stage, part.watched);
   program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
   program.add(articulation_stage<solve_articulation_after_contacts>, &solve, part.linkages);
-  program.add(bundle_stage<&ArticulationKernels::solve_again>, &solve, part.bundles);
+  program.add(bundle_stage<&ArticulationKernels::solve_after_contacts>, &solve, part.bundles);
   program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
   program.add(joint_islands_stage<limit_gain>, &solve, part.islands);
   add_motion(program, solve, part.has_joints ? advance_recorded_stage : advance_stage, part.bodies);
@@ -428,17 +428,17 @@ void add_after_contacts(ProgramWriter& program, BatchContext& solve, const HalfS
   program.add(stiffen_bodies_stage, &solve, part.pulled);
   program.add(joint_slices_stage<place_again_stage>, &solve, part.slices, kSlicesPerClaim);
   program.add(articulation_stage<prepare_articulation>, &solve, part.linkages);
-  if (!part.joints.empty()) program.add(bundle_stage<&ArticulationKernels::place>, &solve, part.bundles);
+  if (!part.joints.empty()) program.add(bundle_stage<&ArticulationKernels::prepare>, &solve, part.bundles);
   program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
   program.add_groups(relax_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(articulation_stage<relax_articulation>, &solve, part.linkages);
   // Where no joint is swept in between, while their rows are still in the cache.
   if (!part.joints.empty())
-    program.add(last ? bundle_stage<&ArticulationKernels::finish> : bundle_stage<&ArticulationKernels::pass>,
+    program.add(last ? bundle_stage<&ArticulationKernels::end_step> : bundle_stage<&ArticulationKernels::end_half_step>,
                 &solve, part.bundles);
   else
-    program.add(last ? bundle_stage<&ArticulationKernels::place, &ArticulationKernels::finish>
-                     : bundle_stage<&ArticulationKernels::place, &ArticulationKernels::pass>,
+    program.add(last ? bundle_stage<&ArticulationKernels::prepare, &ArticulationKernels::end_step>
+                     : bundle_stage<&ArticulationKernels::prepare, &ArticulationKernels::end_half_step>,
                 &solve, part.bundles);
   program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
   program.add(joint_islands_stage<remove_gain>, &solve, part.islands);
@@ -490,10 +490,10 @@ void run_substeps(BatchContext& solve, std::span<Group> contacts, std::span<Grou
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add(joint_slices_stage<begin_balls_stage>, &solve, slices, kSlicesPerClaim);
   program.add(joint_slices_stage<prepare_joints_stage>, &solve, slices, kSlicesPerClaim);
-  program.add(articulation_stage<prepare_articulation>, &solve, int(solve.linkages.linkages.size()));
+  program.add(articulation_stage<prepare_articulation>, &solve, int(solve.linkages.scalar.size()));
   const int bundles = in_runs ? 0 : int(solve.bundles.bundles.size());
   program.add(begin_bundles_stage, &solve, bundles);
-  program.add(bundle_stage<&ArticulationKernels::place>, &solve, bundles);
+  program.add(bundle_stage<&ArticulationKernels::prepare>, &solve, bundles);
   for (int i = 0; i < parts; ++i) add_half_step(program, solve, HalfStep(solve, i, contacts, joints));
   program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
   add_motion(program, solve, begin_projection_stage, bodies);

@@ -97,7 +97,7 @@ std::span<const std::uint8_t> find_pressed(const BatchContext& solve, Arena& are
 // but a lane.
 void begin_joints(BatchContext& solve, float warm_scale, Arena& arena) {
   DenseGraphCache& nets = solve.scratch.dense_graphs;
-  solve.all_iterative = !solve.joint_edges.empty() && nets.holds(solve.joint_edges);
+  solve.all_iterative = !solve.joint_edges.empty() && nets.contains(solve.joint_edges);
   solve.lane_start = {
       .warm_scale = warm_scale, .substep = solve.h, .softness = solve.joint_settings.softness};
   solve.linkages = solve.all_iterative
@@ -153,11 +153,11 @@ void solve_batch(BatchContext& solve, Arena& arena, TaskSystem& tasks, float war
   solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena, !solve.is_smooth);
   solve.articulation_solve = {.records = solve.w.joints.records,
                               .work = solve.joint_work,
-                              .places = solve.joint_offsets,
+                              .offsets = solve.joint_offsets,
                               .bodies = solve.joint_bodies,
                               .settings = solve.joint_settings,
                               .compliance = kArticulationCompliance};
-  solve.articulation_solve.settings.swept = false;
+  solve.articulation_solve.settings.iterative = false;
   attach_drives(solve.linkages, solve.joint_work, arena);
   solve.stop_rooms = find_limits(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
   const JointBodies& bodies = solve.joint_bodies;
@@ -234,9 +234,9 @@ void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       const std::uint32_t body = w.bodies.awake[i];
       w.bodies.flags[body].touched = 0;
-      w.bodies.motion[body].moved = {};
-      w.bodies.motion[body].turned = {};
-      w.bodies.motion[body].pushed = 0.0f;
+      w.bodies.motion[body].delta_position = {};
+      w.bodies.motion[body].delta_rotation = {};
+      w.bodies.motion[body].pushout = 0.0f;
     }
   });
   w.field_rest.clear();

@@ -28,7 +28,7 @@ struct RowVectors {
 // A row sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
 struct ArticulationRows {
   RowVectors direction;          // direction of a force; zero for a turning row
-  RowVectors arm_a, arm_b;       // r x push, or the axis of a turn
+  RowVectors angular_a, angular_b;       // r x push, or the axis of a turn
   RowVectors spin_a, spin_b;     // inverse inertia times arm
   float compliance[kRowLanes] = {};  // added to K: the speed by which the row gives way to an impulse of one
   float target_speed[kRowLanes] = {};  // the speed asked for
@@ -52,7 +52,7 @@ struct ArticulationBody {
   Sym3 geometric_stiffness;  // by how much tension holds its orientation: N m / rad
   Sym3 inverse;             // inertia, raised to what a sub-step can bear
   Sym3 inertia;             // as it is
-  Quat turn;                // what its velocities make of a sub-step
+  Quat rotation;                // what its velocities make of a sub-step
 };
 
 // Two joints that share a body that moves, and where their block lies.
@@ -85,7 +85,7 @@ struct Articulation {
 struct ArticulationSolve {
   std::span<JointRecord> records;
   std::span<JointConstraint> work;
-  std::span<const JointOffsets> places;
+  std::span<const JointOffsets> offsets;
   JointBodies bodies;
   JointSettings settings;
   float compliance = 0.0f;   // share of K by which rows give way

@@ -22,7 +22,7 @@ std::size_t drives_room(const Articulation& articulation, std::size_t axes);
 // Once equations are placed and factored: responses, effective masses, what springs make of a sub-step.
 void prepare_drives(const Articulation& articulation, const ArticulationSolve& solve);
 // Before the impulses of the last sub-step are given once more: adds what those of the axes will do to AxisConstraint::worked.
-void note_warm_work(const Articulation& articulation, const ArticulationSolve& solve);
+void add_warm_start_work(const Articulation& articulation, const ArticulationSolve& solve);
 // Changes velocities and impulses; equations hold as they did. soft: as solve_axis().
 void solve_drives(const Articulation& articulation, const ArticulationSolve& solve, bool soft);
 

@@ -1,7 +1,7 @@
 // What is known of the stops and servos of a bundle of linkages while solver/articulation/articulation_limits_kernel.h solves them, and how much room that takes.
 #pragma once
 
-#include "solver/articulation/linkage_block.h"
+#include "solver/articulation/articulation_block.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -10,18 +10,18 @@ inline namespace GYRE_TARGET_NAMESPACE {
 // impulse is that of the low end, of either sign.
 template <int W>
 struct WideLimit {
-  Wide<W> speed, low_asked, high_asked, low_x, high_x;
+  Wide<W> speed, low_bias, high_bias, low_x, high_x;
   Mask<W> low_on, high_on;
   WideLimitAxis<W>* axis;
   const LaneNode* node;
   bool has_low;  // a swing has only the other one
   // Lanes, a bit for each: that have it in question, and in which the ways between it and all others so marked are kept.
-  std::uint32_t in, kept;
+  std::uint32_t active, cached;
   bool has_response;        // it is known what an impulse makes of the linkage, in this part of the sub-step
   bool has_reach;           // it is known which columns that impulse reaches
-  bool has_turns;           // the next are known, in this part of the sub-step
-  Vec3W<W> turn_a, turn_b;  // how an impulse of one turns its two bodies
-  Vec3W<W> kept_about;      // in a's axes: the axis for which ways are kept
+  bool has_spins;           // the next are known, in this part of the sub-step
+  Vec3W<W> spin_a, spin_b;  // how an impulse of one turns its two bodies
+  Vec3W<W> cached_axis;      // in a's axes: the axis for which ways are kept
 };
 
 // One end of a stop, in each lane another.
@@ -29,9 +29,9 @@ template <int W>
 struct LimitSlot {
   Wide<W> excess;       // rad/s: by how much its speed towards the inside is more than what is asked
   Wide<W> share;        // impulse for each rad/s of that, not positive
-  Wide<W> least, room;  // least: of the impulse, room: from there to where it is, both not positive
+  Wide<W> min_impulse, room;  // least: of the impulse, room: from there to where it is, both not positive
   // Only in bundles with servos: how far it may grow; `room` is what has been given there, since bounds may be far beyond that.
-  Wide<W> most;
+  Wide<W> max_impulse;
 };
 
 // For which slots of each lane the ways are laid out, and lanes, a bit for each, in which they have been found anew since. Up to
@@ -42,14 +42,14 @@ struct LimitDelassus {
   std::uint32_t renewed, cleared;
 };
 
-constexpr float kUnbounded = 3.0e38f;  // how far a stop's impulse may grow
+constexpr float kUnboundedImpulse = 3.0e38f;  // how far a stop's impulse may grow
 
 // As many slots stand in registers while they are swept.
-constexpr std::uint32_t kFewSlots = 8;
+constexpr std::uint32_t kRegisterSlots = 8;
 
 template <int W>
 constexpr std::size_t max_slots(const ArticulationBundle& bundle) {
-  return bundle.limit_count > kFewSlots / 2 ? 2 * std::size_t(bundle.limit_count) : kFewSlots;
+  return bundle.limit_count > kRegisterSlots / 2 ? 2 * std::size_t(bundle.limit_count) : kRegisterSlots;
 }
 
 // Of all stops together; what lies behind these words is aligned as vectors are.

@@ -21,7 +21,7 @@ struct LaneBall {
 };
 
 // What a lane has still to read of its bodies' inertia: nothing; once, as it stays; or each time, as it turns with them.
-constexpr std::int32_t kInertiaKnown = 0, kInertiaStays = 1, kInertiaTurns = 2;
+constexpr std::int32_t kInertiaKnown = 0, kInertiaStays = 1, kInertiaRotates = 2;
 
 // Who it joins: motion records, or kNoBody; for writing kNoBody where nothing pushes the body.
 struct LaneBallBodies {
@@ -47,9 +47,9 @@ struct BallKernels {
   std::size_t block_bytes, first_float;
   // Finds the motion records of all lanes, which then stay where they are. Comes first.
   void (*locate)(void* blocks, int begin, int end, const BallArrays& arrays);
-  void (*place)(void* blocks, int begin, int end, const BallArrays& arrays);
-  void (*second_order_bias)(void* blocks, int begin, int end, const BallSettings& settings);
-  void (*warm)(void* blocks, int begin, int end);
+  void (*prepare)(void* blocks, int begin, int end, const BallArrays& arrays);
+  void (*update_bias)(void* blocks, int begin, int end, const BallSettings& settings);
+  void (*warm_start)(void* blocks, int begin, int end);
   void (*solve)(void* blocks, int begin, int end, const BallSettings& settings);
   // Takes all speed away, and sums the impulses.
   void (*relax)(void* blocks, int begin, int end);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/articulation/ball_joint_simd.h"
-#include "solver/articulation/linkage_block.h"
+#include "solver/articulation/articulation_block.h"
 
 #include <cstring>
 
@@ -74,7 +74,7 @@ struct BallMotion {
     gather_columns<8, W>(block.record_b, kMotionLinear, c);
     linear_b = {c[0], c[1], c[2]}, angular_b = {c[3], c[4], c[5]};
   }
-  GYRE_INLINE void direction(const BallBlock<W>& block, Vec3W<W> p) {
+  GYRE_INLINE void apply_impulse(const BallBlock<W>& block, Vec3W<W> p) {
     const BallInertia<W>&a = *block.inertia_a, &b = *block.inertia_b;
     linear_a -= a.inverse_mass * p;
     angular_a -= a.inverse * cross(block.from_a, p);
@@ -102,15 +102,15 @@ alignas(64) constexpr float kNothing[kRecordFloats] = {};
 template <int W>
 struct BallSide {
   QuatW<W> orientation;
-  Vec3W<W> moved;
+  Vec3W<W> delta_position;
 
   GYRE_INLINE BallSide(const std::int32_t* indices, const RecordList<W>& records, const BallArrays& arrays) {
     alignas(16) static constexpr float kUnturned[4] = {0.0f, 0.0f, 0.0f, 1.0f};
     Wide<W> c[4];
     gather_vec4<1, W, 4>(&arrays.orientation->x, indices, kUnturned, 0, c);
     orientation = {c[0], c[1], c[2], c[3]};
-    gather_columns<4, W>(records, kMotionMoved, c);
-    moved = {c[0], c[1], c[2]};
+    gather_columns<4, W>(records, kMotionDeltaPosition, c);
+    delta_position = {c[0], c[1], c[2]};
   }
 };
 
@@ -136,9 +136,9 @@ GYRE_INLINE void load_inertia(BallBlock<W>& block, const BallBlock<W>* before, c
   load_inertia<W>(block.read_b, arrays, block.own_inertia_b);
   block.inertia_a = &block.own_inertia_a;
   block.inertia_b = &block.own_inertia_b;
-  const auto turns = inertia & WideInt<W>(kInertiaTurns);
-  turns.store_unaligned(block.inertia);
-  if (any(turns != WideInt<W>(0))) return;
+  const auto rotates = inertia & WideInt<W>(kInertiaRotates);
+  rotates.store_unaligned(block.inertia);
+  if (any(rotates != WideInt<W>(0))) return;
   const bool may_share =
       before != nullptr && none(WideInt<W>::load_unaligned(before->inertia) != WideInt<W>(kInertiaKnown));
   if (may_share && are_same<W>(*block.inertia_a, *before->inertia_a)) block.inertia_a = before->inertia_a;
@@ -163,7 +163,7 @@ GYRE_INLINE Mat3W<W> inverse_by_cofactors(const Mat3W<W>& m) {
 }
 
 template <int W>
-void place_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
+void prepare_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     const BallSide<W> a(block.read_a, block.record_a, arrays), b(block.read_b, block.record_b, arrays);
@@ -171,7 +171,7 @@ void place_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
     const BallInertia<W>&inertia_a = *block.inertia_a, &inertia_b = *block.inertia_b;
     block.from_a = rotate(a.orientation, block.local_a);
     block.from_b = rotate(b.orientation, block.local_b);
-    block.error = block.offset + (b.moved - a.moved) + block.from_b - block.from_a;
+    block.error = block.offset + (b.delta_position - a.delta_position) + block.from_b - block.from_a;
     const Wide<W> m = inertia_a.inverse_mass + inertia_b.inverse_mass, zero(0.0f);
     const Mat3W<W> by_a = between_skews(block.from_a, inertia_a.inverse),
                    by_b = between_skews(block.from_b, inertia_b.inverse);
@@ -193,11 +193,11 @@ void update_ball_bias(void* blocks, int begin, int end, const BallSettings& sett
 }
 
 template <int W>
-void warm_balls(void* blocks, int begin, int end) {
+void warm_start_balls(void* blocks, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     BallMotion<W> pair(block);
-    pair.direction(block, block.impulse);
+    pair.apply_impulse(block, block.impulse);
     pair.store(block);
   }
 }
@@ -210,7 +210,7 @@ void solve_balls(void* blocks, int begin, int end, const BallSettings& s) {
     const Vec3W<W> speed = pair.point_velocity(block) + block.second_order_bias;
     const Vec3W<W> change =
         -s.mass_scale * (block.mass * (speed + s.rate * block.error)) - s.impulse_scale * block.impulse;
-    pair.direction(block, change);
+    pair.apply_impulse(block, change);
     block.impulse += change;
     pair.store(block);
   }
@@ -224,7 +224,7 @@ void relax_balls(void* blocks, int begin, int end) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     BallMotion<W> pair(block);
     const Vec3W<W> change = -(block.mass * (pair.point_velocity(block) + nothing));
-    pair.direction(block, change);
+    pair.apply_impulse(block, change);
     block.impulse += change;
     block.total += block.impulse;
     pair.store(block);
@@ -238,9 +238,9 @@ constexpr BallKernels ball_kernels() {
           sizeof(BallBlock<W>),
           offsetof(BallBlock<W>, local_a),
           locate_balls<W>,
-          place_balls<W>,
+          prepare_balls<W>,
           update_ball_bias<W>,
-          warm_balls<W>,
+          warm_start_balls<W>,
           solve_balls<W>,
           relax_balls<W>};
 }

@@ -36,7 +36,7 @@ struct Pairs {
     for (std::size_t i = 0; i < motion.size(); ++i) {
       motion[i].linear_velocity = vector(3.0f);
       motion[i].angular_velocity = vector(8.0f);
-      motion[i].moved = vector(0.01f);
+      motion[i].delta_position = vector(0.01f);
       orientation[i] = from_rotation_vector(vector(1.0f));
       if (i == 4) continue;
       motion[i].inverse_mass = inertia[i].inverse_mass = 1.0f + 0.5f * next();
@@ -86,9 +86,9 @@ void solve_side_by_side(Pairs& pairs, int width) {
                pairs.places[std::size_t(i)].offset, 1.0f, true, pairs.inertia.data());
   }
   kernels.locate(memory, 0, blocks, arrays);
-  kernels.place(memory, 0, blocks, arrays);
-  kernels.second_order_bias(memory, 0, blocks, settings);
-  kernels.warm(memory, 0, blocks);
+  kernels.prepare(memory, 0, blocks, arrays);
+  kernels.update_bias(memory, 0, blocks, settings);
+  kernels.warm_start(memory, 0, blocks);
   kernels.solve(memory, 0, blocks, settings);
   kernels.relax(memory, 0, blocks);
   for (int i = 0; i < kJoints; ++i)

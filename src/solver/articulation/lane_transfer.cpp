@@ -25,7 +25,7 @@ constexpr std::size_t kLowGap = offsetof(LaneLimitAxis, low_gap) / sizeof(float)
 constexpr std::size_t kHighGap = offsetof(LaneLimitAxis, high_gap) / sizeof(float);
 constexpr std::size_t kFrictionImpulse = offsetof(LaneDrives, friction_impulse) / sizeof(float);
 constexpr std::size_t kDrivesTotal = offsetof(LaneDrives, total) / sizeof(float);
-constexpr std::size_t kServoMost = offsetof(LaneServo, most) / sizeof(float);
+constexpr std::size_t kServoMaxImpulse = offsetof(LaneServo, max_impulse) / sizeof(float);
 
 // A lane of a joint of a bundle, or of what drives it, and ranges of its floats.
 class Lane {
@@ -93,7 +93,7 @@ bool fits_drives(JointKind kind, const JointDetail& detail, LaneNode& node) {
 // Stops of a cone about its twist and its swing; nothing else acts on an axis.
 bool fits_axis(const JointAxisRecord& axis, JointAxis index, const LaneStart& start, LaneNode& node) {
   const bool is_limited = axis.motion == AxisMotion::limited;
-  if (axis.motion == AxisMotion::locked || (start.limits_only ? !is_limited : !acts(axis))) return true;
+  if (axis.motion == AxisMotion::locked || (start.limits_only ? !is_limited : !is_active(axis))) return true;
   if (!is_limited || is_compliant(axis) || node.kind != JointKind::cone) return false;
   const bool is_driven = axis.motor_force > 0.0f || axis.friction > 0.0f || has_spring(axis);
   if (is_driven && !start.limits_only) return false;
@@ -143,10 +143,10 @@ void begin_drives(const Lane& lane, const LaneNode& node, const JointRecord& joi
 
 void begin_servo(const Lane& lane, const JointAxisRecord& axis, const LaneStart& start) {
   // It may have been stronger when it gave that, or the sub-step longer.
-  const float most = start.substep * axis.motor_force;
-  const float kept = clamp(start.warm_scale * axis.motor_impulse, -most, most);
-  LaneWriter(lane, 0) << axis.motor_position << 0.0f << kept << 0.0f << 0.0f;
-  LaneWriter(lane, kServoMost) << most << axis.motor_velocity
+  const float max_impulse = start.substep * axis.motor_force;
+  const float impulse = clamp(start.warm_scale * axis.motor_impulse, -max_impulse, max_impulse);
+  LaneWriter(lane, 0) << axis.motor_position << 0.0f << impulse << 0.0f << 0.0f;
+  LaneWriter(lane, kServoMaxImpulse) << max_impulse << axis.motor_velocity
                                << (axis.has_motor_target ? start.softness.bias_rate : 0.0f);
 }
 
@@ -221,9 +221,8 @@ void load_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, c
   if (!shape.has_swing) {
     writer << 0.0f << 0.0f;
   } else {
-    constexpr float kMinSwing = 1.0e-3f;  // rad
     const JointAxisRecord& swing = detail->axes[int(JointAxis::angular_y)];
-    writer << 1.0f / max(detail->swing_y, kMinSwing) << 1.0f / max(detail->swing_z, kMinSwing);
+    writer << 1.0f / max(detail->swing_y, kMinSwingLimit) << 1.0f / max(detail->swing_z, kMinSwingLimit);
     begin_limit(to, kSwing, swing.limits, swing.low_impulse, swing.high_impulse, start);
   }
   if (!shape.has_twist) return;
@@ -232,7 +231,7 @@ void load_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, c
   begin_limit(to, kTwist, twist.limits, twist.low_impulse, twist.high_impulse, start);
 }
 
-void forget_lane_impulses(const ArticulationBundle& bundle) {
+void clear_lane_impulses(const ArticulationBundle& bundle) {
   constexpr std::size_t kFloats =
       sizeof(LaneJoint::linear_impulse) / sizeof(float) + sizeof(LaneJoint::angular_impulse) / sizeof(float);
   const std::size_t width = std::size_t(bundle.kernels->width);
@@ -247,18 +246,18 @@ void forget_lane_impulses(const ArticulationBundle& bundle) {
 }
 
 float find_lane_error(const ArticulationBundle& bundle, int lane) {
-  float most = 0.0f;
-  const auto add = [&](Vec3 v) { most = max(most, largest(absolute(v))); };
+  float largest_error = 0.0f;
+  const auto add = [&](Vec3 v) { largest_error = max(largest_error, largest(absolute(v))); };
   for (std::uint32_t n = 0; n < bundle.node_count; ++n) {
     const LaneNode& node = bundle.nodes[n];
     const Lane from(bundle, lane, n);
     add(from.vector(kError));
     if (node.kind == JointKind::hinge) add(from.vector(kAngularError));
     if (node.has_twist)
-      most = max(most, max(-from.number(kTwist + kLowGap), -from.number(kTwist + kHighGap)));
-    if (node.has_swing) most = max(most, -from.number(kSwing + kHighGap));
+      largest_error = max(largest_error, max(-from.number(kTwist + kLowGap), -from.number(kTwist + kHighGap)));
+    if (node.has_swing) largest_error = max(largest_error, -from.number(kSwing + kHighGap));
   }
-  return most;
+  return largest_error;
 }
 
 void store_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,

@@ -1,9 +1,9 @@
-// Between the records of joints and the lanes of a bundle of linkages (solver/articulation/linkage_lanes.h): which joints lanes can bear, and
+// Between the records of joints and the lanes of a bundle of linkages (solver/articulation/articulation_lanes.h): which joints lanes can bear, and
 // what goes in as the step begins and comes out as it ends.
 #pragma once
 
 #include "solver/joint/joint.h"
-#include "solver/articulation/linkage_lanes.h"
+#include "solver/articulation/articulation_lanes.h"
 
 namespace gyre {
 
@@ -29,7 +29,7 @@ void set_lane_body(const ArticulationBundle& bundle, int lane, std::uint32_t bod
 void load_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,
                const JointDetail* detail, Vec3 offset, const LaneStart& start);
 // As if all joints were new: none bears an impulse.
-void forget_lane_impulses(const ArticulationBundle& bundle);
+void clear_lane_impulses(const ArticulationBundle& bundle);
 // Of joints that have just been placed: m or rad, the farthest that a joint or a stop of the lane is off.
 float find_lane_error(const ArticulationBundle& bundle, int lane);
 // Impulses, sums and positions, back into the joint.

@@ -7,7 +7,7 @@
 
 #include "geometry/manifold/manifold.h"
 #include "solver/articulation/ball_joint_simd.h"
-#include "solver/articulation/linkage_lanes.h"
+#include "solver/articulation/articulation_lanes.h"
 #include "solver/core/body_motion.h"
 #include "solver/motion/motion_block.h"
 #include "solver/motion/rotation_block.h"
@@ -18,7 +18,7 @@
 namespace gyre {
 
 // Whether a contact has borne load as a spring, or is held as part of a structure at rest (solver/rest/static_equilibrium.h).
-enum class ContactStiffness : std::uint8_t { none, sprung, held };
+enum class ContactStiffness : std::uint8_t { fresh, soft, rigid };
 
 // One manifold to be solved. Plain data: the same for every width; the kernels read it four floats at a time.
 struct ContactConstraint {
@@ -27,18 +27,18 @@ struct ContactConstraint {
   float rolling_friction = 0.0f;   // m
   float spinning_friction = 0.0f;  // m
   float size = 0.0f;               // m, of the smaller body
-  float push_speed = 0.0f;         // m/s: the fastest that overlap is taken back
+  float pushout_speed = 0.0f;         // m/s: the fastest that overlap is taken back
   Vec3 surface_velocity;           // m/s, of b's surface against a's, in the tangent plane
   float restitution = 0.0f;
   std::int32_t body_a = kNoBody;  // index of the motion record; kNoBody for fixed bodies
   std::int32_t body_b = kNoBody;
   std::int16_t point_count = 0;          // the manifold's
   bool loaded = false;                   // it bore load in the last step
-  bool may_roll = false;                 // of a curved shape with a flat one
+  bool can_roll = false;                 // of a curved shape with a flat one
   bool rigid = false;                    // no spring: part of a tree that is solved directly
-  bool linked = false;                   // one of the bodies hangs on a joint
+  bool has_joint = false;                   // one of the bodies hangs on a joint
   bool fast = false;                     // closes so fast that it may be told as a hit
-  ContactStiffness hold = ContactStiffness::none;  // as the step began
+  ContactStiffness stiffness = ContactStiffness::fresh;  // as the step began
   Manifold* manifold = nullptr;
 };
 static_assert(sizeof(ContactConstraint) <= 64 || sizeof(void*) != 8, "a cache line");
@@ -101,11 +101,11 @@ struct AdvancedArmsLane {
 // bodies lie.
 struct ContactKernels {
   int width;
-  std::size_t block_bytes, aside_bytes;
-  void (*prepare)(void* blocks, void* asides, int begin, int end, const ContactConstraint* constraints,
+  std::size_t block_bytes, cold_bytes;
+  void (*prepare)(void* blocks, void* cold_blocks, int begin, int end, const ContactConstraint* constraints,
                   const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings);
   // Moves the points of contacts of a block, and along with them the impulses that stand, which these velocities have.
-  void (*follow)(void* blocks, int block, const AdvancedArmsLane* lanes, int count);
+  void (*advance_points)(void* blocks, int block, const AdvancedArmsLane* lanes, int count);
   void (*warm_start)(void* blocks, int begin, int end);
   void (*solve)(void* blocks, int begin, int end, float substep);
   void (*relax)(void* blocks, int begin, int end, float substep);
@@ -114,12 +114,12 @@ struct ContactKernels {
   void (*read_impulse)(const void* blocks, int block, int lane, ContactImpulse& impulse);
   void (*write_impulse)(void* blocks, int block, int lane, const ContactImpulse& impulse);
   // From now on the contact is no spring in this step.
-  void (*harden)(void* blocks, int block, int lane);
+  void (*make_rigid)(void* blocks, int block, int lane);
   void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints,
                  const std::uint32_t* order, const ContactSettings& settings);
   MotionKernels motion;
-  RotationKernels turns;
-  ArticulationKernels linkages;
+  RotationKernels rotation;
+  ArticulationKernels articulations;
   BallKernels balls;
 };
 

@@ -23,23 +23,23 @@ constexpr float kSpringSpeed = 0.125f;
 // By how many slops a point of a linked body must overlap (three tenths of the smaller body's inner radius) to be lost, and what share of its
 // impulse it loses in a second then: a head on the wrong side of somebody's chest cannot get back without passing it, and the neck would
 // press it on the chest ever harder.
-constexpr float kDeepPenetrationSlops = 750.0f, kLostLeak = 2.0f;
+constexpr float kDeepPenetrationSlops = 750.0f, kDeepPenetrationLeak = 2.0f;
 // Projected sweeps over the points of a manifold in which some would pull.
-constexpr int kPullSweeps = 6;
+constexpr int kPullIterations = 6;
 
 template <int W, bool kHasA>
 GYRE_INLINE void warm_start_block(ContactBlock<W>& block) {
   PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
   Wide<W> total = block.impulses[0];
-  Vec3W<W> turn_sum = total * block.points[0].arm;
+  Vec3W<W> angular_sum = total * block.points[0].arm;
   for (int k = 1; k < block.point_count; ++k) {
     total = total + block.impulses[k];
-    turn_sum = turn_sum + block.impulses[k] * block.points[k].arm;
+    angular_sum = angular_sum + block.impulses[k] * block.points[k].arm;
   }
-  push_normal<W>(block, pair, total, turn_sum);
-  direction<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2,
+  apply_normal_impulse<W>(block, pair, total, angular_sum);
+  apply_impulse<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2,
                block.friction_from_a, block.friction_from_b, block.twist * block.normal);
-  if (block.rolls != 0) turn<W>(block, pair, block.aside->rolling);
+  if (block.has_rolling != 0) apply_angular_impulse<W>(block, pair, block.cold->rolling);
   store_pair<W>(block, pair);
 }
 
@@ -75,7 +75,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   }
   const Vec3W<W> slip = relative_velocity<W>(pair, block.friction_from_a, block.friction_from_b);
   Wide<W> v1 = dot(slip, block.tangent_1), v2 = dot(slip, block.tangent_2);
-  if (block.slips != 0) v1 = v1 - block.aside->surface_1, v2 = v2 - block.aside->surface_2;
+  if (block.has_surface_velocity != 0) v1 = v1 - block.cold->surface_1, v2 = v2 - block.cold->surface_2;
   const Wide<W> v3 = dot(relative_spin<W>(pair), block.normal);
 
   // Sticking: all three rows at once.
@@ -86,27 +86,27 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   // Where on its limit the impulse is: 1 on the ellipsoid. No load, no friction.
   const auto was_sliding = Mask<W>::of_bits(block.slides);
   const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
-  const Wide<W> grip = select(was_sliding, block.dynamic_grip, block.inverse_friction) * per_load;
-  const Wide<W> twist_grip = select(was_sliding, block.dynamic_twist_grip, block.static_twist_grip) * per_load;
-  const Wide<W> use = (f1 * f1 + f2 * f2) * (grip * grip) + (f3 * f3) * (twist_grip * twist_grip);
+  const Wide<W> inverse_limit = select(was_sliding, block.inverse_dynamic_friction, block.inverse_friction) * per_load;
+  const Wide<W> inverse_twist_limit = select(was_sliding, block.inverse_dynamic_twist, block.inverse_static_twist) * per_load;
+  const Wide<W> use = (f1 * f1 + f2 * f2) * (inverse_limit * inverse_limit) + (f3 * f3) * (inverse_twist_limit * inverse_twist_limit);
   const auto sticks = (use <= one) | ~loaded;
 
   if (!all(sticks)) {
     // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
-    const Wide<W> g1 = block.friction_1 - block.aside->slide_mass * v1;
-    const Wide<W> g2 = block.friction_2 - block.aside->slide_mass * v2;
-    const Wide<W> g3 = block.twist - block.aside->slide_mass * (block.aside->twist_radius * block.aside->twist_radius) * v3;
-    const Wide<W> slide_grip = block.dynamic_grip * per_load;
-    const Wide<W> slide_twist_grip = block.dynamic_twist_grip * per_load;
-    const Wide<W> reach = (g1 * g1 + g2 * g2) * (slide_grip * slide_grip) + (g3 * g3) * (slide_twist_grip * slide_twist_grip);
-    const Wide<W> scale = select(reach > one, one / sqrt(reach), one);
+    const Wide<W> g1 = block.friction_1 - block.cold->slide_mass * v1;
+    const Wide<W> g2 = block.friction_2 - block.cold->slide_mass * v2;
+    const Wide<W> g3 = block.twist - block.cold->slide_mass * (block.cold->twist_radius * block.cold->twist_radius) * v3;
+    const Wide<W> inverse_slide_friction = block.inverse_dynamic_friction * per_load;
+    const Wide<W> inverse_slide_twist = block.inverse_dynamic_twist * per_load;
+    const Wide<W> use_of_limit = (g1 * g1 + g2 * g2) * (inverse_slide_friction * inverse_slide_friction) + (g3 * g3) * (inverse_slide_twist * inverse_slide_twist);
+    const Wide<W> scale = select(use_of_limit > one, one / sqrt(use_of_limit), one);
     f1 = select(sticks, f1, g1 * scale);
     f2 = select(sticks, f2, g2 * scale);
     f3 = select(sticks, f3, g3 * scale);
   }
-  f1 = keep(grip > zero, f1);
-  f2 = keep(grip > zero, f2);
-  f3 = keep(twist_grip > zero, f3);
+  f1 = keep(inverse_limit > zero, f1);
+  f2 = keep(inverse_limit > zero, f2);
+  f3 = keep(inverse_twist_limit > zero, f3);
   block.slides = lane_bits<W>(~sticks);
 
   const Wide<W> d1 = f1 - block.friction_1;
@@ -115,7 +115,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   block.friction_1 = f1;
   block.friction_2 = f2;
   block.twist = f3;
-  direction<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a,
+  apply_impulse<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a,
                block.friction_from_b, d3 * block.normal);
 }
 
@@ -126,46 +126,46 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
   const Wide<W> one = Wide<W>(1.0f);
   const Vec3W<W> spin = relative_spin<W>(pair);
   const Vec3W<W> roll = spin - dot(spin, block.normal) * block.normal;
-  const Vec3W<W> target_speed = block.aside->rolling - block.aside->rolling_mass * roll;
-  const Wide<W> limit = block.aside->rolling_friction * normal_load<W>(block);
-  const Wide<W> size = sqrt(dot(target_speed, target_speed));
+  const Vec3W<W> target = block.cold->rolling - block.cold->rolling_mass * roll;
+  const Wide<W> limit = block.cold->rolling_friction * normal_load<W>(block);
+  const Wide<W> size = sqrt(dot(target, target));
   const Wide<W> scale = select(size > limit, limit / select(size > zero, size, one), one);
   // A lane that does not roll must come out as from a block without this: also where `wanted` leaves a float's range.
-  const auto rolls = block.aside->rolling_friction > zero;
-  const Vec3W<W> bounded = scale * target_speed;
-  const Vec3W<W> next{select(rolls, bounded.x, zero), select(rolls, bounded.y, zero), select(rolls, bounded.z, zero)};
-  turn<W>(block, pair, next - block.aside->rolling);
-  block.aside->rolling = next;
+  const auto has_rolling = block.cold->rolling_friction > zero;
+  const Vec3W<W> bounded = scale * target;
+  const Vec3W<W> next{select(has_rolling, bounded.x, zero), select(has_rolling, bounded.y, zero), select(has_rolling, bounded.z, zero)};
+  apply_angular_impulse<W>(block, pair, next - block.cold->rolling);
+  block.cold->rolling = next;
 }
 
 // The impulses of lanes in which some points would pull, by projected sweeps: into `next`, of the others nothing.
 // From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
 template <int W, int Count>
-GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& aside, const Wide<W>* residual,
-                                         const Wide<W>* kept, Mask<W> pulls, Wide<W>* next) {
+GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& cold, const Wide<W>* residual,
+                                         const Wide<W>* accumulated, Mask<W> pulls, Wide<W>* next) {
   const Wide<W> zero(0.0f), one(1.0f);
   Wide<W> tried[Count], change[Count];
   GYRE_UNROLL
   for (int i = 0; i < Count; ++i) {
-    tried[i] = max(kept[i], zero);
-    change[i] = tried[i] - kept[i];
+    tried[i] = max(accumulated[i], zero);
+    change[i] = tried[i] - accumulated[i];
   }
   GYRE_ROLLED
-  for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
-    auto stands = one > zero;
+  for (int iteration = 0; iteration < kPullIterations; ++iteration) {
+    auto unchanged = one > zero;
     GYRE_UNROLL
     for (int i = 0; i < Count; ++i) {
       Wide<W> speed = residual[i];
       GYRE_UNROLL
-      for (int j = 0; j < Count; ++j) speed = speed + aside.k[packed(i, j)] * change[j];
-      const Wide<W> now = max(tried[i] - aside.relief[i] * speed, zero);
-      stands = stands & (now == tried[i]);
+      for (int j = 0; j < Count; ++j) speed = speed + cold.k[packed(i, j)] * change[j];
+      const Wide<W> now = max(tried[i] - cold.inverse_diagonal[i] * speed, zero);
+      unchanged = unchanged & (now == tried[i]);
       tried[i] = now;
-      change[i] = now - kept[i];
+      change[i] = now - accumulated[i];
     }
     // What all of them left as it was, as where no point bears anything, the next sweep would not change either. What the others
     // come to is not asked.
-    if (none(and_not(pulls, stands))) break;
+    if (none(and_not(pulls, unchanged))) break;
   }
   GYRE_UNROLL
   for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
@@ -178,36 +178,36 @@ GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& aside, const
 template <int W, bool kSprung, int Count, bool kHasA>
 GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
-  const NormalMotion<W> ways = normal_ways<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
+  const NormalMotion<W> displacements = normal_displacements<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
   const Wide<W> lost = Wide<W>(-kDeepPenetrationSlops) * block.slop;
-  const Wide<W> leak(1.0f / (1.0f + kLostLeak * substep));
+  const Wide<W> leak(1.0f / (1.0f + kDeepPenetrationLeak * substep));
   Wide<W> residual[Count];  // speed that the row wants to lose
-  Wide<W> kept[Count];      // the impulse as it stands, less what the spring gives way
+  Wide<W> accumulated[Count];      // the impulse as it stands, less what the spring gives way
   GYRE_UNROLL
   for (int i = 0; i < Count; ++i) {
     const PointBlock<W>& point = block.points[i];
-    const Wide<W> separation = point.separation + ways.at(point);
+    const Wide<W> separation = point.separation + displacements.at(point);
     const Wide<W> speed = speeds.at(point);
     const auto apart = separation > zero;
     if constexpr (kSprung) {
-      const Wide<W> asked = (separation + block.slop) * block.rate;
-      const Wide<W> fastest = zero - Wide<W>(kSpringSpeed) * block.push_speed;
-      const auto is_capped = asked < fastest;
-      residual[i] = speed + select(apart, separation * rate + block.slop * block.rate, max(asked, fastest));
+      const Wide<W> bias = (separation + block.slop) * block.rate;
+      const Wide<W> fastest = zero - Wide<W>(kSpringSpeed) * block.pushout_speed;
+      const auto is_capped = bias < fastest;
+      residual[i] = speed + select(apart, separation * rate + block.slop * block.rate, max(bias, fastest));
       // Where the speed is capped the impulse gives way less by the same share: the spring still bears its load.
-      const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, asked, one), one) : one;
+      const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, bias, one), one) : one;
       // A point that parts ceases to give way by degrees.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
-      kept[i] =
-          block.impulses[i] - (block.compliance * near) * share * max(block.impulses[i] - point.held, zero);
-      if (block.linked != 0) {
-        kept[i] = select(Mask<W>::of_bits(block.linked) & (separation < lost), leak * kept[i], kept[i]);
+      accumulated[i] =
+          block.impulses[i] - (block.compliance * near) * share * max(block.impulses[i] - point.mean_impulse, zero);
+      if (block.jointed != 0) {
+        accumulated[i] = select(Mask<W>::of_bits(block.jointed) & (separation < lost), leak * accumulated[i], accumulated[i]);
       }
     } else {
       // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
       const Wide<W> excess = select(block.impulses[i] > zero, max(speed + separation * rate, zero), zero);
       residual[i] = select(apart, excess, speed);
-      kept[i] = block.impulses[i];
+      accumulated[i] = block.impulses[i];
     }
     // A point that the lane does not have must stay out of the sums even where speeds leave a float's range: 0 times that
     // would be no number, and a block of the lane's own would not have it.
@@ -220,22 +220,22 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
     Wide<W> change = block.inverse_k[packed(i, 0)] * residual[0];
     GYRE_UNROLL
     for (int j = 1; j < Count; ++j) change = change + block.inverse_k[packed(i, j)] * residual[j];
-    const Wide<W> target_speed = kept[i] - change;
-    pulls = pulls | (target_speed < zero);
-    next[i] = max(target_speed, zero);
+    const Wide<W> target = accumulated[i] - change;
+    pulls = pulls | (target < zero);
+    next[i] = max(target, zero);
   }
-  if (Count > 1 && any(pulls)) iterate_manifold_points<W, Count>(*block.aside, residual, kept, pulls, next);
+  if (Count > 1 && any(pulls)) iterate_manifold_points<W, Count>(*block.cold, residual, accumulated, pulls, next);
   Wide<W> total = next[0] - block.impulses[0];
-  Vec3W<W> turn_sum = total * block.points[0].arm;
+  Vec3W<W> angular_sum = total * block.points[0].arm;
   block.impulses[0] = next[0];
   GYRE_UNROLL
   for (int i = 1; i < Count; ++i) {
     const Wide<W> change = next[i] - block.impulses[i];
     block.impulses[i] = next[i];
     total = total + change;
-    turn_sum = turn_sum + change * block.points[i].arm;
+    angular_sum = angular_sum + change * block.points[i].arm;
   }
-  push_normal<W>(block, pair, total, turn_sum);
+  apply_normal_impulse<W>(block, pair, total, angular_sum);
 }
 
 template <int W, bool kSprung, bool kHasA>
@@ -253,7 +253,7 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
 // Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
 template <int W>
 GYRE_INLINE void apply_new_contact_impulse(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
-  const auto fresh = block.aside->fresh > Wide<W>(0.0f);
+  const auto fresh = block.cold->fresh > Wide<W>(0.0f);
   const PairMotion<W> old = pair;
   Wide<W> impulses[kMaxManifoldPoints];
   for (int k = 0; k < block.point_count; ++k) impulses[k] = block.impulses[k];
@@ -281,13 +281,13 @@ template <int W>
 __attribute__((noinline)) PairMotion<W> begin_pair(ContactBlock<W>& block, float substep) {
   PairMotion<W> pair = load_pair<W>(block);
   if (block.has_fresh != 0) apply_new_contact_impulse<W>(block, pair, substep);
-  if (block.rolls != 0) solve_rolling<W>(block, pair);
+  if (block.has_rolling != 0) solve_rolling<W>(block, pair);
   return pair;
 }
 
 // What of it a block has in which no lane has a body A.
 template <bool kHasA, int W>
-GYRE_INLINE PairMotion<W, kHasA> part_of(const PairMotion<W>& pair) {
+GYRE_INLINE PairMotion<W, kHasA> reduce_pair(const PairMotion<W>& pair) {
   if constexpr (kHasA) {
     return pair;
   } else {
@@ -308,28 +308,28 @@ GYRE_INLINE bool is_still(const PairMotion<W, kHasA>& pair) {
 }
 // Nor has moved since the step began.
 template <int W, bool kHasA>
-GYRE_INLINE bool has_stayed(const ContactBlock<W>& block) {
-  const BodyWay<W> b(block.read_b);
-  WideInt<W> bits = all_bits<W>(b.moved) | all_bits<W>(b.turned);
+GYRE_INLINE bool is_undisplaced(const ContactBlock<W>& block) {
+  const BodyDisplacement<W> b(block.read_b);
+  WideInt<W> bits = all_bits<W>(b.delta_position) | all_bits<W>(b.delta_rotation);
   if constexpr (kHasA) {
-    const BodyWay<W> a(block.read_a);
-    bits = bits | all_bits<W>(a.moved) | all_bits<W>(a.turned);
+    const BodyDisplacement<W> a(block.read_a);
+    bits = bits | all_bits<W>(a.delta_position) | all_bits<W>(a.delta_rotation);
   }
   return all(bits == WideInt<W>(0));
 }
 
 // What a block without rolling friction carries from one sub-step to the next.
 template <int W>
-struct StandingImpulses {
+struct SavedImpulses {
   Wide<W> points[kMaxManifoldPoints], friction_1, friction_2, twist;
   std::uint32_t slides;
 
-  GYRE_INLINE void take(const ContactBlock<W>& block) {
+  GYRE_INLINE void save(const ContactBlock<W>& block) {
     for (int k = 0; k < block.point_count; ++k) points[k] = block.impulses[k];
     friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, slides = block.slides;
   }
   // To the bit.
-  GYRE_INLINE bool stand(const ContactBlock<W>& block) const {
+  GYRE_INLINE bool equal(const ContactBlock<W>& block) const {
     const auto change = [](Wide<W> a, Wide<W> b) { return bit_pattern(a) ^ bit_pattern(b); };
     WideInt<W> bits = change(friction_1, block.friction_1) | change(friction_2, block.friction_2) |
                       change(twist, block.twist);
@@ -341,16 +341,16 @@ struct StandingImpulses {
 // Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.
 template <int W, bool kHasA>
 GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
-  const bool begins = (block.has_fresh | block.rolls) != 0;
-  PairMotion<W, kHasA> pair = begins ? part_of<kHasA>(begin_pair<W>(block, substep)) : load_pair<W, kHasA>(block);
-  const bool still = !begins && is_still<W>(pair) && has_stayed<W, kHasA>(block);
-  if (!still || block.idles == 0) {
-    StandingImpulses<W> standing;
-    if (still) standing.take(block);
+  const bool begins = (block.has_fresh | block.has_rolling) != 0;
+  PairMotion<W, kHasA> pair = begins ? reduce_pair<kHasA>(begin_pair<W>(block, substep)) : load_pair<W, kHasA>(block);
+  const bool still = !begins && is_still<W>(pair) && is_undisplaced<W, kHasA>(block);
+  if (!still || block.is_settled == 0) {
+    SavedImpulses<W> saved;
+    if (still) saved.save(block);
     solve_friction<W>(block, pair);
     solve_normals<W, true>(block, pair, substep);
     store_pair<W>(block, pair);
-    block.idles = still && is_still<W>(pair) && standing.stand(block) ? 1 : 0;
+    block.is_settled = still && is_still<W>(pair) && saved.equal(block) ? 1 : 0;
   }
   for (int k = 0; k < block.point_count; ++k) block.totals[k] = block.totals[k] + block.impulses[k];
   block.total_1 = block.total_1 + block.friction_1;
@@ -377,7 +377,7 @@ GYRE_INLINE void relax_block(ContactBlock<W>& block, float substep) {
   const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2;
   Wide<W> impulses[kMaxManifoldPoints];
   for (int k = 0; k < block.point_count; ++k) impulses[k] = block.impulses[k];
-  if (block.rolls != 0) solve_rolling<W>(block, pair);
+  if (block.has_rolling != 0) solve_rolling<W>(block, pair);
   solve_friction<W>(block, pair);
   solve_normals<W, false>(block, pair, substep);
   for (int k = 0; k < block.point_count; ++k) {

@@ -37,10 +37,10 @@ BodyMotion touch(int width, float load) {
   order[0] = 0;
   Arena arena;
   void* const block = arena.make<std::byte>(kernels.block_bytes).data();
-  void* const aside = arena.make<std::byte>(kernels.aside_bytes).data();
+  void* const cold = arena.make<std::byte>(kernels.cold_bytes).data();
   const ContactSettings settings{
       .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
-  kernels.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+  kernels.prepare(block, cold, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
   kernels.warm_start(block, 0, 1);
   kernels.solve(block, 0, 1, settings.substep);
   return motion;
@@ -84,13 +84,13 @@ struct Bone {
   Arena arena;
   const ContactKernels& kernels;
   void* const block;
-  void* const aside;
+  void* const cold;
   AdvancedArms arms;
 
   explicit Bone(int width)
       : kernels(select_contact_kernels(width)),
         block(arena.make<std::byte>(kernels.block_bytes).data()),
-        aside(arena.make<std::byte>(kernels.aside_bytes).data()) {
+        cold(arena.make<std::byte>(kernels.cold_bytes).data()) {
     motion.inverse_mass = 1.0f;
     Manifold manifold;
     manifold.count = arms.count = 2;
@@ -111,12 +111,12 @@ struct Bone {
     order[0] = 0;
     const ContactSettings settings{
         .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
-    kernels.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+    kernels.prepare(block, cold, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
     kernels.warm_start(block, 0, 1);
   }
   void follow() {
     const AdvancedArmsLane lane{0, &arms, nullptr, &inertia.inverse};
-    kernels.follow(block, 0, &lane, 1);
+    kernels.advance_points(block, 0, &lane, 1);
   }
   static constexpr Vec3 kFriction{0, 0, 1.2f};
 };

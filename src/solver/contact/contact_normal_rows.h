@@ -26,17 +26,17 @@ GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exis
     const PointBlock<W>& point = block.points[i];
     const Vec3W<W> ia = block.inverse_inertia_a * (point.arm + block.arm_shift_a);
     const Vec3W<W> ib = block.inverse_inertia_b * (point.arm + block.arm_shift_b);
-    const Vec3W<W> turn = ia + ib;
+    const Vec3W<W> angular = ia + ib;
     const Wide<W> common = inverse_masses + (dot(block.arm_shift_a, ia) + dot(block.arm_shift_b, ib));
     const auto exists = point_exists[i] > zero;
     Wide<W> row[Count];
     for (int j = 0; j <= i; ++j) {
-      const Wide<W> k = common + dot(block.points[j].arm, turn);
-      block.aside->k[packed(j, i)] = row[j] = keep(exists & (point_exists[j] > zero), k);
+      const Wide<W> k = common + dot(block.points[j].arm, angular);
+      block.cold->k[packed(j, i)] = row[j] = keep(exists & (point_exists[j] > zero), k);
     }
     const Wide<W> own = row[i];
-    block.aside->relief[i] = keep(own > zero, one / select(own > zero, own, one));
-    block.rows[i] = lane_bits<W>(block.aside->relief[i] > zero);
+    block.cold->inverse_diagonal[i] = keep(own > zero, one / select(own > zero, own, one));
+    block.rows[i] = lane_bits<W>(block.cold->inverse_diagonal[i] > zero);
     for (int j = 0; j < i; ++j) {
       Wide<W> sum = row[j];
       for (int m = 0; m < j; ++m) sum = sum - l[packed(m, i)] * l[packed(m, j)];

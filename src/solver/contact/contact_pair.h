@@ -12,7 +12,7 @@ template <int W>
 struct PointBlock {
   Vec3W<W> arm;           // from a centre of mass to the point, times the normal: what a push along it turns
   Wide<W> separation;     // as the step began
-  Wide<W> held;           // the load it is used to
+  Wide<W> mean_impulse;           // the load it is used to
 };
 
 // Place of row i, column j (either order) in a packed upper triangle, column by column (00 01 11 02 12 22 03 13 23 33): that of fewer
@@ -29,7 +29,7 @@ struct ContactBlockCold {
   // Where points would pull: K = J M^-1 J^T of the normal rows, upper triangle; it and `relief` are 0 in rows of points that a lane does
   // not have.
   Wide<W> k[10];
-  Wide<W> relief[kMaxManifoldPoints];  // 1 / K_ii
+  Wide<W> inverse_diagonal[kMaxManifoldPoints];  // 1 / K_ii
   // Where velocities go if not all bodies of a side are pushed: `nowhere` for those that are not.
   float* write_a[W];
   float* write_b[W];
@@ -48,23 +48,23 @@ struct alignas(64) ContactBlock {
   // Motion records of the bodies: zeros for what has none.
   float* read_a[W];
   float* read_b[W];
-  ContactBlockCold<W>* aside;
+  ContactBlockCold<W>* cold;
   std::int32_t point_count = 0;  // the most of any lane; three are prepared as four, for each number is a kernel of its own
   // Any lane has rolling friction; is fresh; has a surface that moves by itself; lacks a row that others have.
-  std::uint8_t rolls = 0, has_fresh = 0, slips = 0, has_uneven_points = 0;
-  std::int32_t idles = 0;        // solved where nothing moves, nor has in the step, it came out as it was: it will again
+  std::uint8_t has_rolling = 0, has_fresh = 0, has_surface_velocity = 0, has_uneven_points = 0;
+  std::int32_t is_settled = 0;        // solved where nothing moves, nor has in the step, it came out as it was: it will again
   // Lanes, as bits: of which a body hangs on a joint; that have a body there; whose body is pushed; where friction was at its limit;
   // that have a row for a point.
-  std::uint16_t linked = 0, has_a = 0, has_b = 0, pushes_a = 0, pushes_b = 0, slides = 0, rows[kMaxManifoldPoints] = {};
+  std::uint16_t jointed = 0, has_a = 0, has_b = 0, movable_a = 0, movable_b = 0, slides = 0, rows[kMaxManifoldPoints] = {};
   Vec3W<W> normal, tangent_1, tangent_2;
   // Friction at the centre of pressure.
   Vec3W<W> friction_from_a, friction_from_b;
   Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23, inverse_k33;  // of (tangent_1, tangent_2, twist)
   // Inverse friction coefficients, static and dynamic, and the same of the twist (1/m): 0 where there is no friction.
-  Wide<W> inverse_friction, dynamic_grip, static_twist_grip, dynamic_twist_grip;
+  Wide<W> inverse_friction, inverse_dynamic_friction, inverse_static_twist, inverse_dynamic_twist;
   Wide<W> inverse_mass_a, inverse_mass_b;
   Sym3W<W> inverse_inertia_a, inverse_inertia_b;
-  Wide<W> rate, compliance, slop, push_speed;
+  Wide<W> rate, compliance, slop, pushout_speed;
   // All points' arms on a body differ from `arm` by the same: one of these is zero, that of the body whose centre is nearer.
   Vec3W<W> arm_shift_a, arm_shift_b;
   // Accumulated in this sub-step, and summed over the step.
@@ -117,13 +117,13 @@ GYRE_INLINE void store_velocities(float* const (&records)[W], Vec3W<W> linear, V
 template <int W, bool kHasA>
 GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
   if constexpr (kHasA)
-    store_velocities<W>(block.pushes_a == all_lanes(W) ? block.read_a : block.aside->write_a, pair.linear_a, pair.angular_a);
-  store_velocities<W>(block.pushes_b == all_lanes(W) ? block.read_b : block.aside->write_b, pair.linear_b, pair.angular_b);
+    store_velocities<W>(block.movable_a == all_lanes(W) ? block.read_a : block.cold->write_a, pair.linear_a, pair.angular_a);
+  store_velocities<W>(block.movable_b == all_lanes(W) ? block.read_b : block.cold->write_b, pair.linear_b, pair.angular_b);
 }
 
 // Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`), and the angular impulse `t` on B (and -t on A).
 template <int W, bool kHasA>
-GYRE_INLINE void direction(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p,
+GYRE_INLINE void apply_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p,
                            Vec3W<W> from_a, Vec3W<W> from_b, Vec3W<W> t) {
   if constexpr (kHasA) {
     pair.linear_a = pair.linear_a - block.inverse_mass_a * p;
@@ -135,31 +135,31 @@ GYRE_INLINE void direction(const ContactBlock<W>& block, PairMotion<W, kHasA>& p
 
 // Adds an impulse `p` along the normal; `turn` is the sum of its parts times the arms of their points.
 template <int W, bool kHasA>
-GYRE_INLINE void push_normal(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Wide<W> p, Vec3W<W> turn) {
+GYRE_INLINE void apply_normal_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Wide<W> p, Vec3W<W> moment) {
   if constexpr (kHasA) {
     pair.linear_a = pair.linear_a - (block.inverse_mass_a * p) * block.normal;
-    pair.angular_a = pair.angular_a - block.inverse_inertia_a * (turn + p * block.arm_shift_a);
+    pair.angular_a = pair.angular_a - block.inverse_inertia_a * (moment + p * block.arm_shift_a);
   }
   pair.linear_b = pair.linear_b + (block.inverse_mass_b * p) * block.normal;
-  pair.angular_b = pair.angular_b + block.inverse_inertia_b * (turn + p * block.arm_shift_b);
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * (moment + p * block.arm_shift_b);
 }
 
 // How much, along the normal, B's points move against A's: what is the same for all points, and what turns add for each.
 template <int W>
 struct NormalMotion {
   Wide<W> common;
-  Vec3W<W> turn;
+  Vec3W<W> rotation;
 
-  GYRE_INLINE Wide<W> at(const PointBlock<W>& point) const { return common + dot(turn, point.arm); }
+  GYRE_INLINE Wide<W> at(const PointBlock<W>& point) const { return common + dot(rotation, point.arm); }
 };
 // Of two bodies, and of one on what is not there.
 template <int W>
-GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_a, Vec3W<W> turn_b) {
-  return {dot(way, block.normal) + (dot(turn_b, block.arm_shift_b) - dot(turn_a, block.arm_shift_a)), turn_b - turn_a};
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> displacement, Vec3W<W> rotation_a, Vec3W<W> rotation_b) {
+  return {dot(displacement, block.normal) + (dot(rotation_b, block.arm_shift_b) - dot(rotation_a, block.arm_shift_a)), rotation_b - rotation_a};
 }
 template <int W>
-GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_b) {
-  return {dot(way, block.normal) + dot(turn_b, block.arm_shift_b), turn_b};
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> displacement, Vec3W<W> rotation_b) {
+  return {dot(displacement, block.normal) + dot(rotation_b, block.arm_shift_b), rotation_b};
 }
 template <int W, bool kHasA>
 GYRE_INLINE NormalMotion<W> normal_speeds(const ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
@@ -172,29 +172,29 @@ GYRE_INLINE NormalMotion<W> normal_speeds(const ContactBlock<W>& block, const Pa
 
 // How far a body has moved and turned since the step began.
 template <int W>
-struct BodyWay {
-  Vec3W<W> moved, turned;
-  GYRE_INLINE explicit BodyWay(float* const (&records)[W]) {
+struct BodyDisplacement {
+  Vec3W<W> delta_position, delta_rotation;
+  GYRE_INLINE explicit BodyDisplacement(float* const (&records)[W]) {
     Wide<W> columns[8];
-    gather_columns<8, W>(records, kMotionMoved, columns);
-    moved = {columns[0], columns[1], columns[2]};
-    turned = {columns[3], columns[4], columns[5]};
+    gather_columns<8, W>(records, kMotionDeltaPosition, columns);
+    delta_position = {columns[0], columns[1], columns[2]};
+    delta_rotation = {columns[3], columns[4], columns[5]};
   }
 };
 template <int W, bool kHasA>
-GYRE_INLINE NormalMotion<W> normal_ways(const ContactBlock<W>& block) {
-  const BodyWay<W> b(block.read_b);
+GYRE_INLINE NormalMotion<W> normal_displacements(const ContactBlock<W>& block) {
+  const BodyDisplacement<W> b(block.read_b);
   if constexpr (kHasA) {
-    const BodyWay<W> a(block.read_a);
-    return normal_motion<W>(block, b.moved - a.moved, a.turned, b.turned);
+    const BodyDisplacement<W> a(block.read_a);
+    return normal_motion<W>(block, b.delta_position - a.delta_position, a.delta_rotation, b.delta_rotation);
   } else {
-    return normal_motion<W>(block, b.moved, b.turned);
+    return normal_motion<W>(block, b.delta_position, b.delta_rotation);
   }
 }
 
 // Adds the angular impulse `t` on B (and -t on A).
 template <int W, bool kHasA>
-GYRE_INLINE void turn(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> t) {
+GYRE_INLINE void apply_angular_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> t) {
   if constexpr (kHasA) pair.angular_a = pair.angular_a - block.inverse_inertia_a * t;
   pair.angular_b = pair.angular_b + block.inverse_inertia_b * t;
 }

@@ -11,8 +11,6 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// The overlap that springs draw their points to, as a share of the size: loaded points then stay in touch.
-constexpr float kSpringSlop = 4.0e-4f;
 // How much of the lower body's mobility is denied to it where a contact faces straight up.
 constexpr float kLowerShare = 0.7f;
 // A point gets used to its load as a mean over its age: of at least the first time (s), of at most the second.
@@ -40,10 +38,10 @@ static_assert(offsetof(ContactPointState, normal_impulse) == 4 * kPointImpulse &
 static_assert(offsetof(ContactPointState, total_impulse) == 4 * kPointImpulse + 4 && offsetof(ContactPointState, held) == 4 * kPointImpulse + 8);
 static_assert(offsetof(BodyInertia, inverse_mass) == 4 * kInertiaMass + 8);
 static_assert(offsetof(ContactConstraint, static_friction) == 4 * kConstraintFriction);
-static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize && offsetof(ContactConstraint, push_speed) == 4 * kConstraintSize + 4);
+static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize && offsetof(ContactConstraint, pushout_speed) == 4 * kConstraintSize + 4);
 static_assert(offsetof(ContactConstraint, surface_velocity) == 4 * kConstraintVelocity);
 // Bytes of one four: of the last float.
-static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 && offsetof(ContactConstraint, linked) == 4 * kConstraintKinds + 13);
+static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 && offsetof(ContactConstraint, has_joint) == 4 * kConstraintKinds + 13);
 
 // The constraints and manifolds of a block's lanes. Lanes without a contact, and points that a lane does not have, read zeros
 // and are not written.
@@ -243,19 +241,19 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
   const auto slides = surface.dynamic_friction > zero;
   const Wide<W> scale = select(twists & slides, twist_dynamic / select(slides, surface.dynamic_friction, one), radius);
   const Wide<W> bound = max(max(k.xx, k.yy) + absolute(k.xy), keep(twists, scale * scale * k.zz));
-  block.aside->twist_radius = keep(twists, scale);
-  block.aside->slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
-  const auto grip = [&](Wide<W> friction) {
+  block.cold->twist_radius = keep(twists, scale);
+  block.cold->slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
+  const auto inverse_or_zero = [&](Wide<W> friction) {
     return keep(friction > zero, one / select(friction > zero, min(friction, Wide<W>(kMaxFriction)), one));
   };
-  block.inverse_friction = grip(surface.static_friction);
-  block.dynamic_grip = grip(surface.dynamic_friction);
-  block.static_twist_grip = keep(twists, grip(twist_static));
-  block.dynamic_twist_grip = keep(twists, grip(twist_dynamic));
+  block.inverse_friction = inverse_or_zero(surface.static_friction);
+  block.inverse_dynamic_friction = inverse_or_zero(surface.dynamic_friction);
+  block.inverse_static_twist = keep(twists, inverse_or_zero(twist_static));
+  block.inverse_dynamic_twist = keep(twists, inverse_or_zero(twist_dynamic));
   // Where the patch has shrunk to a point the twist of the last step is far beyond its limit: pulled back as one with the
   // friction it would take that with it.
-  const Wide<W> most = twist_static * normal_load<W>(block);
-  block.twist = keep(twists, clamp(block.twist, zero - most, most));
+  const Wide<W> max_twist = twist_static * normal_load<W>(block);
+  block.twist = keep(twists, clamp(block.twist, zero - max_twist, max_twist));
 }
 
 // How soft the lanes' contacts are, and who gives way when overlap is pushed apart: what lies on top, as far as the contact
@@ -265,16 +263,16 @@ template <int W>
 GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W> age, Wide<W> size,
                                   const ContactSettings& settings) {
   const Wide<W> zero(0.0f), one(1.0f), aging(settings.aging);
-  const auto yields = ~rigid, both = Mask<W>::of_bits(block.pushes_a & block.pushes_b);
+  const auto yields = ~rigid, both = Mask<W>::of_bits(block.movable_a & block.movable_b);
   const Wide<W> youth = aging / (aging + age);
   block.rate = keep(yields, youth * Wide<W>(settings.rate));
-  block.slop = Wide<W>(kSpringSlop) * size;
+  block.slop = Wide<W>(float(kSpringSlop)) * size;
   const auto has_slop = block.slop > zero;
   block.compliance =
       keep(yields & has_slop, youth * Wide<W>(settings.compliance) / select(has_slop, block.slop, one));
   const Wide<W> rise = keep(both, Wide<W>(kLowerShare) * dot(block.normal, splat<W>(settings.up)));
-  block.aside->mobility_a = one - max(rise, zero);
-  block.aside->mobility_b = one + min(rise, zero);
+  block.cold->mobility_a = one - max(rise, zero);
+  block.cold->mobility_b = one + min(rise, zero);
 }
 
 // What friction, twist and rolling begin with.
@@ -292,16 +290,16 @@ GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& 
   block.slides = lane_bits<W>(bit_pattern(in[3]) != WideInt<W>(0));
   gather_columns<4, W>(records.manifold, kManifoldTwist, in);
   block.twist = warm * in[0];
-  block.aside->rolling_friction = surface.rolling_friction;
+  block.cold->rolling_friction = surface.rolling_friction;
   // A surface that ceased to brake rolling starts from nothing: otherwise it would depend on the lanes beside it whether
   // the old impulse acts once more.
-  const auto rolls = surface.rolling_friction > zero;
-  block.aside->rolling = keep<W>(rolls, warm * Vec3W<W>{in[1], in[2], in[3]});
-  if (any(rolls)) block.rolls = 1;
+  const auto has_rolling = surface.rolling_friction > zero;
+  block.cold->rolling = keep<W>(has_rolling, warm * Vec3W<W>{in[1], in[2], in[3]});
+  if (any(has_rolling)) block.has_rolling = 1;
   const Sym3W<W>& a = block.inverse_inertia_a;
   const Sym3W<W>& b = block.inverse_inertia_b;
-  const Wide<W> turning = (a.xx + a.yy + a.zz) + (b.xx + b.yy + b.zz);
-  block.aside->rolling_mass = keep(turning > zero, one / select(turning > zero, turning, one));
+  const Wide<W> angular_trace = (a.xx + a.yy + a.zz) + (b.xx + b.yy + b.zz);
+  block.cold->rolling_mass = keep(angular_trace > zero, one / select(angular_trace > zero, angular_trace, one));
 }
 
 template <int W>
@@ -325,11 +323,11 @@ GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t 
     motion[lane] = const_cast<float*>(kNoRecord);
     inertia[lane] = kNoRecord;
     if ((records.lanes >> lane & 1u) == 0) continue;
-    const std::int32_t place = reinterpret_cast<const ContactConstraint*>(records.constraint[lane])->*body;
-    if (place == kNoBody) continue;
+    const std::int32_t index = reinterpret_cast<const ContactConstraint*>(records.constraint[lane])->*body;
+    if (index == kNoBody) continue;
     has |= 1u << lane;
-    motion[lane] = &bodies.motion[place].linear_velocity.x;
-    inertia[lane] = &bodies.inertia[place].inverse.xx;
+    motion[lane] = &bodies.motion[index].linear_velocity.x;
+    inertia[lane] = &bodies.inertia[index].inverse.xx;
   }
   load_inertia<W>(inertia, inverse_mass, inverse_inertia);
   return static_cast<std::uint16_t>(has);
@@ -337,7 +335,7 @@ GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t 
 
 // Where the velocities of the bodies that are pushed go.
 template <int W>
-GYRE_INLINE void find_pushed(std::uint32_t pushes, float* const (&read)[W], float* nowhere, float* (&write)[W]) {
+GYRE_INLINE void find_write_records(std::uint32_t pushes, float* const (&read)[W], float* nowhere, float* (&write)[W]) {
   for (int lane = 0; lane < W; ++lane)
     write[lane] = (pushes >> lane & 1u) != 0 ? read[lane] : nowhere;
 }
@@ -350,18 +348,18 @@ GYRE_INLINE void prepare_bodies(ContactBlock<W>& block, const LaneRecords<W>& re
   block.has_a = find_side<W>(records, &ContactConstraint::body_a, bodies, block.read_a, block.inverse_mass_a, a);
   block.has_b = find_side<W>(records, &ContactConstraint::body_b, bodies, block.read_b, block.inverse_mass_b, b);
   // Whatever pushes a body turns or moves it by a diagonal element.
-  block.pushes_a =
+  block.movable_a =
       block.has_a & lane_bits<W>((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
-  block.pushes_b =
+  block.movable_b =
       block.has_b & lane_bits<W>((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
-  find_pushed<W>(block.pushes_a, block.read_a, block.aside->nowhere, block.aside->write_a);
-  find_pushed<W>(block.pushes_b, block.read_b, block.aside->nowhere, block.aside->write_b);
+  find_write_records<W>(block.movable_a, block.read_a, block.cold->nowhere, block.cold->write_a);
+  find_write_records<W>(block.movable_b, block.read_b, block.cold->nowhere, block.cold->write_b);
 }
 
 // Which body's centre the arms are measured from, and by how much they differ on the other. From the nearer one: the other
 // may be large or far away, and its arms rounded. What nothing moves has no arms at all.
 template <int W>
-GYRE_INLINE Mask<W> place_arms(ContactBlock<W>& block, const PointArms<W>& first) {
+GYRE_INLINE Mask<W> choose_arm_origin(ContactBlock<W>& block, const PointArms<W>& first) {
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
   const auto has_a = Mask<W>::of_bits(block.has_a), has_b = Mask<W>::of_bits(block.has_b);
@@ -379,8 +377,8 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   alignas(64) float nowhere[80] = {};
   LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
   block.point_count = records.point_count == 3 ? 4 : records.point_count;
-  block.rolls = block.has_fresh = 0;
-  block.idles = 0;
+  block.has_rolling = block.has_fresh = 0;
+  block.is_settled = 0;
   Wide<W> in[4];
   block.normal = records.normal;
   block.tangent_1 = any_perpendicular<W>(block.normal);
@@ -396,10 +394,10 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
     point.separation = in[3];
     gather_columns<4, W>(records.point, first + kPointB, in);
     arms[k].from_b = {in[0], in[1], in[2]};
-    if (k == 0) nearer_a = place_arms<W>(block, arms[0]);
+    if (k == 0) nearer_a = choose_arm_origin<W>(block, arms[0]);
     gather_columns<4, W>(records.point, first + kPointImpulse, in);
     block.impulses[k] = warm * in[0];
-    point.held = warm * in[2];
+    point.mean_impulse = warm * in[2];
     block.totals[k] = zero;
     point.arm = cross(select<W>(nearer_a, arms[k].from_a, arms[k].from_b), block.normal);
   }
@@ -407,34 +405,34 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const SurfaceLanes<W> surface{in[0], in[1], in[2], in[3]};
   gather_columns<4, W>(records.constraint, kConstraintSize, in);
   const Wide<W> size = in[0];
-  block.push_speed = in[1];
+  block.pushout_speed = in[1];
   gather_columns<4, W>(records.constraint, kConstraintVelocity, in);
   const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
   // Not -0: what does not move by itself is left out, and that must be the same.
-  block.aside->surface_1 = dot(surface_velocity, block.tangent_1) + zero;
-  block.aside->surface_2 = dot(surface_velocity, block.tangent_2) + zero;
-  block.slips = any((block.aside->surface_1 != zero) | (block.aside->surface_2 != zero)) ? 1 : 0;
+  block.cold->surface_1 = dot(surface_velocity, block.tangent_1) + zero;
+  block.cold->surface_2 = dot(surface_velocity, block.tangent_2) + zero;
+  block.has_surface_velocity = any((block.cold->surface_1 != zero) | (block.cold->surface_2 != zero)) ? 1 : 0;
   block.total_1 = block.total_2 = zero;
   gather_columns<4, W>(records.constraint, kConstraintKinds, in);
   const WideInt<W> none(0), kinds = bit_pattern(in[3]);
   const Mask<W> rigid = (kinds & WideInt<W>(0xff)) != none;
-  block.linked = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
+  block.jointed = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
   Wide<W> age;
   prepare_impulses<W>(block, records, surface, settings, age);
-  block.aside->fresh = select(age > zero, zero, one);
-  if ((to_bits(block.aside->fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
+  block.cold->fresh = select(age > zero, zero, one);
+  if ((to_bits(block.cold->fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
   prepare_softness<W>(block, rigid, age, size, settings);
   prepare_friction<W>(block, surface, pressure_patch<W>(block, records, arms), size);
   prepare_normals<W>(block, records.exists);
 }
 
 template <int W>
-void prepare_blocks(void* memory, void* asides, int begin, int end, const ContactConstraint* constraints,
+void prepare_blocks(void* memory, void* cold_blocks, int begin, int end, const ContactConstraint* constraints,
                     const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
     if (i + 1 < end) fetch_ahead<W>(constraints, order + (i + 1) * W);
-    blocks[i].aside = static_cast<ContactBlockCold<W>*>(asides) + i;
+    blocks[i].cold = static_cast<ContactBlockCold<W>*>(cold_blocks) + i;
     prepare_block<W>(blocks[i], constraints, order + i * W, bodies, settings);
   }
 }
@@ -462,7 +460,7 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   const Vec3W<W> total = block.total_1 * block.tangent_1 + block.total_2 * block.tangent_2 + none;
   const Wide<W> friction_row[4] = {age, friction.x, friction.y, friction.z};
   scatter_columns<4, W>(records.manifold, kManifoldFriction, friction_row);
-  const Vec3W<W> rolling = block.aside->rolling + none;
+  const Vec3W<W> rolling = block.cold->rolling + none;
   const Wide<W> twist_row[4] = {block.twist + zero, rolling.x, rolling.y, rolling.z};
   scatter_columns<4, W>(records.manifold, kManifoldTwist, twist_row);
   const Wide<W> slides = from_bit_pattern(to_int(Mask<W>::of_bits(block.slides)) & WideInt<W>(1));
@@ -472,8 +470,8 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
     const int first = records.begin_point(k) + kPointImpulse;
     gather_columns<4, W>(records.point, first, row);
     const Wide<W> impulse = block.impulses[k] + zero;
-    const Wide<W> held = keep(block.totals[k] > zero, row[2] + gain * (impulse - row[2]));
-    const Wide<W> point_row[4] = {impulse, row[1] + (block.totals[k] + zero), held, row[3]};
+    const Wide<W> mean_impulse = keep(block.totals[k] > zero, row[2] + gain * (impulse - row[2]));
+    const Wide<W> point_row[4] = {impulse, row[1] + (block.totals[k] + zero), mean_impulse, row[3]};
     scatter_columns<4, W>(records.point, first, point_row);
   }
 }
@@ -497,10 +495,10 @@ void read_block_impulse(const void* memory, int index, int lane, ContactImpulse&
   impulse.friction = get_lane(block.friction_1, lane) * get_lane(block.tangent_1, lane) +
                      get_lane(block.friction_2, lane) * get_lane(block.tangent_2, lane);
   impulse.twist = get_lane(block.twist, lane);
-  impulse.rolling = get_lane(block.aside->rolling, lane);
+  impulse.rolling = get_lane(block.cold->rolling, lane);
   impulse.friction_from_b = get_lane(block.friction_from_b, lane);
-  const float twist_grip = get_lane(block.static_twist_grip, lane);
-  impulse.twist_per_normal = twist_grip > 0.0f ? 1.0f / twist_grip : 0.0f;
+  const float inverse_twist_limit = get_lane(block.inverse_static_twist, lane);
+  impulse.twist_per_normal = inverse_twist_limit > 0.0f ? 1.0f / inverse_twist_limit : 0.0f;
 }
 
 template <int W>
@@ -511,21 +509,21 @@ void write_block_impulse(void* memory, int index, int lane, const ContactImpulse
     set_lane(total, lane, get_lane(total, lane) + (value - get_lane(present, lane)));
     set_lane(present, lane, value);
   };
-  block.idles = 0;
+  block.is_settled = 0;
   for (int k = 0; k < kMaxManifoldPoints; ++k) replace(block.impulses[k], block.totals[k], impulse.normal[k]);
   replace(block.friction_1, block.total_1, dot(impulse.friction, get_lane(block.tangent_1, lane)));
   replace(block.friction_2, block.total_2, dot(impulse.friction, get_lane(block.tangent_2, lane)));
   set_lane(block.twist, lane, impulse.twist);
-  set_lane(block.aside->rolling, lane, impulse.rolling);
+  set_lane(block.cold->rolling, lane, impulse.rolling);
   block.slides = static_cast<std::uint16_t>(block.slides & ~(1u << lane));
 }
 
 template <int W>
-void harden_block(void* memory, int index, int lane) {
+void make_block_rigid(void* memory, int index, int lane) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
   set_lane(block.rate, lane, 0.0f);
   set_lane(block.compliance, lane, 0.0f);
-  block.idles = 0;
+  block.is_settled = 0;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

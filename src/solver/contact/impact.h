@@ -22,10 +22,10 @@ namespace gyre {
 struct ImpactPoint {
   Vec3 from_a, from_b;
   float separation = 0.0f;  // as the step began
-  float kick = 0.0f;        // a h: closing speed that the forces of this sub-step added
+  float force_speed = 0.0f;        // a h: closing speed that the forces of this sub-step added
   float target = 0.0f;      // separating speed asked for
   float impulse = 0.0f;     // N s, of the present blow
-  bool struck = false;
+  bool is_hit = false;
   bool pending = false;     // to be kicked after it has been set down
 };
 

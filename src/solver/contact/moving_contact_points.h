@@ -39,14 +39,14 @@ struct AdvancedArmsLanes {
     alignas(64) static constexpr float kNoArms[sizeof(AdvancedArms) / sizeof(float)] = {};
     for (int i = 0; i < W; ++i) arms[i] = inverse_a[i] = inverse_b[i] = kNoArms;
     for (int i = 0; i < count; ++i) {
-      const AdvancedArmsLane& followed = lanes[i];
-      const int lane = followed.lane;
+      const AdvancedArmsLane& moving = lanes[i];
+      const int lane = moving.lane;
       bits |= 1u << lane;
-      arms[lane] = &followed.arms->middle.from_a[0].x;
-      if (followed.inverse_a != nullptr) inverse_a[lane] = &followed.inverse_a->xx, has_a |= 1u << lane;
-      if (followed.inverse_b != nullptr) inverse_b[lane] = &followed.inverse_b->xx, has_b |= 1u << lane;
-      counts.set(lane, float(followed.arms->count));
-      if (followed.arms->count > point_count) point_count = followed.arms->count;
+      arms[lane] = &moving.arms->middle.from_a[0].x;
+      if (moving.inverse_a != nullptr) inverse_a[lane] = &moving.inverse_a->xx, has_a |= 1u << lane;
+      if (moving.inverse_b != nullptr) inverse_b[lane] = &moving.inverse_b->xx, has_b |= 1u << lane;
+      counts.set(lane, float(moving.arms->count));
+      if (moving.arms->count > point_count) point_count = moving.arms->count;
     }
   }
   GYRE_INLINE Mask<W> has_point(int k) const { return counts > Wide<W>(float(k)); }
@@ -80,17 +80,17 @@ struct LoadShares {
     const Wide<W> zero(0.0f), one(1.0f);
     Wide<W> separations[kMaxManifoldPoints], load = zero;
     gather_columns<4, W>(lanes.arms, kArmsSeparation, separations);
-    Wide<W> least = separations[0];
+    Wide<W> lowest_separation = separations[0];
     for (int k = 0; k < lanes.point_count; ++k) {
       exists[k] = lanes.has_point(k);
-      least = select(exists[k], min(least, separations[k]), least);
+      lowest_separation = select(exists[k], min(lowest_separation, separations[k]), lowest_separation);
       load = load + keep(exists[k], block.impulses[k]);
     }
     const auto bears = load > zero;
     const Wide<W> divisor = select(bears, load, one);
     auto left = ~bears;
     for (int k = 0; k < lanes.point_count; ++k) {
-      const auto lowest = left & exists[k] & (separations[k] <= least);
+      const auto lowest = left & exists[k] & (separations[k] <= lowest_separation);
       left = left & ~lowest;
       shares[k] = select(bears, keep(exists[k], block.impulses[k] / divisor), keep(lowest, one));
     }
@@ -99,13 +99,13 @@ struct LoadShares {
 
 // By which shares the friction that stands came to act; as the step begins it acts where the load does.
 template <int W>
-GYRE_INLINE void shares_before(const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& now,
+GYRE_INLINE void previous_shares(const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& now,
                                Wide<W> (&before)[kMaxManifoldPoints]) {
-  Wide<W> noted[kMaxManifoldPoints], sum(0.0f);
-  gather_columns<4, W>(lanes.arms, kArmsShares, noted);
-  for (int k = 0; k < lanes.point_count; ++k) sum = sum + noted[k];
+  Wide<W> recorded[kMaxManifoldPoints], sum(0.0f);
+  gather_columns<4, W>(lanes.arms, kArmsShares, recorded);
+  for (int k = 0; k < lanes.point_count; ++k) sum = sum + recorded[k];
   for (int k = 0; k < lanes.point_count; ++k)
-    before[k] = select(sum > Wide<W>(0.0f), noted[k], now.shares[k]);
+    before[k] = select(sum > Wide<W>(0.0f), recorded[k], now.shares[k]);
 }
 
 // Where friction acts, added up point by point.
@@ -132,8 +132,8 @@ GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const Advanc
   FrictionArms<W> friction;
   for (int k = 0; k < lanes.point_count; ++k) friction.add(friction_shares[k], arms[k] = gather_arms<W>(lanes, set, k));
   const Vec3W<W> slide = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2;
-  const Vec3W<W> turn = block.twist * block.normal + block.aside->rolling;
-  LaneTorques<W> torques{cross(friction.from_a, slide) + turn, cross(friction.from_b, slide) + turn};
+  const Vec3W<W> torsion = block.twist * block.normal + block.cold->rolling;
+  LaneTorques<W> torques{cross(friction.from_a, slide) + torsion, cross(friction.from_b, slide) + torsion};
   for (int k = 0; k < lanes.point_count; ++k) {
     const Vec3W<W> direction = block.impulses[k] * block.normal;
     torques.a = select<W>(load.exists[k], torques.a + cross(arms[k].from_a, direction), torques.a);
@@ -143,7 +143,7 @@ GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const Advanc
 }
 
 template <int W>
-GYRE_INLINE void turn_body(float* record, int lane, const Vec3W<W>& change) {
+GYRE_INLINE void add_spin(float* record, int lane, const Vec3W<W>& change) {
   float* const spin = record + kMotionAngular;
   spin[0] += change.x[lane];
   spin[1] += change.y[lane];
@@ -160,39 +160,39 @@ GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
 
 // Takes over what became of the lanes that are followed.
 template <int W>
-GYRE_INLINE void put_back(ContactBlock<W>& block, const ContactBlock<W>& moved,
+GYRE_INLINE void write_back(ContactBlock<W>& block, const ContactBlock<W>& updated,
                           const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& load) {
-  const auto followed = Mask<W>::of_bits(lanes.bits);
+  const auto moving = Mask<W>::of_bits(lanes.bits);
   const auto put = [](Mask<W> where, auto& to, const auto& from) { to = select(where, from, to); };
   const auto put_vector = [](Mask<W> where, Vec3W<W>& to, const Vec3W<W>& from) { to = select<W>(where, from, to); };
-  put_vector(followed, block.friction_from_a, moved.friction_from_a);
-  put_vector(followed, block.friction_from_b, moved.friction_from_b);
-  put(followed, block.inverse_k11, moved.inverse_k11), put(followed, block.inverse_k12, moved.inverse_k12);
-  put(followed, block.inverse_k13, moved.inverse_k13), put(followed, block.inverse_k22, moved.inverse_k22);
-  put(followed, block.inverse_k23, moved.inverse_k23), put(followed, block.inverse_k33, moved.inverse_k33);
-  put_vector(followed, block.arm_shift_a, moved.arm_shift_a);
-  put_vector(followed, block.arm_shift_b, moved.arm_shift_b);
+  put_vector(moving, block.friction_from_a, updated.friction_from_a);
+  put_vector(moving, block.friction_from_b, updated.friction_from_b);
+  put(moving, block.inverse_k11, updated.inverse_k11), put(moving, block.inverse_k12, updated.inverse_k12);
+  put(moving, block.inverse_k13, updated.inverse_k13), put(moving, block.inverse_k22, updated.inverse_k22);
+  put(moving, block.inverse_k23, updated.inverse_k23), put(moving, block.inverse_k33, updated.inverse_k33);
+  put_vector(moving, block.arm_shift_a, updated.arm_shift_a);
+  put_vector(moving, block.arm_shift_b, updated.arm_shift_b);
   Wide<W> separations[kMaxManifoldPoints];
   gather_columns<4, W>(lanes.arms, kArmsSeparation, separations);
   for (int i = 0; i < lanes.point_count; ++i) {
-    put_vector(load.exists[i], block.points[i].arm, moved.points[i].arm);
+    put_vector(load.exists[i], block.points[i].arm, updated.points[i].arm);
     put(load.exists[i], block.points[i].separation, separations[i]);
-    put(load.exists[i], block.aside->relief[i], moved.aside->relief[i]);
-    block.rows[i] = lane_bits<W>(block.aside->relief[i] > Wide<W>(0.0f));
+    put(load.exists[i], block.cold->inverse_diagonal[i], updated.cold->inverse_diagonal[i]);
+    block.rows[i] = lane_bits<W>(block.cold->inverse_diagonal[i] > Wide<W>(0.0f));
     for (int j = i; j < lanes.point_count; ++j) {
-      put(load.exists[j], block.aside->k[packed(i, j)], moved.aside->k[packed(i, j)]);
-      put(load.exists[j], block.inverse_k[packed(i, j)], moved.inverse_k[packed(i, j)]);
+      put(load.exists[j], block.cold->k[packed(i, j)], updated.cold->k[packed(i, j)]);
+      put(load.exists[j], block.inverse_k[packed(i, j)], updated.inverse_k[packed(i, j)]);
     }
   }
 }
 
 template <int W>
-void follow_lanes(void* memory, int index, const AdvancedArmsLane* followed, int count) {
+void advance_points(void* memory, int index, const AdvancedArmsLane* moving, int count) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
-  const AdvancedArmsLanes<W> lanes(followed, count);
+  const AdvancedArmsLanes<W> lanes(moving, count);
   const LoadShares<W> load(block, lanes);
   Wide<W> friction_before[kMaxManifoldPoints];
-  shares_before<W>(lanes, load, friction_before);
+  previous_shares<W>(lanes, load, friction_before);
   const LaneTorques<W> before = torques_of<W>(block, lanes, load, friction_before, kArmsBefore),
                        now = torques_of<W>(block, lanes, load, load.shares, kArmsNow);
   const Vec3W<W> before_a = block.inverse_inertia_a * before.a, before_b = block.inverse_inertia_b * before.b;
@@ -206,34 +206,34 @@ void follow_lanes(void* memory, int index, const AdvancedArmsLane* followed, int
   const Vec3W<W> change_a = before_a - block.inverse_inertia_a * now.a,  // a gets the opposite
                  change_b = block.inverse_inertia_b * now.b - before_b;
   for (int i = 0; i < count; ++i) {
-    const int lane = followed[i].lane;
-    turn_body<W>(block.aside->write_a[lane], lane, change_a);
-    turn_body<W>(block.aside->write_b[lane], lane, change_b);
-    for (int k = 0; k < lanes.point_count; ++k) followed[i].arms->friction_shares[k] = load.shares[k][lane];
+    const int lane = moving[i].lane;
+    add_spin<W>(block.cold->write_a[lane], lane, change_a);
+    add_spin<W>(block.cold->write_b[lane], lane, change_b);
+    for (int k = 0; k < lanes.point_count; ++k) moving[i].arms->friction_shares[k] = load.shares[k][lane];
   }
-  ContactBlockCold<W> aside;
-  ContactBlock<W> moved;
-  moved.aside = &aside;
-  copy_bodies<W>(block, moved);
-  moved.inverse_inertia_a = block.inverse_inertia_a, moved.inverse_inertia_b = block.inverse_inertia_b;
-  moved.point_count = lanes.point_count;
+  ContactBlockCold<W> cold;
+  ContactBlock<W> updated;
+  updated.cold = &cold;
+  copy_bodies<W>(block, updated);
+  updated.inverse_inertia_a = block.inverse_inertia_a, updated.inverse_inertia_b = block.inverse_inertia_b;
+  updated.point_count = lanes.point_count;
   const PointArms<W> first = gather_arms<W>(lanes, kArmsMiddle, 0);
-  const auto nearer_a = place_arms<W>(moved, first);
+  const auto nearer_a = choose_arm_origin<W>(updated, first);
   FrictionArms<W> friction;
   Wide<W> exists[kMaxManifoldPoints];
   for (int k = 0; k < lanes.point_count; ++k) {
     exists[k] = keep(load.exists[k], Wide<W>(1.0f));
     const PointArms<W> arms = k == 0 ? first : gather_arms<W>(lanes, kArmsMiddle, k);
     friction.add(load.shares[k], arms);
-    moved.points[k].arm = cross(select<W>(nearer_a, arms.from_a, arms.from_b), block.normal);
+    updated.points[k].arm = cross(select<W>(nearer_a, arms.from_a, arms.from_b), block.normal);
   }
-  moved.friction_from_a = friction.from_a, moved.friction_from_b = friction.from_b;
+  updated.friction_from_a = friction.from_a, updated.friction_from_b = friction.from_b;
   auto twists = nearer_a;
-  prepare_friction_masses<W>(moved, block.aside->twist_radius > Wide<W>(0.0f), twists);
-  prepare_normals<W>(moved, exists);
-  put_back<W>(block, moved, lanes, load);
+  prepare_friction_masses<W>(updated, block.cold->twist_radius > Wide<W>(0.0f), twists);
+  prepare_normals<W>(updated, exists);
+  write_back<W>(block, updated, lanes, load);
   mark_uneven_points<W>(block);
-  block.idles = 0;
+  block.is_settled = 0;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

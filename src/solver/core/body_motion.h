@@ -12,9 +12,9 @@ struct alignas(64) BodyMotion {
   Vec3 linear_velocity;   // m/s, of the centre of mass, world frame
   Vec3 angular_velocity;  // rad/s, world frame
   float inverse_mass = 0.0f;  // 1/kg; 0 for fixed and kinematic bodies
-  float pushed = 0.0f;        // m: the farthest that overlap pushed a point of the body in this step
-  Vec3 moved;   // m, of the centre of mass since the step began
-  Vec3 turned;  // rad, rotation vector since the step began (sum of the sub-steps')
+  float pushout = 0.0f;        // m: the farthest that overlap pushed a point of the body in this step
+  Vec3 delta_position;   // m, of the centre of mass since the step began
+  Vec3 delta_rotation;  // rad, rotation vector since the step began (sum of the sub-steps')
   float spare_1 = 0.0f;
   float spare_2 = 0.0f;
 };
@@ -22,10 +22,10 @@ static_assert(sizeof(BodyMotion) == 64);
 
 // For a body that leaves the bodies that are moved. `moved` and `turned` too: joints to it read them, nobody clears them
 // any more as the step begins, and a snapshot does not keep them.
-inline void stop(BodyMotion& motion) {
+inline void clear_motion(BodyMotion& motion) {
   motion.linear_velocity = motion.angular_velocity = {};
-  motion.moved = motion.turned = {};
-  motion.pushed = 0.0f;
+  motion.delta_position = motion.delta_rotation = {};
+  motion.pushout = 0.0f;
 }
 
 // m/s, world frame, of the point of the body that is at `from_center` from its centre of mass (world axes).
@@ -37,9 +37,9 @@ inline Vec3 point_velocity(const BodyMotion& motion, Vec3 from_center) {
 constexpr int kMotionFloats = 16;
 constexpr int kMotionLinear = 0;
 constexpr int kMotionAngular = 3;
-constexpr int kMotionPushed = 7;
-constexpr int kMotionMoved = 8;
-constexpr int kMotionTurned = 11;
+constexpr int kMotionPushout = 7;
+constexpr int kMotionDeltaPosition = 8;
+constexpr int kMotionDeltaRotation = 11;
 
 // World-frame inverse inertia, kept beside the record because only preparation reads it.
 struct BodyInertia {

@@ -7,7 +7,7 @@ namespace gyre {
 // What a joint does not allow is taken back as if it were no more than this.
 struct ErrorBounds {
   float point;  // m
-  float turn;   // rad
+  float rotation;   // rad
 };
 
 // Bodies that are joined, or let go by what held them, far from where the joint would have them do not strike out.
@@ -25,9 +25,9 @@ constexpr float kMaxLimitError = 0.1f;
 constexpr float kMinBiasAngle = 1.0e-4f, kMaxBiasAngle = 0.3f;
 // Bend that is not asked for, or that two solutions do not find, opens the joint in each sub-step anew. Errors of joints whose bodies
 // turn by more than this (rad) are taken back the faster for it: wholly in a sub-step where they turn by far more.
-constexpr float kCalmTurn = 0.15f;
+constexpr float kFastErrorAngle = 0.15f;
 // Bodies that turn by less than this in a part need not have lost what speed errors gave them before the next part asks for their bend.
-constexpr float kStraightTurn = 0.05f;
+constexpr float kSlowRotation = 0.05f;
 
 // What joints that do no work may give in a sub-step, of the energy of motion that there was, before all of it is taken away: what the bend
 // beyond the second order gives and takes in turn in a smooth swing is less. Until bodies have moved it may be more, since what the bend
@@ -36,12 +36,24 @@ constexpr float kMaxEnergyGain = 1.0e-2f, kMaxEnergyGainAhead = 1.0f;
 
 // Motors that hold a place or a speed without a frequency of their own give way by this share of what would move them freely, where they are
 // solved with the equations of their linkage: ten times as much as those, which motors in conflict are not to break.
-constexpr float kMotorGive = 1.0e-3f;
+constexpr float kMotorCompliance = 1.0e-3f;
 
 // Stops of a cone's twist rest where 1 + cos(swing) is less, from 143 degrees on: a limb that points straight back has no twist, and near
 // there it changes by any amount at once.
 constexpr float kMinTwistReported = 0.2f;
+// rad. Smaller swing limits of a cone count as this.
+constexpr float kMinSwingLimit = 1.0e-3f;
 // Of stops that cannot be reached.
-constexpr float kAway = 1.0e9f;  // rad
+constexpr float kUnreachable = 1.0e9f;  // rad
+
+// h^2 k / I up to which tension is left alone; kick and drift are stable up to 4.
+constexpr float kGeometricStiffnessThreshold = 1.0f;
+
+// Slop of springs.
+constexpr double kSpringSlop = 4.0e-4;
+// Slop of pushout.
+constexpr double kPushoutSlopFactor = 1.5, kPushoutSlop = 6.0e-4;
+// Share of pushout.
+constexpr double kPushoutShare = 0.4;
 
 }  // namespace gyre

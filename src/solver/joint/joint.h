@@ -28,14 +28,14 @@ struct JointBodies {
 struct JointSettings {
   float substep = 0.0f;
   Softness softness;  // of the joint's own rows
-  bool swept =
+  bool iterative =
       true;  // false: the joint's equations and hard stops are solved elsewhere (solver/articulation/articulation.h)
 };
 
 // One row that holds always: it sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
 struct JointRow {
   Vec3 direction;     // direction of a force; zero for a turning row
-  Vec3 arm_a, arm_b;  // r x push, or the axis of a turn
+  Vec3 angular_a, angular_b;  // r x push, or the axis of a turn
   float error = 0.0f;
 };
 
@@ -48,10 +48,10 @@ struct JointRows {
 
 // What a drive to a pose, and friction against all turning, know of a sub-step.
 struct DriveConstraint {
-  Vec3 point_error, turn_error;  // world
-  Vec3 point_speed, turn_speed;  // asked for
+  Vec3 linear_error, angular_error;  // world
+  Vec3 target_velocity, target_angular_velocity;  // asked for
   Vec3 from_a;                   // to where b's anchor is
-  Mat3 point_mass, turn_mass;
+  Mat3 linear_mass, angular_mass;
   Softness softness;
 };
 
@@ -64,7 +64,7 @@ struct JointConstraint {
   Vec3 axis;                 // hinge and slider: of a; distance: unit from a to b
   Vec3 perpendicular_1, perpendicular_2;
   Vec3 angular_error;        // rotation vector that turns a's frame onto b's
-  Vec3 along;                // where b's anchor is from a's, as far as that is no error
+  Vec3 free_offset;                // where b's anchor is from a's, as far as that is no error
   Quat frame_a, frame_b;     // world_from_joint
   Mat3 linear_mass;          // inverse of K
   Mat3 angular_mass;
@@ -80,7 +80,7 @@ struct JointConstraint {
 void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path,
                  JointConstraint& work, float warm_scale, Arena& arena);
 // What depends on where the bodies are: once they have moved.
-void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& places,
+void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& offsets,
                    const JointBodies& bodies, const JointSettings& settings);
 // What depends on their velocities: before they are solved.
 void update_joint_bias(const JointRecord& joint, JointConstraint& work, const JointBodies& bodies,

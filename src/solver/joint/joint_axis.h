@@ -16,15 +16,15 @@ struct JointSettings;
 
 // What the row sees: push_b . v_b + arm_b . w_b - push_a . v_a - arm_a . w_a.
 struct AxisRow {
-  Vec3 push_a, push_b;
-  Vec3 arm_a, arm_b;
+  Vec3 linear_a, linear_b;
+  Vec3 angular_a, angular_b;
 };
 
 // What a spring makes of a sub-step: v' = kept v + loaded (what else changed v) - returned x. See prepare_spring().
 struct SpringStep {
-  float kept = 1.0f;
-  float loaded = 1.0f;
-  float returned = 0.0f;  // 1/s
+  float retained = 1.0f;
+  float load_share = 1.0f;
+  float return_rate = 0.0f;  // 1/s
   Softness implicit;      // if the sub-step does not resolve the spring
   bool is_implicit = false;
 };
@@ -36,7 +36,7 @@ struct AxisConstraint {
   bool in_articulation =
       false;  // solved with the equations of its linkage (solver/articulation/articulation_drives.h)
   bool is_rod = false;  // one two-sided stop at limits.low, its impulse in low_impulse
-  double worked = 0.0;  // J since the step began, if it is linked: by all but hard stops
+  double drive_work = 0.0;  // J since the step began, if it is linked: by all but hard stops
   float slack = 0.0f;   // by how much farther than the limits both stops are
   AxisRow row;
   float mass = 0.0f;          // effective
@@ -44,12 +44,12 @@ struct AxisConstraint {
       0.0f;                   // m/s: how far the position changes in the sub-step beyond what the row sees
   float speed_before = 0.0f;  // as the part began, before forces
   SpringStep spring;
-  Softness drive, stop;
+  Softness drive, limit_softness;
 };
 
 inline bool has_spring(const JointAxisRecord& axis) { return axis.stiffness > 0.0f || axis.damping > 0.0f; }
 // Whether anything acts on an axis that is not locked.
-inline bool acts(const JointAxisRecord& axis) {
+inline bool is_active(const JointAxisRecord& axis) {
   return axis.motion == AxisMotion::limited || axis.motor_force > 0.0f || axis.friction > 0.0f ||
          has_spring(axis);
 }
@@ -59,7 +59,7 @@ inline float low_gap(const AxisConstraint& x) { return x.axis.position - x.axis.
 inline float high_gap(const AxisConstraint& x) { return x.axis.limits.high - x.axis.position + x.slack; }
 
 float axis_speed(const AxisRow& row, const JointPair& pair);
-void push_axis(const AxisRow& row, float impulse, JointPair& pair);
+void apply_axis_impulse(const AxisRow& row, float impulse, JointPair& pair);
 // Impulse of everything along the axis together.
 float axis_impulse(const JointAxisRecord& axis);
 

@@ -7,9 +7,9 @@
 namespace gyre {
 
 bool has_drive(const JointDetail& detail);
-void place_drive(const JointConstraint& work, const JointPair& pair, const JointSettings& settings);
-void warm_drive(const JointConstraint& work, JointPair& pair);
+void prepare_drive(const JointConstraint& work, const JointPair& pair, const JointSettings& settings);
+void warm_start_drive(const JointConstraint& work, JointPair& pair);
 void solve_drive(const JointConstraint& work, JointPair& pair, const JointSettings& settings);
-void sum_drive(JointRecord& joint, const JointDetail& detail);
+void accumulate_drive(JointRecord& joint, const JointDetail& detail);
 
 }  // namespace gyre

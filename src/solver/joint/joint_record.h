@@ -71,7 +71,7 @@ struct JointAxisRecord {
   float damping = 0.0f;
   float rest_position = 0.0f;
   float friction = 0.0f;
-  float hold = 0.0f;  // where a locked axis stays
+  float locked_position = 0.0f;  // where a locked axis stays
   float low_impulse = 0.0f;
   float high_impulse = 0.0f;
   float motor_impulse = 0.0f;
@@ -105,7 +105,7 @@ struct JointDetail {
   DVec3 ground_b;
   std::uint32_t path_first = 0;  // of its points
   std::uint32_t path_count = 0;
-  float path_place = 0.0f;  // where on it, in points
+  float path_parameter = 0.0f;  // where on it, in points
 };
 
 // One point of a curve; places between are Catmull-Rom's.
@@ -116,7 +116,7 @@ struct PathPoint {
 };
 
 // Takes everything away that the last step left in the record: the joint goes on as if it were new.
-void forget_impulses(JointRecord& joint);
-void forget_impulses(JointDetail& detail);
+void clear_impulses(JointRecord& joint);
+void clear_impulses(JointDetail& detail);
 
 }  // namespace gyre

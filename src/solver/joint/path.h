@@ -24,11 +24,11 @@ struct PathCurve {
 struct PathSample {
   Vec3 position, first, second;
 };
-PathSample sample_path(const PathCurve& path, float place);
+PathSample sample_path(const PathCurve& path, float parameter);
 // x along the curve, y along the direction that is carried: joint's frame from curve's.
-Quat path_frame(const PathCurve& path, float place);
+Quat path_frame(const PathCurve& path, float parameter);
 // m along the curve from its first point.
-float path_length(const PathCurve& path, float place);
+float path_length(const PathCurve& path, float parameter);
 // The place nearest to p, sought from a place nearby; where the curve ends, it.
 float nearest_on_path(const PathCurve& path, Vec3 p, float from);
 // The same without a place to begin with.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/articulation/ball_kernel.h"
-#include "solver/articulation/linkage_kernel.h"
+#include "solver/articulation/articulation_kernel.h"
 #include "solver/contact/contact_prepare.h"
 #include "solver/contact/contact_project.h"
 #include "solver/contact/moving_contact_points.h"
@@ -18,17 +18,17 @@ constexpr ContactKernels contact_kernels() {
           sizeof(ContactBlock<W>),
           sizeof(ContactBlockCold<W>),
           prepare_blocks<W>,
-          follow_lanes<W>,
+          advance_points<W>,
           warm_start_blocks<W>,
           solve_blocks<W>,
           relax_blocks<W>,
           project_blocks<W>,
           read_block_impulse<W>,
           write_block_impulse<W>,
-          harden_block<W>,
+          make_block_rigid<W>,
           finish_blocks<W>,
           motion_kernels<W>(),
-          turn_kernels<W>(),
+          rotation_kernels<W>(),
           articulation_kernels<W>(),
           ball_kernels<W>()};
 }

@@ -63,11 +63,11 @@ struct Crowd {
     std::size_t room = memory.size() * sizeof(std::max_align_t);
     return std::align(64, 1, at, room);
   }
-  void predict(bool warm) { kernels->predict(place(), 0, blocks, motion.data(), warm, true); }
-  void note() { kernels->note(place(), 0, blocks, motion.data()); }
-  void warm() { kernels->warm(place(), 0, blocks, motion.data()); }
-  void advance(float h) {
-    kernels->advance(place(), 0, blocks, {motion.data(), inertia.data(), orientations.data()}, h, true);
+  void integrate_velocities(bool warm) { kernels->integrate_velocities(place(), 0, blocks, motion.data(), warm, true); }
+  void record_velocity_change() { kernels->record_velocity_change(place(), 0, blocks, motion.data()); }
+  void warm_start() { kernels->warm_start(place(), 0, blocks, motion.data()); }
+  void integrate_positions(float h) {
+    kernels->integrate_positions(place(), 0, blocks, {motion.data(), inertia.data(), orientations.data()}, h, true);
   }
   void begin_projection() { kernels->begin_projection(place(), 0, blocks, motion.data()); }
   void end_projection() { kernels->end_projection(place(), 0, blocks, motion.data(), turns.data()); }
@@ -98,11 +98,11 @@ double composition_error(float angle) {
   crowd.add({1, 1, 1}, {});
   crowd.prepare(1);
   crowd.motion[0].angular_velocity = {angle, 0, 0};
-  crowd.advance(1.0f);
+  crowd.integrate_positions(1.0f);
   crowd.motion[0].angular_velocity = {0.6f * angle, 0.8f * angle, 0};
-  crowd.advance(1.0f);
+  crowd.integrate_positions(1.0f);
   const DQuat exact = product(exponential({0.6f * angle, 0.8f * angle, 0}), exponential({angle, 0, 0}));
-  return angle_between(exponential(crowd.motion[0].turned), exact);
+  return angle_between(exponential(crowd.motion[0].delta_rotation), exact);
 }
 
 TEST(MotionKernel, ComposesTurnsButForTermsOfTheFourthOrder) {
@@ -118,19 +118,19 @@ TEST(MotionKernel, FreeBodyKeepsItsAngularMomentum) {
     const Quat start =
         normalized(Quat{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), 1.5f});
     Crowd crowd;
-    crowd.add(moments, start).shown = true;
+    crowd.add(moments, start).pose_read = true;
     const Vec3 spin = random.vector(10.0f);
     crowd.motion[0].angular_velocity = spin;
     crowd.prepare(1);
     const Vec3 momentum = rotate_inertia(to_matrix(start), crowd.bodies[0].inertia) * spin;
-    for (int i = 0; i < 4; ++i) crowd.advance(1.0f / 240.0f);
+    for (int i = 0; i < 4; ++i) crowd.integrate_positions(1.0f / 240.0f);
     const Sym3 inertia = rotate_inertia(to_matrix(crowd.orientations[0]), crowd.bodies[0].inertia);
     const Vec3 now = inertia * crowd.motion[0].angular_velocity;
     EXPECT_LT(length(now - momentum), 3e-6f * length(momentum)) << "round " << round;
     // It did turn, and what it turned by is what its orientation shows.
-    const Quat shown = crowd.orientations[0];
-    const DQuat turned = product(exponential(crowd.motion[0].turned), {start.x, start.y, start.z, start.w});
-    EXPECT_LT(angle_between(turned, {shown.x, shown.y, shown.z, shown.w}), 1e-6);
+    const Quat pose_read = crowd.orientations[0];
+    const DQuat turned = product(exponential(crowd.motion[0].delta_rotation), {start.x, start.y, start.z, start.w});
+    EXPECT_LT(angle_between(turned, {pose_read.x, pose_read.y, pose_read.z, pose_read.w}), 1e-6);
     EXPECT_GT(length(crowd.motion[0].angular_velocity - spin), 1e-4f * length(spin));
   }
 }
@@ -138,11 +138,11 @@ TEST(MotionKernel, FreeBodyKeepsItsAngularMomentum) {
 TEST(MotionKernel, SpeedsAreLimitedWithoutOverflow) {
   const float most = std::numeric_limits<float>::max();
   Crowd crowd;
-  crowd.add({1, 1, 1}, {}).kick = {most, most, 0};
+  crowd.add({1, 1, 1}, {}).velocity_gain = {most, most, 0};
   crowd.bodies[0].torque = {0, 0, -most};
-  crowd.add({1, 1, 1}, {}).kick = {3, 4, 0};
+  crowd.add({1, 1, 1}, {}).velocity_gain = {3, 4, 0};
   crowd.prepare(1);
-  crowd.predict(false);
+  crowd.integrate_velocities(false);
   const Vec3 v = crowd.motion[0].linear_velocity, w = crowd.motion[0].angular_velocity;
   EXPECT_NEAR(length(v) / kMaxSpeed, 1.0f, 1e-6f);
   EXPECT_EQ(v.x, v.y);
@@ -152,36 +152,36 @@ TEST(MotionKernel, SpeedsAreLimitedWithoutOverflow) {
 
 TEST(MotionKernel, GivesAgainWhatContactsGave) {
   Crowd crowd;
-  crowd.add({1, 1, 1}, {}).kick = {0, -1, 0};
+  crowd.add({1, 1, 1}, {}).velocity_gain = {0, -1, 0};
   crowd.prepare(1);
-  crowd.predict(true);
+  crowd.integrate_velocities(true);
   EXPECT_EQ(crowd.motion[0].linear_velocity, (Vec3{0, -1, 0}));
   // A contact holds it; twice, as sweeps do.
   crowd.motion[0].linear_velocity = {0, -0.25f, 0};
-  crowd.note();
+  crowd.record_velocity_change();
   crowd.motion[0].linear_velocity = {0, 0, 0};
   crowd.motion[0].angular_velocity = {0, 0, 2};
-  crowd.advance(0.25f);
-  EXPECT_EQ(crowd.motion[0].turned, (Vec3{0, 0, 0.5f}));
-  crowd.predict(true);
+  crowd.integrate_positions(0.25f);
+  EXPECT_EQ(crowd.motion[0].delta_rotation, (Vec3{0, 0, 0.5f}));
+  crowd.integrate_velocities(true);
   EXPECT_EQ(crowd.motion[0].linear_velocity, (Vec3{0, 0, 0}));
   EXPECT_EQ(crowd.motion[0].angular_velocity, (Vec3{0, 0, 4}));
 }
 
 TEST(MotionKernel, LockedAxesStayStill) {
   Crowd crowd;
-  crowd.add({1, 1, 1}, {}).kick = {1, -2, 3};
+  crowd.add({1, 1, 1}, {}).velocity_gain = {1, -2, 3};
   crowd.bodies[0].locked = 2;
   crowd.prepare(1);
-  crowd.predict(false);
+  crowd.integrate_velocities(false);
   crowd.motion[0].linear_velocity.y = -7;
-  crowd.advance(0.5f);
-  EXPECT_EQ(crowd.motion[0].moved, (Vec3{0.5f, 0, 1.5f}));
+  crowd.integrate_positions(0.5f);
+  EXPECT_EQ(crowd.motion[0].delta_position, (Vec3{0.5f, 0, 1.5f}));
 }
 
 TEST(MotionKernel, ProjectionMovesWithoutTouchingVelocities) {
   Crowd crowd;
-  crowd.add({1, 1, 1}, {}).reach = 2.0f;
+  crowd.add({1, 1, 1}, {}).bounding_radius = 2.0f;
   crowd.motion[0].linear_velocity = {1, 2, 3};
   crowd.motion[0].angular_velocity = {4, 5, 6};
   crowd.prepare(1);
@@ -192,9 +192,9 @@ TEST(MotionKernel, ProjectionMovesWithoutTouchingVelocities) {
   crowd.end_projection();
   EXPECT_EQ(crowd.motion[0].linear_velocity, (Vec3{1, 2, 3}));
   EXPECT_EQ(crowd.motion[0].angular_velocity, (Vec3{4, 5, 6}));
-  EXPECT_EQ(crowd.motion[0].moved, (Vec3{0, 0.25f, 0}));
-  EXPECT_EQ(crowd.motion[0].turned, (Vec3{0, 0, 0.125f}));
-  EXPECT_EQ(crowd.motion[0].pushed, 0.5f);  // 0.25 m and 2 m times 0.125 rad
+  EXPECT_EQ(crowd.motion[0].delta_position, (Vec3{0, 0.25f, 0}));
+  EXPECT_EQ(crowd.motion[0].delta_rotation, (Vec3{0, 0, 0.125f}));
+  EXPECT_EQ(crowd.motion[0].pushout, 0.5f);  // 0.25 m and 2 m times 0.125 rad
   EXPECT_EQ(crowd.turns[0], (Vec3{0, 0, 0.125f}));
 }
 
@@ -208,13 +208,13 @@ Crowd make_crowd(Random& random) {
         round ? Vec3{moment, moment, moment} : Vec3{moment, random.between(0.5f, 2.0f), 1.0f};
     MovedBody& body = crowd.add(
         moments, normalized(Quat{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), 1.5f}));
-    body.kick = random.vector(1.0f);
+    body.velocity_gain = random.vector(1.0f);
     if (i % 4 == 1) body.torque = random.vector(5.0f);
-    if (i % 5 == 2) body.linear_lost = 0.01f, body.angular_lost = 0.02f;
+    if (i % 5 == 2) body.linear_loss = 0.01f, body.angular_loss = 0.02f;
     body.locked = i % 7 == 3 ? 5 : 0;
     body.needs_exact_rotation = i % 11 == 4;
-    body.shown = i % 2 == 0;
-    body.reach = 0.5f;
+    body.pose_read = i % 2 == 0;
+    body.bounding_radius = 0.5f;
     crowd.motion[std::size_t(i)].linear_velocity = random.vector(10.0f);
     crowd.motion[std::size_t(i)].angular_velocity = random.vector(20.0f);
   }
@@ -226,10 +226,10 @@ Crowd move_crowd(int width) {
   Crowd crowd = make_crowd(random);
   crowd.prepare(width);
   for (int substep = 0; substep < 4; ++substep) {
-    crowd.predict(true);
+    crowd.integrate_velocities(true);
     for (BodyMotion& m : crowd.motion) m.linear_velocity = m.linear_velocity + random.vector(0.1f);
-    crowd.advance(1.0f / 240.0f);
-    crowd.warm();
+    crowd.integrate_positions(1.0f / 240.0f);
+    crowd.warm_start();
     crowd.begin_projection();
     for (BodyMotion& m : crowd.motion) m.angular_velocity = random.vector(0.01f);
     crowd.end_projection();
@@ -290,21 +290,21 @@ Crowd pass_parts(int width, bool in_lanes) {
   const Lanes lanes(crowd, width);
   const MotionKernels& kernels = *crowd.kernels;
   const MotionArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientations.data()};
-  kernels.watch(crowd.place(), 0, crowd.blocks, arrays.motion);
+  kernels.record_velocities(crowd.place(), 0, crowd.blocks, arrays.motion);
   for (int part = 0; part < 5; ++part) {
     const float h = 1.0f / 240.0f;
     for (BodyMotion& m : crowd.motion) m.linear_velocity = m.linear_velocity + random.vector(0.1f);
     if (in_lanes) {
-      kernels.note_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion, lanes.velocities());
-      kernels.advance_in_lanes(crowd.place(), 0, crowd.blocks, arrays, lanes.velocities(), h);
-      kernels.predict_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities(), true, part % 2 == 0);
-      if (part % 2 != 0) kernels.watch_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities());
+      kernels.record_velocity_change_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion, lanes.velocities());
+      kernels.integrate_positions_in_lanes(crowd.place(), 0, crowd.blocks, arrays, lanes.velocities(), h);
+      kernels.integrate_velocities_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities(), true, part % 2 == 0);
+      if (part % 2 != 0) kernels.record_velocities_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities());
       lanes.store();
     } else {
-      kernels.note(crowd.place(), 0, crowd.blocks, arrays.motion);
-      kernels.advance(crowd.place(), 0, crowd.blocks, arrays, h, false);
-      kernels.predict(crowd.place(), 0, crowd.blocks, arrays.motion, true, part % 2 == 0);
-      if (part % 2 != 0) kernels.watch(crowd.place(), 0, crowd.blocks, arrays.motion);
+      kernels.record_velocity_change(crowd.place(), 0, crowd.blocks, arrays.motion);
+      kernels.integrate_positions(crowd.place(), 0, crowd.blocks, arrays, h, false);
+      kernels.integrate_velocities(crowd.place(), 0, crowd.blocks, arrays.motion, true, part % 2 == 0);
+      if (part % 2 != 0) kernels.record_velocities(crowd.place(), 0, crowd.blocks, arrays.motion);
     }
   }
   return crowd;

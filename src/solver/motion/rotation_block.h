@@ -15,17 +15,17 @@ struct TorqueFreeRotation {
 // An orientation that is turned by a rotation vector (rad, world frame).
 struct ConstantRotation {
   Quat orientation;
-  Vec3 turn;
+  Vec3 rotation;
   float spare = 0.0f;  // kernels read eight floats
 };
 // So many at once.
-constexpr int kMaxTurns = 64;
+constexpr int kMaxRotations = 64;
 
 struct RotationKernels {
-  // At most kMaxTurns, of different bodies.
-  void (*rotate_torque_free)(const TorqueFreeRotation* turns, int count, float seconds);
+  // At most kMaxRotations, of different bodies.
+  void (*rotate_torque_free)(const TorqueFreeRotation* rotations, int count, float seconds);
   // As integrate_rotation of math/rotation.h.
-  void (*rotate_at_constant_velocity)(ConstantRotation* turns, int count);
+  void (*rotate_at_constant_velocity)(ConstantRotation* rotations, int count);
 };
 
 }  // namespace gyre

@@ -27,8 +27,8 @@ struct TreeNode {
   std::uint32_t block = 0;        // where the kernels hold it
   std::uint32_t lane = 0;
   float sign = 1.0f;              // 1 if the body is the constraint's b
-  float still = 0.0f;             // m/s, rad/s: slower than this nothing is left to solve
-  float still_spin = 0.0f;
+  float rest_speed = 0.0f;             // m/s, rad/s: slower than this nothing is left to solve
+  float rest_spin = 0.0f;
   float mass = 0.0f;
   DVec3 center;                   // as the step began, as is
   Quat orientation;

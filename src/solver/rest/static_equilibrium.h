@@ -22,8 +22,8 @@ namespace gyre {
 struct StructureNode {
   std::int32_t body = kNoBody;
   float mass = 0.0f;
-  float still = 0.0f;  // m/s, rad/s: slower than this nothing is left to solve
-  float still_spin = 0.0f;
+  float rest_speed = 0.0f;  // m/s, rad/s: slower than this nothing is left to solve
+  float rest_spin = 0.0f;
   Sym3 inertia;  // world axes, as the step began
 };
 
@@ -42,9 +42,9 @@ struct StructureContact {
 struct StructureScratch {
   ContactImpulse before, impulse;          // as it was found, and proposed
   float shear = 0.0f;                      // stiffness sideways over that along the normal
-  std::uint8_t touching = 0, pressed = 0;  // bits, by point: may bear, and bears
+  std::uint8_t touching = 0, loaded = 0;  // bits, by point: may bear, and bears
   double at[kMaxManifoldPoints] = {},
-         ahead[kMaxManifoldPoints] = {};  // how far pressed, and how that changes along the way
+         rate[kMaxManifoldPoints] = {};  // how far pressed, and how that changes along the way
 };
 
 // Memory is the arena's.
@@ -52,11 +52,11 @@ struct RestingStructure {
   std::span<const StructureNode> nodes;
   std::span<StructureContact> contacts;
   std::span<StructureScratch> work;
-  bool settling = false;  // it still moved as the step began
-  bool held = false;      // it was solved in the last step
-  bool fresh = false;     // its contacts bore nothing in the last step
-  bool begun = false;     // `work` is that of this step
-  bool solved = false;    // in the first part of the step
+  bool is_settling = false;  // it still moved as the step began
+  bool was_rigid = false;      // it was solved in the last step
+  bool is_new = false;     // its contacts bore nothing in the last step
+  bool has_scratch = false;     // `work` is that of this step
+  bool is_solved = false;    // in the first part of the step
 };
 
 struct StructureSolve {

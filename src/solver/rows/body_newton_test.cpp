@@ -35,10 +35,10 @@ TEST(BodyNewton, MakesTheStepsOfTheDenseMethod) {
       std::vector<double> by_rows(dense.q.size(), 0.0), numbers(newton_room(dense.q.size()));
       solve_newton(dense.problem, 0.0, 2, by_rows, NumberRoom(numbers));
       const std::vector<double> by_bodies = solve_by_bodies(island, set, 0.0, 2).x;
-      double most = 1.0;
-      for (const double x : by_rows) most = std::max(most, std::abs(x));
+      double largest = 1.0;
+      for (const double x : by_rows) largest = std::max(largest, std::abs(x));
       for (std::size_t i = 0; i < by_rows.size(); ++i)
-        EXPECT_NEAR(by_bodies[i], by_rows[i], 1.0e-7 * most) << sides << " sides, seed " << seed;
+        EXPECT_NEAR(by_bodies[i], by_rows[i], 1.0e-7 * largest) << sides << " sides, seed " << seed;
     }
   }
 }

@@ -21,7 +21,7 @@ namespace gyre {
 // An island's bodies while its rows are made.
 struct RowFrame {
   std::span<RowBody> bodies;            // with the velocities that the rows find
-  const std::int32_t* place = nullptr;  // by motion record: among `bodies`; kNoRowBody if no row moves it
+  const std::int32_t* body_index = nullptr;  // by motion record: among `bodies`; kNoRowBody if no row moves it
   const BodyMotion* motion = nullptr;
   double substep = 0.0;
 };
@@ -40,7 +40,7 @@ inline RowBody make_row_body(const BodyInertia& inertia, std::uint8_t locked_lin
 // Rows of an island, and where the impulse of each is kept (null where several rows share what keeps them).
 struct RowList {
   Row* rows = nullptr;
-  float** kept = nullptr;
+  float** stored = nullptr;
   int count = 0;
 };
 
@@ -48,7 +48,7 @@ int count_contact_rows(const ContactConstraint& constraint);
 // `warm`: by how much impulses that were kept are scaled.
 void add_contact_rows(const ContactConstraint& constraint, const RowFrame& frame, float warm, RowList& list);
 // `rows`: those that the contact added.
-void keep_contact_impulses(const ContactConstraint& constraint, const FrictionSet& set,
+void store_contact_impulses(const ContactConstraint& constraint, const FrictionSet& set,
                            std::span<const Row> rows);
 // Rows of the normals alone, in displacements: how far a step pushes what overlaps. Returns whether anything does.
 bool add_overlap_rows(const ContactConstraint& constraint, const RowFrame& frame, float step, RowList& list);
@@ -57,8 +57,8 @@ int count_joint_rows(const JointRecord& joint, const JointDetail* detail, const 
 // Springs that are forces push the bodies of the frame at once.
 void add_joint_rows(JointRecord& joint, JointConstraint& work, const JointSettings& settings,
                     const RowFrame& frame, RowList& list);
-void keep_joint_impulses(JointRecord& joint, JointConstraint& work, std::span<const Row> rows,
-                         std::span<float* const> kept);
+void store_joint_impulses(JointRecord& joint, JointConstraint& work, std::span<const Row> rows,
+                         std::span<float* const> stored);
 // The equations alone, asking for nothing: what is pushed apart stays joined.
 void add_joint_equations(JointRecord& joint, JointConstraint& work, const RowFrame& frame, RowList& list);
 

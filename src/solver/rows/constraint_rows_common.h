@@ -6,7 +6,7 @@
 namespace gyre {
 
 inline Row& begin_row(RowList& list) {
-  list.kept[list.count] = nullptr;
+  list.stored[list.count] = nullptr;
   Row& row = list.rows[list.count++];
   row = {};
   return row;
@@ -16,15 +16,15 @@ inline Row& begin_row(RowList& list) {
 // body has none.
 inline void end_row(Row& row, std::int32_t body_a, std::int32_t body_b, const RowFrame& frame,
                     bool still = false) {
-  const auto settle = [&](std::int32_t body, std::int32_t& place, DVec3 linear, DVec3 angular) {
-    place = body == kNoBody ? kNoRowBody : frame.place[body];
-    if (place != kNoRowBody || body == kNoBody || still) return;
+  const auto set_body = [&](std::int32_t body, std::int32_t& index, DVec3 linear, DVec3 angular) {
+    index = body == kNoBody ? kNoRowBody : frame.body_index[body];
+    if (index != kNoRowBody || body == kNoBody || still) return;
     const BodyMotion& motion = frame.motion[body];
     row.target_speed -=
         dot(linear, DVec3(motion.linear_velocity)) + dot(angular, DVec3(motion.angular_velocity));
   };
-  settle(body_a, row.body_a, row.linear_a, row.angular_a);
-  settle(body_b, row.body_b, row.linear_b, row.angular_b);
+  set_body(body_a, row.body_a, row.linear_a, row.angular_a);
+  set_body(body_b, row.body_b, row.linear_b, row.angular_b);
   finish_row(row, frame.bodies);
 }
 

@@ -21,11 +21,11 @@ struct FrictionSet {
 FrictionSet make_friction_set(int sides);
 
 // Where the nearest point of a set lies.
-enum class FrictionPlace : unsigned char { inside, side, corner, rim };
+enum class FrictionRegion : unsigned char { inside, side, corner, rim };
 
 struct FrictionPoint {
   double x = 0.0, y = 0.0;
-  FrictionPlace place = FrictionPlace::inside;
+  FrictionRegion region = FrictionRegion::inside;
   int index = 0;  // of the side or corner
 };
 

@@ -17,7 +17,7 @@ namespace gyre {
 
 struct GaussSeidelResult {
   double residual = 0.0;
-  int sweeps = 0;
+  int iterations = 0;
 };
 
 // Velocities with the impulses that the rows begin with.
@@ -30,6 +30,6 @@ double find_row_residual(std::span<const Row> rows, std::span<const RowBody> bod
 constexpr std::size_t nncg_room(std::size_t rows) { return 2 * rows; }
 // From the velocities with the rows' impulses in them to the same.
 GaussSeidelResult solve_nncg(std::span<Row> rows, std::span<RowBody> bodies, const FrictionSet& friction,
-                             double tolerance, int max_sweeps, NumberRoom room);
+                             double tolerance, int max_iterations, NumberRoom room);
 
 }  // namespace gyre

@@ -36,11 +36,11 @@ class Dantzig {
   bool is_basic(int i) const { return basic_[std::size_t(i)] != 0.0; }
   void pivot(int k);
   void refresh();
-  bool is_right(int i) const;
+  bool is_satisfied(int i) const;
   bool drive(int i, int max_pivots);
 
   int n_ = 0;
-  std::span<double> t_, qt_, x_, w_, low_, high_, basic_, right_, diagonal_;
+  std::span<double> t_, qt_, x_, w_, low_, high_, basic_, satisfied_, diagonal_;
   double tolerance_ = 0.0;
   int pivots_ = 0;
 };

@@ -24,7 +24,7 @@ struct LemkeResult {
 constexpr std::size_t lemke_room(std::size_t size) { return size * (size + 1) + 4 * size + 1; }
 
 // `m`: q.size() squared numbers, row after row. `parting`: of ties, as a share of the largest q.
-LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double parting, int max_pivots,
+LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double tie_break, int max_pivots,
                         std::span<double> z, NumberRoom& room);
 
 }  // namespace gyre

@@ -36,7 +36,7 @@ constexpr std::size_t newton_search_room(std::size_t size) { return 6 * size; }
 template <class Problem>
 NewtonResult newton_search(Problem& problem, double tolerance, int max_steps, std::span<double> x,
                            NumberRoom& room) {
-  constexpr double kFirstNear = 1.0e-4, kMaxNear = 1.0e-3, kMinNear = 1.0e-10;
+  constexpr double kFirstDamping = 1.0e-4, kMaxDamping = 1.0e-3, kMinDamping = 1.0e-10;
   constexpr double kGood = 0.3, kSlow = 0.1, kBad = 10.0;
   constexpr double kFall = 0.1;  // of the sum of squares, at least, for a whole step
   constexpr double kShares[] = {1.0, 0.5, 0.25, 0.1, 0.03};
@@ -58,9 +58,9 @@ NewtonResult newton_search(Problem& problem, double tolerance, int max_steps, st
   problem.find_speeds(now, w);
   measure(now, w);
   NewtonResult result{residual, 0};
-  double near = kFirstNear;
+  double damping = kFirstDamping;
   for (int idle = 0; result.residual > tolerance && result.steps < max_steps && idle < kPatience;) {
-    if (!problem.find_step(now, w, near, dx)) break;
+    if (!problem.find_step(now, w, damping, dx)) break;
     problem.find_change(dx, dw);
     ++result.steps;
     const double before = squares;
@@ -75,8 +75,8 @@ NewtonResult newton_search(Problem& problem, double tolerance, int max_steps, st
       is_good = share >= 0.5;
       break;
     }
-    near *= whole > 0.8 && whole < 1.001 ? kSlow : is_good ? kGood : kBad;
-    near = clamp(near, kMinNear, kMaxNear);
+    damping *= whole > 0.8 && whole < 1.001 ? kSlow : is_good ? kGood : kBad;
+    damping = clamp(damping, kMinDamping, kMaxDamping);
     for (std::size_t i = 0; i < n; ++i) now[i] += taken * dx[i];
     problem.find_speeds(now, w);
     measure(now, w);

@@ -71,7 +71,7 @@ static_assert(offsetof(RowBody, angular) == offsetof(RowBody, linear) + 3 * size
 static_assert(offsetof(Row, angular_b) == offsetof(Row, linear_a) + 9 * sizeof(double));
 static_assert(offsetof(Row, gain_angular_b) == offsetof(Row, gain_linear_a) + 9 * sizeof(double));
 inline const double* velocities_of(const RowBody& body) { return &body.linear.x; }
-inline const double* seen_of(const Row& row) { return &row.linear_a.x; }
+inline const double* jacobian_of(const Row& row) { return &row.linear_a.x; }
 inline const double* gains_of(const Row& row) { return &row.gain_linear_a.x; }
 
 inline DVec3 along_inertia(const RowBody& body, DVec3 v) {
@@ -115,7 +115,7 @@ inline double row_speed(const Row& row, std::span<const RowBody> bodies) {
   return speed;
 }
 
-inline void push_row(const Row& row, double impulse, std::span<RowBody> bodies) {
+inline void apply_row_impulse(const Row& row, double impulse, std::span<RowBody> bodies) {
   if (row.body_a != kNoRowBody) {
     RowBody& a = bodies[std::size_t(row.body_a)];
     a.linear += impulse * row.gain_linear_a;

@@ -146,15 +146,15 @@ inline BlockPlan plan_of(const Island& island, Arena& arena) {
 
 inline std::vector<RowBody> pushed(const Island& island, std::span<const double> x) {
   std::vector<RowBody> bodies = island.bodies;
-  for (std::size_t i = 0; i < x.size(); ++i) push_row(island.rows[i], x[i], bodies);
+  for (std::size_t i = 0; i < x.size(); ++i) apply_row_impulse(island.rows[i], x[i], bodies);
   return bodies;
 }
 
 inline double apart(const std::vector<RowBody>& a, const std::vector<RowBody>& b) {
-  double most = 0.0;
+  double largest = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    most = max(most, max(length(a[i].linear - b[i].linear), length(a[i].angular - b[i].angular)));
-  return most;
+    largest = max(largest, max(length(a[i].linear - b[i].linear), length(a[i].angular - b[i].angular)));
+  return largest;
 }
 
 }  // namespace gyre

@@ -148,13 +148,13 @@ TEST(SolveDirect, DantzigLemkeAndNncgAgreeOnHeapsWithFriction) {
       EXPECT_LT(by_dantzig.residual, 1.0e-8) << sides << " sides, seed " << seed;
       EXPECT_LT(by_lemke.residual, 1.0e-8) << sides << " sides, seed " << seed;
       EXPECT_LT(apart(dantzig, lemke), 1.0e-6) << sides << " sides, seed " << seed;
-      Island swept = island;
-      std::vector<double> numbers(nncg_room(swept.rows.size()));
+      Island iterated = island;
+      std::vector<double> numbers(nncg_room(iterated.rows.size()));
       const GaussSeidelResult nncg =
-          solve_nncg(swept.rows, swept.bodies, polygon, 1.0e-9, 20000, NumberRoom(numbers));
+          solve_nncg(iterated.rows, iterated.bodies, polygon, 1.0e-9, 20000, NumberRoom(numbers));
       if (nncg.residual > 1.0e-8) continue;
       ++ended;
-      EXPECT_LT(apart(dantzig, swept.bodies), 1.0e-5) << sides << " sides, seed " << seed;
+      EXPECT_LT(apart(dantzig, iterated.bodies), 1.0e-5) << sides << " sides, seed " << seed;
     }
     // Redundant joints may make a heap so ill-conditioned that sweeps do not end.
     EXPECT_GE(ended, 58) << sides;
@@ -175,10 +175,10 @@ TEST(SolveDirect, TrueConesAreSolvedToo) {
       EXPECT_LE(std::sqrt(x[i] * x[i] + x[i + 1] * x[i + 1]), dense.limits[i].friction * load + 1.0e-6)
           << seed;
     }
-    Island swept = island;
-    std::vector<double> numbers(nncg_room(swept.rows.size()));
-    solve_nncg(swept.rows, swept.bodies, disc, 1.0e-9, 20000, NumberRoom(numbers));
-    EXPECT_LT(apart(pushed(island, x), swept.bodies), 1.0e-5) << seed;
+    Island iterated = island;
+    std::vector<double> numbers(nncg_room(iterated.rows.size()));
+    solve_nncg(iterated.rows, iterated.bodies, disc, 1.0e-9, 20000, NumberRoom(numbers));
+    EXPECT_LT(apart(pushed(island, x), iterated.bodies), 1.0e-5) << seed;
   }
 }
 
@@ -211,9 +211,9 @@ TEST(SolveDirect, RedundantCornersBearAThousandfoldLoad) {
       solve_body_newton({island.rows, island.bodies, &polygon, &plan}, 1.0e-11, 10, x, NumberRoom(numbers));
   check("Newton", newton.residual, x);
   // What many sweeps make of the same.
-  Island swept = island;
-  for (int i = 0; i < 50; ++i) iterate_rows_once(swept.rows, swept.bodies, polygon);
-  EXPECT_GT(length(swept.bodies.back().linear), 0.5 * kick);
+  Island iterated = island;
+  for (int i = 0; i < 50; ++i) iterate_rows_once(iterated.rows, iterated.bodies, polygon);
+  EXPECT_GT(length(iterated.bodies.back().linear), 0.5 * kick);
 }
 
 TEST(SolveDirect, TheOrderOfRowsDoesNotMatter) {
@@ -236,7 +236,7 @@ TEST(SolveDirect, FrictionOfAPolygonIsBetweenItsInnerAndItsOuterCircle) {
   const double kick = 0.1, friction = 0.5;
   for (const int sides : {4, 8, 16}) {
     const FrictionSet polygon = make_friction_set(sides);
-    double least = 1.0, most = 0.0;
+    double smallest = 1.0, largest = 0.0;
     for (int k = 0; k < 64; ++k) {
       const double angle = 2.0 * double(kPi) * k / 64.0;
       Island island;
@@ -247,11 +247,11 @@ TEST(SolveDirect, FrictionOfAPolygonIsBetweenItsInnerAndItsOuterCircle) {
       DirectResult result;
       const std::vector<double> x = solve_by(Dense(island, polygon), polygon, DirectMethod::dantzig, result);
       const double size = std::sqrt(x[1] * x[1] + x[2] * x[2]) / (friction * x[0]);
-      least = std::min(least, size), most = std::max(most, size);
+      smallest = std::min(smallest, size), largest = std::max(largest, size);
     }
-    EXPECT_LE(most, 1.0 + 1.0e-9);
-    EXPECT_GE(least, std::cos(double(kPi) / sides) - 1.0e-9);
-    EXPECT_NEAR(most, 1.0, 0.02) << sides;
+    EXPECT_LE(largest, 1.0 + 1.0e-9);
+    EXPECT_GE(smallest, std::cos(double(kPi) / sides) - 1.0e-9);
+    EXPECT_NEAR(largest, 1.0, 0.02) << sides;
   }
 }
 

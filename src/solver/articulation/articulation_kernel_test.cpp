@@ -1,11 +1,11 @@
 // Linkages side by side against the same linkages one by one: the equations are the same, so the results agree to rounding; and
 // each lane has the same bits whatever the width.
-#include "solver/articulation/linkage_matrix.h"
-#include "solver/articulation/linkage_test_kit.h"
+#include "solver/articulation/articulation_matrix.h"
+#include "solver/articulation/articulation_test_kit.h"
 
 #include <cmath>
 
-namespace gyre::linkage_test {
+namespace gyre::articulation_test {
 namespace {
 
 TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
@@ -22,7 +22,7 @@ TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
 
 TEST(LinkageKernel, DrivesAndFrictionInLanesDoWhatTheyDoInOneLinkage) {
   Shape shape;
-  Crowd one_by_one(0.05f, Driven::swept), side_by_side(0.05f, Driven::swept);
+  Crowd one_by_one(0.05f, Driven::iterative), side_by_side(0.05f, Driven::iterative);
   solve_one_by_one(one_by_one, shape);
   solve_side_by_side(side_by_side, shape, 0);
   expect_same(one_by_one, side_by_side);
@@ -73,7 +73,7 @@ void expect_same_bits_at_every_width(float tension, Driven driven, const Between
                                         &select_contact_kernels(8), &select_contact_kernels(16)}) {
     const int width = kernels->width;
     Crowd crowd = start();
-    solve_side_by_side(crowd, shape, kernels->linkages, between);
+    solve_side_by_side(crowd, shape, kernels->articulations, between);
     const std::size_t motions = crowd.motion.size() * sizeof(BodyMotion);
     EXPECT_EQ(std::memcmp(crowd.motion.data(), reference.motion.data(), motions), 0) << "width " << width;
     const auto same = [](const JointRecord& a, const JointRecord& b) {
@@ -96,7 +96,7 @@ void expect_same_bits_at_every_width(float tension, Driven driven, const Between
 }
 
 TEST(LinkageKernel, EveryWidthHasTheSameBits) {
-  for (const Driven driven : {Driven::no, Driven::swept, Driven::motors}) {
+  for (const Driven driven : {Driven::no, Driven::iterative, Driven::motors}) {
     for (const float tension : {0.05f, 50.0f}) {
       // Some lanes keep what others find anew; some spin so fast that they lose what errors gave them at once.
       expect_same_bits_at_every_width(tension, driven, {.turn = 0.4f}, 1.0f);
@@ -111,7 +111,7 @@ void calm(Crowd& crowd, int copy, float noise) {
   for (std::size_t i = std::size_t(copy * kBodies); i < std::size_t((copy + 1) * kBodies); ++i) {
     crowd.motion[i].linear_velocity = random.vector(noise);
     crowd.motion[i].angular_velocity = random.vector(noise);
-    crowd.motion[i].moved = {};
+    crowd.motion[i].delta_position = {};
     crowd.orientation[i] = {};
   }
   for (std::size_t i = std::size_t(copy * kJoints); i < std::size_t((copy + 1) * kJoints); ++i) {
@@ -121,7 +121,7 @@ void calm(Crowd& crowd, int copy, float noise) {
     joint.low_impulse = 0.0f;
     joint.limits = {-0.2f, 0.2f};
     for (JointAxisRecord& axis : crowd.details[i].axes) axis.high_impulse = 0.0f, axis.limits = joint.limits;
-    crowd.places[i].offset = joint.local_anchor_a - joint.local_anchor_b;
+    crowd.offsets[i].offset = joint.local_anchor_a - joint.local_anchor_b;
   }
 }
 
@@ -179,7 +179,7 @@ constexpr double kSumRounding = 32 * 0x1p-23;
 TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
   Shape shape;
   Crowd left(0.05f), taken(0.05f), before(0.05f);
-  for (Crowd* crowd : {&left, &taken}) crowd->open_stops();
+  for (Crowd* crowd : {&left, &taken}) crowd->open_limits();
   solve_side_by_side(left, shape, 0, {.ends = Between::Ends::passes});
   solve_side_by_side(taken, shape, 0, {.ends = Between::Ends::finishes});
   std::vector<Vec3> given(left.motion.size());
@@ -207,8 +207,8 @@ TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
 // What is swept would hold against it.
 TEST(LinkageKernel, WhatCameFromErrorsIsTakenAwayWhereSomethingIsSwept) {
   Shape shape;
-  Crowd passed(0.05f, Driven::swept), finished(0.05f, Driven::swept);
-  for (Crowd* crowd : {&passed, &finished}) crowd->open_stops();
+  Crowd passed(0.05f, Driven::iterative), finished(0.05f, Driven::iterative);
+  for (Crowd* crowd : {&passed, &finished}) crowd->open_limits();
   solve_side_by_side(passed, shape, 0, {.ends = Between::Ends::passes});
   solve_side_by_side(finished, shape, 0, {.ends = Between::Ends::finishes});
   for (int copy = 0; copy < kCopies; ++copy)
@@ -275,4 +275,4 @@ TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
 }
 
 }  // namespace
-}  // namespace gyre::linkage_test
+}  // namespace gyre::articulation_test

@@ -1,9 +1,9 @@
-// What the kernels keep of a bundle of linkages (solver/articulation/linkage_lanes.h): bodies and joints, W of each side by side, and the way
+// What the kernels keep of a bundle of linkages (solver/articulation/articulation_lanes.h): bodies and joints, W of each side by side, and the way
 // between them and the records of bodies.
 #pragma once
 
 #include "math/wide_vec.h"
-#include "solver/articulation/linkage_matrix.h"
+#include "solver/articulation/articulation_matrix.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -18,10 +18,10 @@ struct WideBody {
   Sym3W<W> inverse;      // of the inertia, raised to what a sub-step can bear
   Sym3W<W> own_inverse;  // of the inertia as it is
   Sym3W<W> inertia;
-  QuatW<W> turn;  // what its velocities make of a sub-step
+  QuatW<W> rotation;  // what its velocities make of a sub-step
   // While joints are placed: the pose, and by how much tension holds it (N m/rad).
   QuatW<W> orientation;
-  Vec3W<W> moved;
+  Vec3W<W> delta_position;
   Sym3W<W> geometric_stiffness;
   Vec3W<W> center;  // while inner motion is slowed: from that of the first body
 };
@@ -43,7 +43,7 @@ struct WideJoint {
   WideLimitAxis<W> twist, swing;
   Vec3W<W> from_a, from_b, error, compliance, target_speed;
   Vec3W<W> axis, perpendicular_1, perpendicular_2, angular_error;
-  Wide<W> turn_give_1, turn_give_2, turn_wanted_1, turn_wanted_2;
+  Wide<W> angular_compliance_1, angular_compliance_2, angular_target_1, angular_target_2;
 };
 template <int W>
 struct WideDrives {
@@ -58,7 +58,7 @@ struct WideDrives {
 template <int W>
 struct WideServo {
   WideLimitAxis<W> axis;
-  Wide<W> most, target_speed, rate;
+  Wide<W> max_impulse, target_speed, rate;
 };
 static_assert(sizeof(WideDrives<1>) == sizeof(LaneDrives) && sizeof(WideServo<1>) == sizeof(LaneServo));
 static_assert(sizeof(WideLimitAxis<1>) == sizeof(LaneLimitAxis) && sizeof(WideJoint<1>) == sizeof(LaneJoint));
@@ -98,7 +98,7 @@ struct WideBundle {
 
 // The impulse p at the joint and the turning impulse t, on b, and their opposites on a.
 template <int W>
-GYRE_INLINE void push_joint(const WideBundle<W>& bundle, const LaneNode& node, const WideJoint<W>& joint,
+GYRE_INLINE void apply_joint_impulse(const WideBundle<W>& bundle, const LaneNode& node, const WideJoint<W>& joint,
                             Vec3W<W> p, Vec3W<W> t) {
   if (bundle.moves(node.a)) {
     WideBody<W>& a = bundle.bodies[node.a];
@@ -165,8 +165,8 @@ GYRE_INLINE void load_poses(const WideBundle<W>& bundle, const LaneArrays& array
     Wide<W> c[8];
     gather_vec4<1, W, 4>(&arrays.orientation->x, body.record, kUnturned, 0, c);
     body.orientation = {c[0], c[1], c[2], c[3]};
-    gather_vec4<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros, kMotionMoved, c);
-    body.moved = {c[0], c[1], c[2]};
+    gather_vec4<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros, kMotionDeltaPosition, c);
+    body.delta_position = {c[0], c[1], c[2]};
     const Wide<W> zero(0.0f);
     body.geometric_stiffness = {zero, zero, zero, zero, zero, zero};
     if (!bundle.moves(i)) {

@@ -1,10 +1,10 @@
-// The velocities of a bundle of linkages (solver/articulation/linkage_lanes.h): what warm_start_articulation(), solve_articulation() and relax_articulation() do for
+// The velocities of a bundle of linkages (solver/articulation/articulation_lanes.h): what warm_start_articulation(), solve_articulation() and relax_articulation() do for
 // one alone. A ball joint's three rows are one vector here, and an impulse goes to a body as a force at its arm.
 #pragma once
 
 #include "solver/articulation/articulation_energy_kernel.h"
 #include "solver/articulation/articulation_limits_kernel.h"
-#include "solver/articulation/linkage_drives_kernel.h"
+#include "solver/articulation/articulation_drives_kernel.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -20,10 +20,10 @@ GYRE_INLINE QuatW<W> small_rotation(Vec3W<W> v) {
 
 // How far turning takes the end of an arm.
 template <int W>
-GYRE_INLINE Vec3W<W> swing_of(const QuatW<W>& turn, Vec3W<W> arm) {
-  const Vec3W<W> u{turn.x, turn.y, turn.z};
+GYRE_INLINE Vec3W<W> rotated_displacement(const QuatW<W>& rotation, Vec3W<W> arm) {
+  const Vec3W<W> u{rotation.x, rotation.y, rotation.z};
   const Vec3W<W> t = 2.0f * cross(u, arm);
-  return turn.w * t + cross(u, t);
+  return rotation.w * t + cross(u, t);
 }
 
 // How a hinge's error will have changed at the end of the sub-step, over its length, beyond what the rows see.
@@ -33,7 +33,7 @@ GYRE_INLINE Vec3W<W> hinge_second_order_bias(const WideJoint<W>& joint, const Wi
   const Vec3W<W> error = joint.angular_error;  // axis a x axis b
   const Vec3W<W> axis_b =
       cross(error, joint.axis) + sqrt(max(1.0f - length_squared(error), Wide<W>(0.0f))) * joint.axis;
-  const Vec3W<W> change_a = swing_of(a.turn, joint.axis), change_b = swing_of(b.turn, axis_b);
+  const Vec3W<W> change_a = rotated_displacement(a.rotation, joint.axis), change_b = rotated_displacement(b.rotation, axis_b);
   return per_substep * (cross(change_a, axis_b) + cross(joint.axis, change_b) + cross(change_a, change_b)) -
          (b.angular - a.angular);
 }
@@ -41,38 +41,38 @@ GYRE_INLINE Vec3W<W> hinge_second_order_bias(const WideJoint<W>& joint, const Wi
 // How their bodies turn makes joints bend: by how much of it they are asked for more. `turns`: the square of how far the faster of a
 // joint's bodies turns in the sub-step.
 template <int W>
-GYRE_INLINE Wide<W> bias_fade(Wide<W> turns, float max_turn) {
+GYRE_INLINE Wide<W> bias_fade(Wide<W> angle_squared, float max_angle) {
   // Of those that hardly turn nothing is asked; of those that turn far, less.
-  constexpr float kLeast = kMinBiasAngle * kMinBiasAngle;
-  const float most = max_turn * max_turn;
-  const Wide<W> share = keep(turns > kLeast, Wide<W>(1.0f));
-  return select(turns > most, most / turns, share);
+  constexpr float kMinSquare = kMinBiasAngle * kMinBiasAngle;
+  const float max_square = max_angle * max_angle;
+  const Wide<W> share = keep(angle_squared > kMinSquare, Wide<W>(1.0f));
+  return select(angle_squared > max_square, max_square / angle_squared, share);
 }
 
 // How fast errors are taken back: what bend that was not asked for opened, at once.
 template <int W>
-GYRE_INLINE Wide<W> remove_error(Wide<W> turns, float rate, float per_substep) {
-  constexpr float kCalm = kCalmTurn * kCalmTurn;
-  const Mask<W> fast = turns > kCalm;
-  const Wide<W> back(-rate);
-  if (none(fast)) return back;
-  return back - (per_substep - rate) * keep(fast, 1.0f - kCalm / turns);
+GYRE_INLINE Wide<W> remove_error(Wide<W> angle_squared, float rate, float per_substep) {
+  constexpr float kFastSquare = kFastErrorAngle * kFastErrorAngle;
+  const Mask<W> fast = angle_squared > kFastSquare;
+  const Wide<W> error_rate(-rate);
+  if (none(fast)) return error_rate;
+  return error_rate - (per_substep - rate) * keep(fast, 1.0f - kFastSquare / angle_squared);
 }
 
 template <int W>
 GYRE_INLINE void add_second_order_bias(const LaneNode& node, WideJoint<W>& joint, const WideBody<W>& a,
                                        const WideBody<W>& b, Wide<W> share, float per_substep) {
   const Vec3W<W> second_order_bias =
-      per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
+      per_substep * (rotated_displacement(b.rotation, joint.from_b) - rotated_displacement(a.rotation, joint.from_a)) -
       (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
-  const Mask<W> bends = share > 0.0f;
-  joint.target_speed = select(bends, joint.target_speed - share * second_order_bias, joint.target_speed);
+  const Mask<W> biases = share > 0.0f;
+  joint.target_speed = select(biases, joint.target_speed - share * second_order_bias, joint.target_speed);
   if (node.kind != JointKind::hinge) return;
-  const Vec3W<W> turn = share * hinge_second_order_bias(joint, a, b, per_substep);
-  joint.turn_wanted_1 =
-      select(bends, joint.turn_wanted_1 - dot(turn, joint.perpendicular_1), joint.turn_wanted_1);
-  joint.turn_wanted_2 =
-      select(bends, joint.turn_wanted_2 - dot(turn, joint.perpendicular_2), joint.turn_wanted_2);
+  const Vec3W<W> angular = share * hinge_second_order_bias(joint, a, b, per_substep);
+  joint.angular_target_1 =
+      select(biases, joint.angular_target_1 - dot(angular, joint.perpendicular_1), joint.angular_target_1);
+  joint.angular_target_2 =
+      select(biases, joint.angular_target_2 - dot(angular, joint.perpendicular_2), joint.angular_target_2);
 }
 
 // That the end of the sub-step, not its beginning, meets the joints. (In one place, as stops are: all that solves asks.)
@@ -83,22 +83,22 @@ __attribute__((noinline)) void compute_lane_bias(const WideBundle<W>& bundle, co
   for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
     WideBody<W>& body = bundle.bodies[i];
     const Vec3W<W> w = body.angular;
-    const Vec3W<W> swerve = body.own_inverse * cross(body.inertia * w, w);  // free rotation
-    body.turn = small_rotation(h * (w + (0.5f * h * s.gyroscopic_share) * swerve));
+    const Vec3W<W> gyroscopic = body.own_inverse * cross(body.inertia * w, w);  // free rotation
+    body.rotation = small_rotation(h * (w + (0.5f * h * s.gyroscopic_share) * gyroscopic));
   }
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     WideJoint<W>& joint = bundle.joints[n];
     const WideBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
-    const Wide<W> turns = (h * h) * max(length_squared(a.angular), length_squared(b.angular));
-    const Wide<W> back = remove_error(turns, s.rate, per_substep);
-    joint.target_speed = back * clamp_length(joint.error, bounds.point);
+    const Wide<W> angle_squared = (h * h) * max(length_squared(a.angular), length_squared(b.angular));
+    const Wide<W> error_rate = remove_error(angle_squared, s.rate, per_substep);
+    joint.target_speed = error_rate * clamp_length(joint.error, bounds.point);
     if (node.kind == JointKind::hinge) {
-      const Vec3W<W> turn = back * clamp_length(joint.angular_error, bounds.turn);
-      joint.turn_wanted_1 = dot(turn, joint.perpendicular_1);
-      joint.turn_wanted_2 = dot(turn, joint.perpendicular_2);
+      const Vec3W<W> angular = error_rate * clamp_length(joint.angular_error, bounds.rotation);
+      joint.angular_target_1 = dot(angular, joint.perpendicular_1);
+      joint.angular_target_2 = dot(angular, joint.perpendicular_2);
     }
-    const Wide<W> share = bias_fade(turns, s.max_turn);
+    const Wide<W> share = bias_fade(angle_squared, s.max_bias_angle);
     if (any(share > 0.0f)) add_second_order_bias(node, joint, a, b, share, per_substep);
   }
 }
@@ -113,52 +113,52 @@ enum class BiasUse : std::uint8_t {
 };
 
 // Where no row misses more, the equations hold to the rounding of velocities: nothing is solved.
-constexpr float kQuiet = 1.0e-5f;  // m/s or rad/s
+constexpr float kMaxResidual = 1.0e-5f;  // m/s or rad/s
 
 // Sets the right side: what each row misses. Returns the lanes in which that is more than rounding.
-template <int W, BiasUse asks>
+template <int W, BiasUse use>
 GYRE_INLINE Mask<W> set_missing(const WideBundle<W>& bundle) {
-  Wide<W> most(0.0f);
+  Wide<W> largest(0.0f);
   const auto set = [&](std::uint32_t row, Wide<W> v) {
     bundle.set_row(row, v);
-    most = max(most, max(v, Wide<W>(0.0f) - v));
+    largest = max(largest, max(v, Wide<W>(0.0f) - v));
   };
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     const WideJoint<W>& joint = bundle.joints[n];
     const WideBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
     Vec3W<W> missing = a.linear + cross(a.angular, joint.from_a) - b.linear - cross(b.angular, joint.from_b);
-    if constexpr (asks == BiasUse::first) missing += joint.target_speed;
-    if constexpr (asks == BiasUse::again)
+    if constexpr (use == BiasUse::first) missing += joint.target_speed;
+    if constexpr (use == BiasUse::again)
       missing += joint.target_speed - multiply_each(joint.compliance, joint.linear_impulse);
     set(node.row, missing.x);
     set(node.row + 1, missing.y);
     set(node.row + 2, missing.z);
     if (node.kind != JointKind::hinge) continue;
-    const Vec3W<W> turning = a.angular - b.angular;
-    Wide<W> first = dot(turning, joint.perpendicular_1), second = dot(turning, joint.perpendicular_2);
-    if constexpr (asks == BiasUse::first) {
-      first += joint.turn_wanted_1;
-      second += joint.turn_wanted_2;
+    const Vec3W<W> spin = a.angular - b.angular;
+    Wide<W> first = dot(spin, joint.perpendicular_1), second = dot(spin, joint.perpendicular_2);
+    if constexpr (use == BiasUse::first) {
+      first += joint.angular_target_1;
+      second += joint.angular_target_2;
     }
-    if constexpr (asks == BiasUse::again) {
-      first += joint.turn_wanted_1 - joint.turn_give_1 * dot(joint.angular_impulse, joint.perpendicular_1);
-      second += joint.turn_wanted_2 - joint.turn_give_2 * dot(joint.angular_impulse, joint.perpendicular_2);
+    if constexpr (use == BiasUse::again) {
+      first += joint.angular_target_1 - joint.angular_compliance_1 * dot(joint.angular_impulse, joint.perpendicular_1);
+      second += joint.angular_target_2 - joint.angular_compliance_2 * dot(joint.angular_impulse, joint.perpendicular_2);
     }
     set(node.row + 3, first);
     set(node.row + 4, second);
   }
-  return most > kQuiet;
+  return largest > kMaxResidual;
 }
 
 // Solves for the change of all impulses and applies it, in these lanes.
-template <int W, BiasUse asks>
+template <int W, BiasUse use>
 GYRE_INLINE void solve_rows(const WideBundle<W>& bundle, Mask<W> lanes = Mask<W>::splat(true)) {
-  const Mask<W> live = set_missing<W, asks>(bundle) & lanes;
+  const Mask<W> live = set_missing<W, use>(bundle) & lanes;
   if (any(live)) {
     factor_bundle(bundle);
     solve_lanes<W>(bundle.plain);
-  } else if (asks != BiasUse::first) {
+  } else if (use != BiasUse::first) {
     return;  // nothing is added to what has been given
   }
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
@@ -169,22 +169,22 @@ GYRE_INLINE void solve_rows(const WideBundle<W>& bundle, Mask<W> lanes = Mask<W>
     if (node.kind == JointKind::hinge) {
       t = keep(live, bundle.row(node.row + 3) * joint.perpendicular_1 +
                          bundle.row(node.row + 4) * joint.perpendicular_2);
-      joint.angular_impulse = asks == BiasUse::first ? t : joint.angular_impulse + t;
+      joint.angular_impulse = use == BiasUse::first ? t : joint.angular_impulse + t;
     }
-    push_joint(bundle, node, joint, p, t);
-    joint.linear_impulse = asks == BiasUse::first ? p : joint.linear_impulse + p;
+    apply_joint_impulse(bundle, node, joint, p, t);
+    joint.linear_impulse = use == BiasUse::first ? p : joint.linear_impulse + p;
   }
 }
 
 // What is driven or rubs is swept, then the equations have the last word. (In one place each, as stops are: all that is long.)
 template <int W>
-__attribute__((noinline)) void solve_again(const WideBundle<W>& bundle) {
-  if (bundle.plain.drive_count > 0) sweep_drives(bundle);
+__attribute__((noinline)) void solve_with_accumulated(const WideBundle<W>& bundle) {
+  if (bundle.plain.drive_count > 0) iterate_drives(bundle);
   solve_rows<W, BiasUse::again>(bundle);
 }
 template <int W>
 __attribute__((noinline)) void relax(const WideBundle<W>& bundle, Mask<W> lanes) {
-  if (bundle.plain.drive_count > 0) sweep_drives(bundle);
+  if (bundle.plain.drive_count > 0) iterate_drives(bundle);
   if (any(lanes)) solve_rows<W, BiasUse::relax>(bundle, lanes);
 }
 
@@ -192,26 +192,26 @@ __attribute__((noinline)) void relax(const WideBundle<W>& bundle, Mask<W> lanes)
 
 // What a stop bore in the last part of the step, along its axis as it is now; what nothing can turn bears nothing.
 template <int W>
-GYRE_INLINE Vec3W<W> kept_impulse(WideLimitAxis<W>& axis) {
-  const Mask<W> turns = axis.mass > 0.0f;
-  axis.low_impulse = keep(turns, axis.low_impulse);
-  axis.high_impulse = keep(turns, axis.high_impulse);
+GYRE_INLINE Vec3W<W> accumulated_impulse(WideLimitAxis<W>& axis) {
+  const Mask<W> is_rotatable = axis.mass > 0.0f;
+  axis.low_impulse = keep(is_rotatable, axis.low_impulse);
+  axis.high_impulse = keep(is_rotatable, axis.high_impulse);
   return (axis.low_impulse - axis.high_impulse) * axis.about;
 }
 
 template <int W>
-GYRE_INLINE void push_kept(const WideBundle<W>& bundle) {
+GYRE_INLINE void warm_start_limits(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     WideJoint<W>& joint = bundle.joints[n];
     if (!node.has_twist && !node.has_swing && !node.has_servo) continue;
     const Wide<W> zero(0.0f);
-    Vec3W<W> turn{zero, zero, zero};
-    if (node.has_twist) turn += kept_impulse(joint.twist);
-    if (node.has_swing) turn += kept_impulse(joint.swing);
-    if (node.has_servo) turn += kept_impulse(bundle.servos[node.servo].axis);
-    if (bundle.moves(node.a)) bundle.bodies[node.a].angular -= bundle.bodies[node.a].inverse * turn;
-    if (bundle.moves(node.b)) bundle.bodies[node.b].angular += bundle.bodies[node.b].inverse * turn;
+    Vec3W<W> angular{zero, zero, zero};
+    if (node.has_twist) angular += accumulated_impulse(joint.twist);
+    if (node.has_swing) angular += accumulated_impulse(joint.swing);
+    if (node.has_servo) angular += accumulated_impulse(bundle.servos[node.servo].axis);
+    if (bundle.moves(node.a)) bundle.bodies[node.a].angular -= bundle.bodies[node.a].inverse * angular;
+    if (bundle.moves(node.b)) bundle.bodies[node.b].angular += bundle.bodies[node.b].inverse * angular;
   }
 }
 
@@ -243,8 +243,8 @@ template <int W>
 void prepare_articulations(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   prepare_bundle<W>(plain, arrays, s);
   const WideBundle<W> bundle(plain);
-  if (plain.drive_count > 0) place_drives(bundle);
-  if (plain.servo_count > 0) place_servos(bundle);
+  if (plain.drive_count > 0) prepare_lane_drives(bundle);
+  if (plain.servo_count > 0) prepare_lane_servos(bundle);
   if (plain.limit_count > 0) LimitSolver<W>(bundle, s, kNoErrors).begin();
 }
 
@@ -260,10 +260,10 @@ void compute_bundle_bias(const ArticulationBundle& plain, const LaneArrays& arra
 // Those in which a body turns so far in a part that the bend shows in its velocities.
 template <int W>
 GYRE_INLINE Mask<W> find_fast(const WideBundle<W>& bundle, float substep) {
-  Wide<W> most(0.0f);
+  Wide<W> largest(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i)
-    most = max(most, length_squared(bundle.bodies[i].angular));
-  return (substep * substep) * most > kStraightTurn * kStraightTurn;
+    largest = max(largest, length_squared(bundle.bodies[i].angular));
+  return (substep * substep) * largest > kSlowRotation * kSlowRotation;
 }
 
 // The impulses of equations are found from nothing, those of stops from what they were; where something is swept, all from what they were.
@@ -271,17 +271,17 @@ template <int W>
 void solve_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  const EnergyLimiter<W> watch(
+  const EnergyLimiter<W> limiter(
       bundle, Mask<W>::splat(s.keeps_energy) & (extreme_ratio_lanes(bundle) | find_fast(bundle, s.substep)));
-  push_kept(bundle);
+  warm_start_limits(bundle);
   if (plain.drive_count > 0) {
-    push_driven(bundle);
-    solve_again(bundle);
+    warm_start_driven(bundle);
+    solve_with_accumulated(bundle);
   } else {
     solve_rows<W, BiasUse::first>(bundle);
   }
   solve_limits(bundle, s, s.first_errors);
-  watch.bound(s.rate, s.substep);     // before contacts answer it
+  limiter.limit_gain(s.rate, s.substep);     // before contacts answer it
   compute_lane_bias(bundle, s, kMaxErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
 }
@@ -291,10 +291,10 @@ void solve_bundle_after_contacts(const ArticulationBundle& plain, const LaneArra
                                  const LaneSettings& s) {
   const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  const EnergyLimiter<W> watch(bundle);
-  solve_again(bundle);
+  const EnergyLimiter<W> limiter(bundle);
+  solve_with_accumulated(bundle);
   solve_limits(bundle, s, kMaxErrors);
-  watch.bound(s.rate, s.substep);
+  limiter.limit_gain(s.rate, s.substep);
   store_velocities(bundle, arrays);
 }
 
@@ -308,29 +308,29 @@ __attribute__((noinline)) void sum_impulses(const WideBundle<W>& bundle) {
     if (node.has_twist) accumulate_limit(joint, joint.twist);
     if (node.has_swing) accumulate_limit(joint, joint.swing);
     if (node.has_servo) accumulate_limit(joint, bundle.servos[node.servo].axis);
-    if (node.is_driven()) sum_drives(node, joint, bundle.drives[node.drives]);
+    if (node.is_driven()) accumulate_drives(node, joint, bundle.drives[node.drives]);
   }
 }
 
 // Those in which a stop pushes a limb back faster than it may stay. What it gives for that is taken away at once: a stop only pushes, so
 // the next part, whose stops begin with what they gave, does not take it all back.
 template <int W>
-GYRE_INLINE Mask<W> find_error_speed(const WideBundle<W>& bundle) {
-  constexpr float kMaxCached = 0.01f;  // rad/s
-  Mask<W> any_back = Mask<W>::splat(false);
+GYRE_INLINE Mask<W> find_rebounding(const WideBundle<W>& bundle) {
+  constexpr float kMaxReboundSpeed = 0.01f;  // rad/s
+  Mask<W> rebounding = Mask<W>::splat(false);
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     if (!node.has_twist && !node.has_swing) continue;
-    const Vec3W<W> turning = turning_of(bundle, node);
-    const auto look = [&](const WideLimitAxis<W>& axis) {
-      const Wide<W> speed = dot(axis.about, turning);
-      any_back = any_back | ((axis.low_impulse > 0.0f) & (speed > kMaxCached)) |
-                 ((axis.high_impulse > 0.0f) & (speed < -kMaxCached));
+    const Vec3W<W> spin = relative_spin_of(bundle, node);
+    const auto check = [&](const WideLimitAxis<W>& axis) {
+      const Wide<W> speed = dot(axis.about, spin);
+      rebounding = rebounding | ((axis.low_impulse > 0.0f) & (speed > kMaxReboundSpeed)) |
+                 ((axis.high_impulse > 0.0f) & (speed < -kMaxReboundSpeed));
     };
-    if (node.has_twist) look(bundle.joints[n].twist);
-    if (node.has_swing) look(bundle.joints[n].swing);
+    if (node.has_twist) check(bundle.joints[n].twist);
+    if (node.has_swing) check(bundle.joints[n].swing);
   }
-  return any_back;
+  return rebounding;
 }
 
 // After a move that is not the last: sums the impulses, and asks for what the next part begins with. The speed that took errors back is
@@ -344,24 +344,24 @@ void end_half_step(const ArticulationBundle& plain, const LaneArrays& arrays, co
   const bool is_driven = plain.drive_count > 0;
   const Mask<W> fast = find_fast(bundle, s.substep), relaxed = is_driven ? Mask<W>::splat(true) : fast;
   // Motors hold against what is swept, and it against them.
-  const Mask<W> stopped = is_driven && plain.servo_count > 0 ? relaxed : fast | find_error_speed(bundle);
-  const EnergyLimiter<W> watch(bundle);
+  const Mask<W> limited = is_driven && plain.servo_count > 0 ? relaxed : fast | find_rebounding(bundle);
+  const EnergyLimiter<W> limiter(bundle);
   relax(bundle, relaxed);
-  if (any(stopped)) solve_limits(bundle, s, kNoErrors, stopped);
-  const Mask<W> slowed = watch.remove_gain();
-  if (any(relaxed | stopped | slowed)) store_velocities(bundle, arrays);
+  if (any(limited)) solve_limits(bundle, s, kNoErrors, limited);
+  const Mask<W> slowed = limiter.remove_gain();
+  if (any(relaxed | limited | slowed)) store_velocities(bundle, arrays);
   compute_lane_bias(bundle, s, s.first_errors);
   sum_impulses(bundle);
 }
 // After the last move: takes away all speed along the rows and into stops, and sums the impulses.
 template <int W>
-void finish_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+void end_step_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  const EnergyLimiter<W> watch(bundle);
+  const EnergyLimiter<W> limiter(bundle);
   relax(bundle, Mask<W>::splat(true));
   solve_limits(bundle, s, kNoErrors);
-  watch.remove_gain();
+  limiter.remove_gain();
   sum_impulses(bundle);
   store_velocities(bundle, arrays);
 }
@@ -381,7 +381,7 @@ constexpr ArticulationKernels articulation_kernels() {
           solve_bundle<W>,
           solve_bundle_after_contacts<W>,
           end_half_step<W>,
-          finish_bundle<W>};
+          end_step_bundle<W>};
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "math/wide.h"
-#include "solver/articulation/linkage_lanes.h"
+#include "solver/articulation/articulation_lanes.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -118,7 +118,7 @@ void eliminate_column(const ArticulationBundle& bundle, const BlockColumn& colum
 
 // y -= B x, with B of R by C.
 template <int W, int R, int C>
-GYRE_INLINE void push_down(const float* b, const Wide<W> (&x)[C], float* y) {
+GYRE_INLINE void substitute_down(const float* b, const Wide<W> (&x)[C], float* y) {
   using V = Wide<W>;
   GYRE_UNROLL
   for (int r = 0; r < R; ++r) {
@@ -130,7 +130,7 @@ GYRE_INLINE void push_down(const float* b, const Wide<W> (&x)[C], float* y) {
 }
 // own -= B^T x.
 template <int W, int R, int C>
-GYRE_INLINE void pull_up(const float* b, const float* x, Wide<W> (&own)[C]) {
+GYRE_INLINE void substitute_up(const float* b, const float* x, Wide<W> (&own)[C]) {
   using V = Wide<W>;
   GYRE_UNROLL
   for (int r = 0; r < R; ++r) {
@@ -161,9 +161,9 @@ void solve_column_down(const ArticulationBundle& bundle, const BlockColumn& colu
     const float* const b = bundle.values + std::size_t(entry.offset) * W;
     float* const y = vector + std::size_t(row.row) * W;
     if (row.size == 3) {
-      push_down<W, 3, C>(b, own, y);
+      substitute_down<W, 3, C>(b, own, y);
     } else {
-      push_down<W, 5, C>(b, own, y);
+      substitute_down<W, 5, C>(b, own, y);
     }
   }
 }
@@ -194,9 +194,9 @@ void solve_column_up(const ArticulationBundle& bundle, const BlockColumn& column
     const float* const b = bundle.values + std::size_t(entry.offset) * W;
     const float* const known = vector + std::size_t(row.row) * W;
     if (row.size == 3) {
-      pull_up<W, 3, C>(b, known, own);
+      substitute_up<W, 3, C>(b, known, own);
     } else {
-      pull_up<W, 5, C>(b, known, own);
+      substitute_up<W, 5, C>(b, known, own);
     }
   }
   GYRE_UNROLL
@@ -210,8 +210,8 @@ void solve_column_up(const ArticulationBundle& bundle, const BlockColumn& column
 
 template <int W>
 void factor_lanes(const ArticulationBundle& bundle) {
-  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-    const BlockColumn& column = bundle.columns[place];
+  for (std::uint32_t index = 0; index < bundle.column_count; ++index) {
+    const BlockColumn& column = bundle.columns[index];
     if (column.size == 3) {
       eliminate_column<W, 3>(bundle, column);
     } else {
@@ -222,16 +222,16 @@ void factor_lanes(const ArticulationBundle& bundle) {
 
 template <int W>
 void solve_lanes(const ArticulationBundle& bundle) {
-  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-    const BlockColumn& column = bundle.columns[place];
+  for (std::uint32_t index = 0; index < bundle.column_count; ++index) {
+    const BlockColumn& column = bundle.columns[index];
     if (column.size == 3) {
       solve_column_down<W, 3>(bundle, column, bundle.vector);
     } else {
       solve_column_down<W, 5>(bundle, column, bundle.vector);
     }
   }
-  for (std::uint32_t place = bundle.column_count; place-- > 0;) {
-    const BlockColumn& column = bundle.columns[place];
+  for (std::uint32_t index = bundle.column_count; index-- > 0;) {
+    const BlockColumn& column = bundle.columns[index];
     if (column.size == 3) {
       solve_column_up<W, 3>(bundle, column, bundle.vector);
     } else {
@@ -257,9 +257,9 @@ GYRE_INLINE void for_columns(const ArticulationBundle& bundle, const Word& word,
 
 // Marks, beside the columns that are marked, those that elimination reaches from them: all come later.
 inline void reach_columns(const ArticulationBundle& bundle, ReachedColumns reached) {
-  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-    if ((reached[place / 64] >> place % 64 & 1u) == 0) continue;
-    const BlockColumn& column = bundle.columns[place];
+  for (std::uint32_t index = 0; index < bundle.column_count; ++index) {
+    if ((reached[index / 64] >> index % 64 & 1u) == 0) continue;
+    const BlockColumn& column = bundle.columns[index];
     for (std::uint32_t i = column.begin; i < column.end; ++i) {
       const std::uint32_t other = bundle.entries[i].place;
       reached[other / 64] |= std::uint64_t{1} << other % 64;

@@ -31,9 +31,9 @@ constexpr std::size_t response_room(std::size_t columns, std::size_t rows) { ret
 
 // Takes the first numbers of a room for one purpose.
 inline std::span<double> take_room(std::span<double>& room, std::size_t count) {
-  const std::span<double> part = room.first(count);
+  const std::span<double> taken = room.first(count);
   room = room.subspan(count);
-  return part;
+  return taken;
 }
 
 void find_response(const Articulation& articulation, const ArticulationSolve& solve, const ResponseRow& row,
@@ -47,7 +47,7 @@ void compute_delassus(const Articulation& articulation, const ArticulationSolve&
 
 // Adds impulses along rows, and what the equations answer: to the bodies' velocities and to what joints keep. `speeds` is room for six
 // numbers a body.
-void push_rows(const Articulation& articulation, const ArticulationSolve& solve,
+void apply_row_impulses(const Articulation& articulation, const ArticulationSolve& solve,
                std::span<const ResponseRow> rows, std::span<const double> impulses, std::span<double> speeds);
 
 // What an axis sees of the bodies' velocities.

@@ -1,5 +1,5 @@
 // Linkages side by side: where several hang together alike (the ragdolls of a heap, the chains of a curtain), lane i of a
-// bundle is the i-th of them, and kernels (solver/articulation/linkage_kernel.h) solve W at once in the time of one. The equations are those
+// bundle is the i-th of them, and kernels (solver/articulation/articulation_kernel.h) solve W at once in the time of one. The equations are those
 // of solver/articulation/articulation.h; this is the form of linkages of ball, cone and hinge joints on which nothing acts but hard stops, motors and drives
 // that turn, and dry friction.
 //
@@ -44,7 +44,7 @@ struct LaneJoint {
   Vec3 compliance, target_speed;  // of the three rows of the point, as ArticulationRows
   // Hinges: a's axis and what is across it, the error, the two rows that keep the axes together.
   Vec3 axis, perpendicular_1, perpendicular_2, angular_error;
-  float turn_give_1 = 0.0f, turn_give_2 = 0.0f, turn_wanted_1 = 0.0f, turn_wanted_2 = 0.0f;
+  float angular_compliance_1 = 0.0f, angular_compliance_2 = 0.0f, angular_target_1 = 0.0f, angular_target_2 = 0.0f;
 };
 
 // What turns a joint, or holds its turning up: a drive towards a pose, or a motor, and dry friction, each up to a bound. Vectors are in
@@ -65,7 +65,7 @@ struct LaneDrives {
 // impulse, of either sign, is the low one of the axis, and the place to be held the low end.
 struct LaneServo {
   LaneLimitAxis axis;
-  float most = 0.0f;          // N m s: impulse of a sub-step
+  float max_impulse = 0.0f;          // N m s: impulse of a sub-step
   float target_speed = 0.0f;  // rad/s
   float rate = 0.0f;          // 1/s, at which it goes to its place; 0: it has none
 };
@@ -132,7 +132,7 @@ struct ArticulationBundle {
       nullptr;  // J, by lane: what joints gave in this sub-step; then 1 in lanes that are watched
   float* has_extreme_mass_ratio = nullptr;  // 1 in lanes with a link so light that it is always watched
   bool* is_factored = nullptr;  // whether `values` are factors by now
-  std::byte* stops = nullptr;   // what is known of them in this step: as much as limit_room() says
+  std::byte* limits = nullptr;   // what is known of them in this step: as much as limit_room() says
 };
 
 struct LaneArrays {
@@ -150,14 +150,14 @@ struct LaneSettings {
   // As ArticulationSolve::give, 1e-4 or so: far above the rounding of floats, in which the matrix is eliminated.
   float compliance = 0.0f;
   // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
-  void (*raise)(const float* geometric_stiffness, const float* inertia, float share,
+  void (*add_geometric_stiffness)(const float* geometric_stiffness, const float* inertia, float share,
                 float* inverse) = nullptr;
   // What the first of two solutions takes back.
   ErrorBounds first_errors = kErrorsBeforeContacts;
   // Of the way that free rotation swerves in a sub-step, how much is asked for; none where speeds stand for displacements.
   float gyroscopic_share = 1.0f;
   // Where a body turns by more than that in a sub-step, less of the bend is asked for.
-  float max_turn = kMaxBiasAngle;  // rad
+  float max_bias_angle = kMaxBiasAngle;  // rad
   // Whether joints that do work are answered for; not where speeds stand for displacements.
   bool keeps_energy = true;
 };
@@ -169,15 +169,15 @@ struct ArticulationKernels {
   std::size_t velocities_at;  // bytes: where a body's block has them, as LaneVelocities
   std::size_t (*limit_room)(const ArticulationBundle& bundle);  // bytes
   void (*begin)(const ArticulationBundle& bundle);  // before it is placed for the first time in a step
-  void (*place)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*ask)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*prepare)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*compute_bias)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*solve_again)(const ArticulationBundle& bundle, const LaneArrays& arrays,
+  void (*solve_after_contacts)(const ArticulationBundle& bundle, const LaneArrays& arrays,
                       const LaneSettings& settings);
   // After each move but the last: sums impulses, and asks for what the next part begins with.
-  void (*pass)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*end_half_step)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   // After the last move: no speed is left along the rows or into stops; sums impulses.
-  void (*finish)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*end_step)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
 };
 
 }  // namespace gyre

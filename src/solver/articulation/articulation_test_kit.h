@@ -1,4 +1,4 @@
-// Crowds of linkages for tests of their lanes (solver/articulation/linkage_lanes.h): each copy in a state of its own, solved one by one and side by
+// Crowds of linkages for tests of their lanes (solver/articulation/articulation_lanes.h): each copy in a state of its own, solved one by one and side by
 // side.
 #pragma once
 
@@ -17,7 +17,7 @@
 #include <cstring>
 #include <vector>
 
-namespace gyre::linkage_test {
+namespace gyre::articulation_test {
 
 inline constexpr int kBodies = 6, kJoints = 6, kCopies = 7;
 inline constexpr float kSubstep = 1.0f / 480.0f;
@@ -37,7 +37,7 @@ struct Random {
 struct Member {
   JointKind kind;
   std::int32_t a, b;
-  bool stops;
+  bool limits;
 };
 inline constexpr Member kMembers[kJoints] = {
     {JointKind::hinge, kNoBody, 0, true}, {JointKind::cone, 0, 1, true},  {JointKind::ball, 1, 2, false},
@@ -45,7 +45,7 @@ inline constexpr Member kMembers[kJoints] = {
 
 // What drives most of the joints: drives, motors with a frequency and friction, which are swept; or motors of hinges without one, which are
 // solved with the equations, and no stop is near.
-enum class Driven : std::uint8_t { no, swept, motors };
+enum class Driven : std::uint8_t { no, iterative, motors };
 
 // Several copies of that linkage, each in a state of its own, and the work of a step.
 struct Crowd {
@@ -56,7 +56,7 @@ struct Crowd {
   std::vector<JointRecord> records{std::size_t(kJoints * kCopies)};
   std::vector<JointDetail> details{std::size_t(kJoints * kCopies)};
   std::vector<JointConstraint> work{std::size_t(kJoints * kCopies)};
-  std::vector<JointOffsets> places{std::size_t(kJoints * kCopies)};
+  std::vector<JointOffsets> offsets{std::size_t(kJoints * kCopies)};
   Driven driven;
 
   explicit Crowd(float tension, Driven by = Driven::no) : driven(by) {
@@ -65,7 +65,7 @@ struct Crowd {
       motion[i].linear_velocity = random.vector(3.0f);
       motion[i].angular_velocity = random.vector(8.0f);
       motion[i].inverse_mass = inertia[i].inverse_mass = 1.0f + 0.5f * random.next();
-      motion[i].moved = random.vector(0.01f);
+      motion[i].delta_position = random.vector(0.01f);
       inertia[i].inverse = {.xx = 20 + random.next(),
                             .yy = 30 + random.next(),
                             .zz = 25 + random.next(),
@@ -76,7 +76,7 @@ struct Crowd {
     }
     for (std::size_t i = 0; i < records.size(); ++i) set_joint(i, random, tension);
     for (std::size_t i = 0; driven != Driven::no && i < records.size(); ++i) drive_joint(i, random);
-    if (driven == Driven::motors) open_stops();
+    if (driven == Driven::motors) open_limits();
     for (std::size_t i = 0; i < records.size(); ++i)
       begin_joint(records[i], detail_of(i), {}, work[i], 1.0f, arena);
   }
@@ -100,11 +100,11 @@ struct Crowd {
           conjugate(b) * (from_rotation_vector(random.vector(0.02f)) * a * joint.local_frame_a);
       joint.angular_impulse = random.vector(0.01f);
     }
-    const Vec3 moved = motion[std::size_t(joint.body_b)].moved -
-                       (joint.body_a == kNoBody ? Vec3{} : motion[std::size_t(joint.body_a)].moved);
-    places[i].offset =
+    const Vec3 moved = motion[std::size_t(joint.body_b)].delta_position -
+                       (joint.body_a == kNoBody ? Vec3{} : motion[std::size_t(joint.body_a)].delta_position);
+    offsets[i].offset =
         rotate(a, joint.local_anchor_a) - rotate(b, joint.local_anchor_b) - moved + random.vector(0.002f);
-    if (!member.stops) return;
+    if (!member.limits) return;
     joint.has_limits = true;
     joint.limits = {-0.2f, 0.1f + 0.2f * random.next()};
     joint.low_impulse = 0.003f;
@@ -128,12 +128,12 @@ struct Crowd {
       joint.motor_force = 100.0f * strength;
       joint.motor_velocity = 3.0f * random.next();
       joint.motor_impulse = 0.01f * random.next();
-      joint.has_motor_target = kMembers[member].stops;
+      joint.has_motor_target = kMembers[member].limits;
       joint.motor_position = random.next();
       if (driven == Driven::motors) return;
       joint.motor_frequency = 6.0f;
       JointAxisRecord& axis = detail.axes[int(JointAxis::angular_x)];
-      if (!kMembers[member].stops) return;
+      if (!kMembers[member].limits) return;
       axis.friction = 60.0f * strength;
       axis.friction_impulse = 0.01f * random.next();
       return;
@@ -149,7 +149,7 @@ struct Crowd {
     detail.drive_torque_impulse = random.vector(0.01f);
   }
   // None is near its stops.
-  void open_stops() {
+  void open_limits() {
     for (JointRecord& joint : records) joint.limits = {-10.0f, 10.0f}, joint.low_impulse = 0.0f;
     for (JointDetail& detail : details) {
       detail.swing_y = detail.swing_z = kPi;
@@ -158,13 +158,13 @@ struct Crowd {
   }
   JointDetail* detail_of(std::size_t i) {
     const Member& member = kMembers[i % kJoints];
-    return driven != Driven::no || (member.stops && member.kind != JointKind::hinge) ? &details[i] : nullptr;
+    return driven != Driven::no || (member.limits && member.kind != JointKind::hinge) ? &details[i] : nullptr;
   }
 
   ArticulationSolve solve() {
     return {.records = records,
             .work = work,
-            .places = places,
+            .offsets = offsets,
             .bodies = {motion.data(), inertia.data(), orientation.data()},
             .settings = kSettings,
             .compliance = 1.0e-4f};
@@ -235,7 +235,7 @@ inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
       node.count = int(shape.nodes[std::size_t(i)].rows);
     }
     Articulation articulation{nodes, bodies, couplings, shape.plan, values, room, vector, true};
-    std::vector<WideLimitAxis> axes;
+    std::vector<DrivenAxis> axes;
     for (std::uint32_t i = 0; crowd.driven == Driven::motors && i < kJoints; ++i) {
       if (kMembers[i].kind != JointKind::hinge) continue;
       axes.push_back({i, &crowd.work[nodes[i].work].axes[0]});
@@ -307,7 +307,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
   bundle.vector = arena.make<float>(lanes * shape.plan.rows).data();
   bundle.room = arena.make<float>(lanes * shape.plan.widest).data();
   bundle.is_factored = arena.make<bool>(1).data();
-  bundle.stops = arena.make<std::byte>(kernels.limit_room(bundle)).data();
+  bundle.limits = arena.make<std::byte>(kernels.limit_room(bundle)).data();
   for (int first = 0; first < kCopies; first += kernels.width) {
     const int used = std::min(kernels.width, kCopies - first);
     clear_lanes(bundle);
@@ -318,17 +318,17 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
       }
     };
     for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
-      load_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i), crowd.places[i].offset, start);
+      load_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i), crowd.offsets[i].offset, start);
       set_lane_body(bundle, lane, shape.nodes[n].a, crowd.records[i].body_a, false);
       set_lane_body(bundle, lane, shape.nodes[n].b, crowd.records[i].body_b, false);
     });
     for (int part = 0; part < 2; ++part) {
       if (part == 1) {
         if (between.ends == Between::Ends::passes) {
-          kernels.place(bundle, arrays, settings);
-          kernels.pass(bundle, arrays, settings);
+          kernels.prepare(bundle, arrays, settings);
+          kernels.end_half_step(bundle, arrays, settings);
         }
-        if (between.ends == Between::Ends::finishes) kernels.finish(bundle, arrays, settings);
+        if (between.ends == Between::Ends::finishes) kernels.end_step(bundle, arrays, settings);
         for (int copy = first + (first + 1) % 2; copy < first + used; copy += 2) {
           Quat& body = crowd.orientation[std::size_t(copy * kBodies + 1)];
           body = from_rotation_vector({between.turn, 0, 0}) * body;
@@ -337,19 +337,19 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
       }
       // Passing on comes after placing, and asks.
       const bool passed = part == 1 && between.ends == Between::Ends::passes;
-      if (!passed) kernels.place(bundle, arrays, settings);
-      if (!passed || between.asks) kernels.ask(bundle, arrays, settings);
+      if (!passed) kernels.prepare(bundle, arrays, settings);
+      if (!passed || between.asks) kernels.compute_bias(bundle, arrays, settings);
       kernels.solve(bundle, arrays, settings);
-      kernels.solve_again(bundle, arrays, settings);
+      kernels.solve_after_contacts(bundle, arrays, settings);
     }
-    kernels.finish(bundle, arrays, settings);
+    kernels.end_step(bundle, arrays, settings);
     for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
       store_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i));
     });
   }
 }
 inline void solve_side_by_side(Crowd& crowd, Shape& shape, int width, const Between& between = {}) {
-  solve_side_by_side(crowd, shape, select_contact_kernels(width).linkages, between);
+  solve_side_by_side(crowd, shape, select_contact_kernels(width).articulations, between);
 }
 
 inline double apart(Vec3 a, Vec3 b) { return double(length(a - b)); }
@@ -396,4 +396,4 @@ inline void expect_same(const Crowd& one, const Crowd& other, double times = 1.0
   }
 }
 
-}  // namespace gyre::linkage_test
+}  // namespace gyre::articulation_test
