@@ -6,10 +6,10 @@ namespace gyre {
 
 namespace {
 
-// Many lanes of long linkages leave the cache: these stand side by side only where half of the lanes are used.
+// Many lanes of long articulations leave the cache: these are bundled only if half of the lanes are used.
 constexpr std::size_t kLongArticulation = 64;
 
-// How many of `left` linkages of a shape the next bundle takes.
+// Number of the `left` articulations of a topology that the next bundle takes.
 std::size_t lanes_of(std::size_t left, const ArticulationTopology& topology, std::size_t width) {
   const std::size_t fewest = topology.nodes.size() > kLongArticulation ? (width + 1) / 2 : 2;
   return left < fewest ? 1 : std::min(left, width);
@@ -54,14 +54,14 @@ ArticulationBundle make_bundle(const ArticulationTopology& topology, const Artic
   return b;
 }
 
-// How far a push at a joint moves a body there, a middle of all directions (1/kg).
+// 1/kg: mobility of a body at a joint, averaged over all directions.
 float mobility(const BodyMass& mass, Vec3 arm) {
   const Sym3& i = mass.inverse_inertia;
   const float turning = (i.xx + i.yy + i.zz) * length_squared(arm) - dot(arm, i * arm);
   return mass.inverse_mass + (1.0f / 3.0f) * turning;
 }
-// Whether one of two bodies, held by yet another joint, is so easily moved beside the other that how it bends between them is not resolved:
-// it may be as fast as can be after any solution.
+// True if a joint couples bodies whose effective masses differ by more than 50, one of them with another
+// joint too. Such links may get any speed from a solve, since their second-order bias is not resolved.
 bool has_extreme_mass_ratio(const RigidWorld& w, const JointRecord& joint) {
   constexpr float kLighter = 3.0f, kMoreMobile = 50.0f;
   if (joint.body_a == kNoBody || joint.body_b == kNoBody) return false;
@@ -82,7 +82,7 @@ BundleSolve lay_out_bundles(const Articulations& articulations, const ContactKer
   BundleSolve result{{}, arrays, settings};
   const std::size_t count = articulations.grouped.size();
   if (count == 0) return result;
-  // Sorted by shape, those of a shape in the order of their first joints.
+  // Sorted by topology, and for equal topology in the order of their first joints.
   const std::span<const GroupedArticulation*> sorted = arena.make<const GroupedArticulation*>(count);
   const std::span<std::size_t> ends = arena.make<std::size_t>(articulations.topologies.size() + 1);
   for (std::size_t& end : ends) end = 0;
@@ -119,7 +119,7 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWo
     bundle.lanes.kernels->begin(bundle.lanes);
     for (int lane = 0; lane < bundle.lanes.kernels->width; ++lane)
       bundle.lanes.has_extreme_mass_ratio[lane] = 0.0f;
-    // Joint by joint, because its lanes lie in the same cache lines.
+    // Joint by joint, because its lanes share cache lines.
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
       const LaneNode& node = bundle.lanes.nodes[n];
       for (std::size_t lane = 0; lane < bundle.articulations.size(); ++lane) {

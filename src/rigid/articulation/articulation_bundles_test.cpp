@@ -1,5 +1,5 @@
-// Bundles against what they promise: each linkage is in one lane, beside none of another shape, and no more lanes than half are idle
-// where kernels of half as many would do.
+// Each articulation is in one lane, beside others of equal topology only, and no more than half of the lanes
+// are idle if kernels of half as many would do.
 #include "rigid/articulation/articulation_bundles.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMost = 40;
 
-// So many linkages of each shape, one joint each, those of the shapes mixed.
+// Numbers of articulations of each topology, one joint each, in mixed order.
 struct Crowd {
   explicit Crowd(std::vector<std::size_t> counts)
       : nodes(counts.size()), shapes(counts.size()), joints(kMost * counts.size()) {
@@ -71,7 +71,7 @@ TEST(LinkageBundles, LeaveNoHalfOfTheLanesIdleWhereFewerWouldDo) {
   }
 }
 
-// Sixteen lanes have eight of the same instructions beside them.
+// Sixteen lanes have kernels of eight with the same instructions.
 TEST(LinkageBundles, SixteenLanesHaveKernelsOfHalfAsMany) {
   const ContactKernels& kernels = select_contact_kernels(16);
   if (kernels.width < 16) GTEST_SKIP() << "this processor has none of sixteen lanes";

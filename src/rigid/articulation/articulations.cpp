@@ -10,19 +10,19 @@ namespace gyre {
 
 namespace {
 
-// A linkage is solved directly if a factorisation takes no more multiplications than this for each row.
+// Largest number of multiplications of a factorisation, per row, for a direct solution.
 constexpr std::uint64_t kMaxWorkPerRow = 400;
-// and if no more pairs of joints share a body than this for each joint.
+// Largest number of pairs of joints that share a body, per joint, for a direct solution.
 constexpr std::uint64_t kMaxPairsPerJoint = 8;
-// How many shapes a linkage is compared with. A shape found anew costs time, never bits.
+// Number of topologies that an articulation is compared with. A topology found twice costs time, never bits.
 constexpr std::size_t kTopologiesCompared = 16;
 
-// The joints of a batch that have equations, and how they hang together.
+// The joints of a batch that have equations, as a graph of its bodies.
 struct Graph {
-  std::span<std::uint32_t> joints;  // places in the batch's list
-  std::span<std::uint32_t> first;  // by body's place: where its part of `at_body` begins; one more at the end
-  std::span<std::uint32_t> at_body;  // numbers in `joints`, body by body
-  std::span<std::uint32_t> parent;   // by body's place
+  std::span<std::uint32_t> joints;   // indices in the batch's list
+  std::span<std::uint32_t> first;    // by body index: begin of its part of `at_body`; one more at the end
+  std::span<std::uint32_t> at_body;  // indices in `joints`, body by body
+  std::span<std::uint32_t> parent;   // by body index
 };
 
 std::uint32_t root_of(const Graph& graph, std::uint32_t index) {
@@ -69,11 +69,12 @@ Graph make_graph(std::span<const JointEdge> all, std::size_t bodies, std::span<c
   return graph;
 }
 
-// Sorts the joints by the root of their linkage, in the order of the lowest joint of each; joints of one keep theirs.
+// The joints sorted by articulation, in the order of the lowest joint of each; joints of one keep their
+// order.
 struct Groups {
-  std::span<std::uint32_t> members;  // numbers in graph.joints
+  std::span<std::uint32_t> members;  // indices in graph.joints
   std::span<std::uint32_t> ends;
-  std::span<std::uint32_t> local;  // by number in graph.joints: which of its group it is
+  std::span<std::uint32_t> local;  // by index in graph.joints: position in its group
 };
 Groups group_joints(std::span<const JointEdge> all, std::span<const std::uint32_t> body_indices, const Graph& graph,
                     Arena& arena) {
@@ -125,7 +126,7 @@ class ArticulationBuilder {
     for (std::uint32_t& side : sides_) side = kNoIndex;
   }
 
-  // Makes one of the two, `alone` where lanes cannot bear it; false: neither.
+  // Builds `scalar`, or `in_lanes` if its joints fit in lanes. False if neither is possible.
   bool make(std::span<const std::uint32_t> members, Articulation& scalar, GroupedArticulation& in_lanes) {
     const auto joint_at = [&](std::size_t i) -> const JointEdge& { return joint_edge(members[i]); };
     if (dense_.contains(members.size(), joint_at)) return false;
@@ -184,10 +185,10 @@ class ArticulationBuilder {
     }
     return twice / 2;
   }
-  // The joints of a linkage and the bodies that move, each once, in the order in which the joints name them.
+  // The joints of an articulation and its movable bodies, each once, in the order of the joints.
   struct Draft {
     std::span<ArticulationJoint> joints;
-    std::span<std::int32_t> side_a, side_b;  // by joint: which of `bodies`; -1: it cannot be pushed
+    std::span<std::int32_t> side_a, side_b;  // by joint: index in `bodies`; -1: not movable
     std::span<std::int32_t> bodies;
   };
   Draft make_draft(std::span<const std::uint32_t> members) {
@@ -208,7 +209,7 @@ class ArticulationBuilder {
       const std::uint32_t index = graph_.joints[members[i]];
       const std::uint32_t slot = batch_.joints[index];
       const JointRecord& joint = w_.joints.records[slot];
-      // What describe() asks of it.
+      // describe() reads it.
       if (const JointDetail* const detail = detail_of(w_.joints, slot))
         prefetch(detail, offsetof(JointDetail, row_impulses));
       draft.joints[i] = {
@@ -242,7 +243,7 @@ class ArticulationBuilder {
     articulation.room = arena_.make<double>(factor_room(plan));
     articulation.vector = arena_.make<double>(plan.rows);
   }
-  // Every pair of joints that share a body that moves, once for each such body.
+  // Lists every pair of joints that share a movable body, once for each such body.
   void list_pairs(std::span<const std::uint32_t> members, const Draft& draft,
                   std::span<ArticulationCoupling> couplings, std::span<BlockEdge> edges) const {
     std::size_t used = 0;
@@ -250,7 +251,7 @@ class ArticulationBuilder {
       for_moving(joint_edge(members[i]), [&](std::uint32_t body) {
         for (const std::uint32_t n : at_body(body)) {
           const std::uint32_t other = local_[n];
-          if (other >= i) break;  // in order
+          if (other >= i) break;  // in ascending order
           edges[used] = {i, other};
           couplings[used++] = {i,
                                other,
@@ -263,7 +264,8 @@ class ArticulationBuilder {
     }
   }
 
-  // The linkage as lanes have it; false if they cannot bear it. Bodies that cannot be pushed come last, one for each joint's end.
+  // Describes the articulation for lanes; false if it does not fit. Immovable bodies come last, one for each
+  // end of a joint.
   bool describe(const Draft& draft, ArticulationTopology& topology) {
     std::size_t limits = 0, servos = 0;
     topology.nodes = arena_.make<LaneNode>(draft.joints.size());
@@ -310,7 +312,7 @@ class ArticulationBuilder {
     }
     return false;
   }
-  // Returns which it is.
+  // Returns its index.
   std::uint32_t add_topology(ArticulationTopology& topology, const BlockPlan& plan,
                           std::span<const ArticulationCoupling> couplings) {
     topology.plan = plan;
@@ -352,7 +354,7 @@ class ArticulationBuilder {
     }
   }
 
-  // Which couplings are the first in their blocks, and whether that is all blocks below the diagonal.
+  // Marks the first coupling of each block, and finds whether all blocks below the diagonal have one.
   void mark_first(ArticulationTopology& topology) {
     const ArenaScope scope(arena_);
     const std::span<std::uint8_t> is_begun = arena_.make<std::uint8_t>(topology.plan.values);
@@ -378,7 +380,7 @@ class ArticulationBuilder {
   Arena& arena_;
   std::span<ArticulationTopology> topologies_;
   std::size_t topology_count_ = 0;
-  std::span<std::uint32_t> sides_;  // by body's place: which body of its linkage it is
+  std::span<std::uint32_t> sides_;  // by body index: index in the bodies of its articulation
 };
 
 }  // namespace

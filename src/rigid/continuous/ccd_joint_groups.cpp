@@ -7,9 +7,9 @@ namespace gyre {
 
 namespace {
 
-constexpr std::size_t kMaxJoints = 48;  // around each stopped body; those of the body itself always
+constexpr std::size_t kMaxJoints = 48;  // around each halted body; the body's own joints are always included
 
-// Whether its equations and limits are about where two bodies are, and not only about how far they have turned or run.
+// True if its equations and limits depend on the positions of two bodies, and not only on rotation or travel.
 bool constrains_pose(const RigidWorld& w, std::uint32_t joint) {
   const JointKind kind = w.joints.records[joint].kind;
   const JointDetail* const detail = detail_of(w.joints, joint);
@@ -89,7 +89,7 @@ class GroupFinder {
   const RigidWorld& w_;
   std::span<const HaltedBody> halted_;
   Arena& arena_;
-  std::span<std::uint32_t> group_of_joint_, group_of_body_;  // the last, from 1 on; 0: none
+  std::span<std::uint32_t> group_of_joint_, group_of_body_;  // the last group, from 1 on; 0: none
   std::span<const HaltedBody*> halt_of_;                     // by body
   std::uint32_t number_ = 0;
 };

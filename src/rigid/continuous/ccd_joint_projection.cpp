@@ -1,8 +1,10 @@
-// A fast body that a sweep takes back leaves its joints open by what it lost, up to the way of a whole step; taken back by speeds,
-// that would show for some steps and throw what hangs there about. So what hangs together is led from where all of it was when the
-// first body was stopped along the rest of its way (rigid/continuous/ccd_projection_path.h). Of all motions that keep to the equations and limits of the
-// joints, each part takes the one nearest to the bodies' own, by mass. Stopped bodies weigh more meanwhile, and are held where that is
-// not enough, or they could be moved through what stopped them. What another goes into by that, its contacts take back.
+// A fast body that CCD moved back leaves its joints open by the displacement that it lost, up to that of a
+// whole step. Removed by velocities, the error would be visible for some steps and throw the connected bodies
+// about. So a group is moved from its pose at the first impact along the rest of its displacement
+// (rigid/continuous/ccd_projection_path.h). Each segment takes the motion nearest to the bodies' own, by
+// mass, that satisfies the equations and limits of the joints. Halted bodies are heavier meanwhile, and fixed
+// if that is not enough, or they could pass through their blocker. Penetrations of other bodies are left to
+// contacts.
 #include "rigid/continuous/ccd_joint_projection.h"
 
 #include "collision/continuous/continuous.h"
@@ -19,7 +21,7 @@ ProjectionBodies make_bodies(const RigidWorld& w, Arena& arena) {
   return {arena.make<BodyMotion>(count), arena.make<BodyInertia>(count), arena.make<Quat>(count)};
 }
 
-// Puts the group where it was led to.
+// Writes the new poses of the group.
 void store_poses(RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
            Array<std::uint32_t>& moved) {
   for (const ProjectionMember& member : group.members) {

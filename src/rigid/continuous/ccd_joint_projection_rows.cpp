@@ -53,7 +53,7 @@ class RowProjection {
     return true;
   }
 
-  // How far the joints are off where the bodies are; these stand still.
+  // The largest error of the joints at the present poses, with bodies at rest.
   float find_error() {
     double largest = 0.0;
     for (const Row& row : make_rows()) largest = max(largest, missing(row));
@@ -111,7 +111,7 @@ class RowProjection {
   const ProjectionGroup& group_;
   ProjectionBodies bodies_;
   ProjectionJoints joints_;
-  std::span<std::int32_t> body_indices_;  // by body: among those of the rows
+  std::span<std::int32_t> body_indices_;  // by body: index among the bodies of the rows
   std::span<RowBody> row_bodies_;
   BlockPlan plan_;
   std::span<Row> rows_;

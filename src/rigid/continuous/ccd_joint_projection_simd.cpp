@@ -8,12 +8,13 @@ namespace gyre {
 
 namespace {
 
-// Enough to tell redundant rows apart.
+// Enough to separate redundant rows.
 constexpr float kProjectionCompliance = 1.0e-4f;
-// Bends are for speeds that stay; of a way to a pose, in which errors are measured anew, little helps.
+// The second-order bias is for velocities that persist; on the path to a pose, where errors are measured
+// anew, it helps little.
 constexpr float kMaxBiasAngleOfPath = 0.15f;  // rad
 
-// Whether lanes may bear the group, as far as that shows before its joints are looked at.
+// True if the group may fit in lanes, before its joints are checked.
 bool may_fit(const RigidWorld& w, const ProjectionGroup& group) {
   if (!group.is_whole) return false;
   for (const ProjectionMember& member : group.members) {
@@ -69,7 +70,7 @@ class LaneProjection {
   }
 
  private:
-  // The joints and bodies of all groups that may fit.
+  // Lists the joints and bodies of all groups that may fit.
   void list() {
     std::size_t joints = 0, bodies = 0;
     for (const ProjectionGroup& group : groups_)
@@ -107,7 +108,7 @@ class LaneProjection {
     return group_of_joint_[articulation.joints[0].index];
   }
 
-  // All lanes step by step, until the last has come to its end.
+  // Moves all lanes segment by segment, until the last has reached its end.
   void project_bundle(const BundledArticulations& bundle) const {
     const ArticulationKernels& kernels = *bundle.lanes.kernels;
     std::uint32_t active = (1u << bundle.articulations.size()) - 1;
@@ -139,8 +140,8 @@ class LaneProjection {
   Arena& arena_;
   std::span<std::uint8_t> is_projected_;
   SolveBatch batch_;
-  std::span<std::uint32_t> body_indices_;          // by body: in the batch's list
-  std::span<std::uint32_t> group_of_joint_;  // by place in the batch's list
+  std::span<std::uint32_t> body_indices_;    // by body: index in the batch's list
+  std::span<std::uint32_t> group_of_joint_;  // by index in the batch's list
   std::span<JointEdge> joint_edges_;
   BundleSolve bundles_;
   std::span<ProjectionPath> paths_;  // by group

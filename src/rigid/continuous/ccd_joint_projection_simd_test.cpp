@@ -1,5 +1,5 @@
-// What follows a stopped limb, side by side against one by one by Newton's method on rows: both end where joints and limits hold, and
-// as near to each other as that leaves them; each lane has the same bits whatever stands beside it.
+// Projection side by side against projection one by one by Newton's method on rows: both end with joints and
+// limits satisfied and in similar poses; each lane has the same bits whatever stands beside it.
 #include "rigid/continuous/ccd_joint_projection_simd.h"
 
 #include "math/rotation.h"
@@ -16,8 +16,9 @@ namespace {
 constexpr int kLinks = 5;
 constexpr float kHalf = 0.2f, kMaxSwing = 0.1f;
 
-// Chains along x, each 3 m further along z, that are to go some way along y and turn a little as they do: ends by a ball, by a cone
-// that may lean by 0.1 rad, by a hinge about z, and by what the test says. The third link of each is stopped.
+// Chains along x, each 3 m further along z, that move along y and rotate a little: joined by a ball, by a
+// cone with a swing of 0.1 rad, by a hinge about z, and by a joint of the test. The third link of each is
+// halted.
 class ChainsFollow : public ::testing::Test {
  protected:
   void add_chain(JointKind last = JointKind::ball) {
@@ -46,7 +47,7 @@ class ChainsFollow : public ::testing::Test {
   DVec3 place(std::size_t body) const {
     return world_.bodies.places[body].center + DVec3(bodies_.motion[body].delta_position);
   }
-  // How far apart the joint's ends are, and how far the cone leans.
+  // The gap of the joint, and the swing of the cone.
   double gap(const JointRecord& joint) const {
     const auto end = [&](std::int32_t body, Vec3 anchor) {
       return place(std::size_t(body)) + DVec3(rotate(bodies_.orientations[std::size_t(body)], anchor));
@@ -68,7 +69,7 @@ class ChainsFollow : public ::testing::Test {
   }
 
   RigidWorld world_;
-  float spread_ = 0.0f;  // by how much of the first's way each chain goes farther than the one before
+  float spread_ = 0.0f;  // difference of the displacement of successive chains, as a share of the first's
   std::vector<HaltedBody> stopped_;
   ProjectionBodies bodies_;
   TaskSystem tasks_{1};
@@ -128,13 +129,13 @@ TEST_F(ChainsFollow, WhereJointsAndLimitsHoldAndAsRowsDo) {
   project_by_rows();
   expect_closed();
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LT(length(place(i) - places[i]), 2.0e-3) << i;
-  // The ends go on, the one that was stopped hardly.
+  // The ends move on, the halted link hardly.
   EXPECT_GT(places[0].y, 0.08);
   EXPECT_LT(places[2].y, 0.05);
 }
 
 TEST_F(ChainsFollow, WithTheSameBitsWhateverStandsBeside) {
-  spread_ = 1.0f;  // so that lanes end after each other
+  spread_ = 1.0f;  // lanes end one after the other
   for (int i = 0; i < 5; ++i) add_chain();
   project_batched(1);
   const ProjectionBodies alone = bodies_;

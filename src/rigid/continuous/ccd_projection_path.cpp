@@ -6,13 +6,14 @@ namespace gyre {
 
 namespace {
 
-constexpr float kMaxHaltedDisplacement = 0.25f;          // of the size of a stopped body: its core stays where it was held
-constexpr float kHaltedInverseMassShare = 0.01f;  // of its inverse mass, with which it is moved
-constexpr int kMaxSegments = 2;         // of the rest of the way
-constexpr float kShortRotation = 0.2f;      // rad: where nothing turns further, one is enough
-constexpr int kCorrections = 4;         // at the end of each
-constexpr float kErrorTolerance = 3.0e-4f;        // m or rad: less is left to the next step
-constexpr float kMaxErrorAtEnd = 1.0e-3f;      // m or rad: more, and it is no way to go
+constexpr float kMaxHaltedDisplacement = 0.25f;   // of the size of a halted body: its core stays at
+                                                  // the impact
+constexpr float kHaltedInverseMassShare = 0.01f;  // of its inverse mass, in the projection
+constexpr int kMaxSegments = 2;                   // of the rest of the displacement
+constexpr float kShortRotation = 0.2f;            // rad: below this rotation one segment is enough
+constexpr int kCorrections = 4;                   // at the end of each segment
+constexpr float kErrorTolerance = 3.0e-4f;        // m or rad: smaller errors are left to the next step
+constexpr float kMaxErrorAtEnd = 1.0e-3f;         // m or rad: a segment with larger errors is undone
 
 }  // namespace
 
@@ -25,12 +26,12 @@ ProjectionPath::ProjectionPath(const RigidWorld& w, const ProjectionGroup& group
     BodyMotion& motion = bodies_.motion[member.body] = BodyMotion{};
     motion.delta_position = member.start_displacement;
     bodies_.orientations[member.body] = member.start_orientation;
-    bodies_.inertia[member.body] = {};  // of those that do not move it stays so
+    bodies_.inertia[member.body] = {};  // zero for bodies that do not move
   }
   update_inertia();
 }
 
-// All begin where the first was stopped.
+// All bodies begin at the first impact.
 void ProjectionPath::find_displacements() const {
   float first = 1.0f;
   for (const ProjectionMember& member : members_)
@@ -73,8 +74,8 @@ ProjectionPath::Next ProjectionPath::next(float error) {
   return is_moving_ ? end_segment(error) : end_start(error);
 }
 
-// What was off as the step began is no fault of the way. It may be more than the group alone can close, of a net that is stretched for
-// one: then all begin as far off as they were.
+// Errors at the beginning of the step are no fault of the path. The group alone may be unable to close them,
+// as in a stretched net; then all begin with their errors.
 ProjectionPath::Next ProjectionPath::end_start(float error) {
   const bool is_closer = error <= initial_error_;
   if (!is_closer) restore();
@@ -166,7 +167,7 @@ void ProjectionPath::update_inertia() const {
   }
 }
 
-// Holds stopped bodies that were moved further than they may be. Returns whether there are more of these than before.
+// Fixes halted bodies that moved further than they may. Returns true if there are more of them than before.
 bool ProjectionPath::fix_displaced_bodies() const {
   const float share = float(segment_ + 1) / float(segments_);
   bool any = false;

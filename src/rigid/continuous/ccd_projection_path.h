@@ -1,11 +1,12 @@
-// How a group that hangs together follows what a sweep took back: from where all of it was when the first body was stopped (joints
-// hold there: all have gone the same part of their way) along the rest of its way, in a few parts, each as far as the joints can be
-// closed without moving stopped bodies further than they may be. Those that were are held, and where that is no way either, all stay
-// where the last part left them.
+// The path of a projection group: after CCD halts a body, the group moves from its pose at the first impact
+// (joints are closed there, since all bodies have the same fraction of their displacement) along the rest of
+// its displacement, in a few segments. Each ends where the joints can be closed without moving halted bodies
+// further than they may. Halted bodies that would are fixed, and if that does not help, all stay at the end
+// of the last segment.
 //
-// Whoever solves the joints asks for the next motion again and again: next() says what to do where the joints are as far off as they
-// are, and sets velocities that would make a displacement in kProjectionStep seconds; the solver changes them, advance() goes there and
-// leaves none.
+// The solver of the joints calls next() with the present error: it returns what to do, and sets velocities
+// that would make a displacement in kProjectionStep seconds. The solver changes the velocities; advance()
+// applies and clears them.
 #pragma once
 
 #include "rigid/continuous/ccd_joint_groups.h"
@@ -13,10 +14,10 @@
 
 namespace gyre {
 
-// s: short, so that what solvers of speeds leave (rad/s) is little.
+// s: short, so that residuals of velocity solvers (rad/s) matter little.
 constexpr float kProjectionStep = 0.25f;
 
-// Where bodies are meanwhile, and how hard they are to move. By body.
+// Poses and mobility of the bodies meanwhile. By body.
 struct ProjectionBodies {
   std::span<BodyMotion> motion;
   std::span<BodyInertia> inertia;
@@ -27,16 +28,16 @@ class ProjectionPath {
  public:
   enum class Next : std::uint8_t {
     solve,
-    measure,  // bodies have been put elsewhere: asks again how far the joints are off
+    measure,  // bodies have been moved: call again with the new error
     done,
   };
 
   ProjectionPath() = default;
-  // Puts all where the first was stopped. `stays`: it goes no further.
+  // Puts all bodies at the first impact. `stop_at_impact`: they go no further.
   ProjectionPath(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
                  bool stop_at_impact);
 
-  // `open`: m or rad, the farthest that a joint or a limit is off.
+  // `error`: m or rad, the largest error of a joint or limit.
   Next next(float error);
   void advance();
 
@@ -58,8 +59,8 @@ class ProjectionPath {
   ProjectionBodies bodies_;
   bool stop_at_impact_ = false, is_moving_ = false, was_restored_ = false;
   int segment_ = 0, segments_ = 0, corrections_ = 0;
-  float initial_error_ = 0.0f;  // m or rad, as the step began
-  float max_error_ = 0.0f;       // what is off by less is closed
+  float initial_error_ = 0.0f;  // m or rad, at the beginning of the step
+  float max_error_ = 0.0f;      // smaller errors count as closed
 };
 
 }  // namespace gyre

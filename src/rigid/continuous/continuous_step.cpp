@@ -1,5 +1,5 @@
-// The stage that keeps fast bodies from passing through things: lists those that moved far against their size, lets
-// collision/continuous/continuous sweep them, and takes back what motion they may not keep.
+// The stage of continuous collision detection: lists fast bodies, lets collision/continuous/continuous sweep
+// them, and moves them back to their time of impact.
 #include "collision/continuous/continuous.h"
 #include "math/rotation.h"
 #include "rigid/batch/surface_rules.h"
@@ -15,12 +15,13 @@ namespace gyre {
 
 namespace {
 
-// The part of its way that a body in contact keeps whatever the sweep says.
+// The fraction of its displacement that a constrained body keeps in any case.
 constexpr float kMinProgress = 0.2f;
-// How often bodies that follow others by joints are swept in turn.
+// Number of sweeps of bodies that joint projection has moved.
 constexpr int kMaxRounds = 4;
 
-// What was inside as the step began has been told to begin, and its end is seen when the contact is looked at again.
+// A shape that was inside as the step began has had its begin event, and its end is found with the next
+// manifold update.
 void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
   for (const std::uint64_t key : crossings) {
     const std::uint32_t sensor = std::uint32_t(key >> 32), visitor = std::uint32_t(key);
@@ -31,14 +32,14 @@ void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
   }
 }
 
-// The middle of mass as the body will be once its motion is done.
+// The centre of mass after the step.
 DVec3 center_of_mass_of(const RigidWorld& w, std::uint32_t body) {
   return w.bodies.places[body].center + DVec3(w.bodies.motion[body].delta_position);
 }
 
-// Takes the speed with which a body goes on into what its core met: first by an impulse without bounce at the point where the
-// core would have gone in, and then, if its middle still goes that way, by one through the middle. What is at rest or asleep is
-// not moved by them.
+// Removes the closing speed of a halted body against its blocker: first by an impulse without restitution at
+// the point where the core would have entered, and then, if the centre still approaches, by one through the
+// centre. Resting and sleeping bodies are not moved.
 class BodyImpulse {
  public:
   BodyImpulse(RigidWorld& w, std::uint32_t body, const SavedMotion& kept)
@@ -47,7 +48,7 @@ class BodyImpulse {
   void apply() {
     for (int k = 0; k < 2; ++k) lever_[k] = to_float(at_ - center_of_mass_of(w_, bodies_[k]));
     apply_impulse();
-    // Through the middle of the body that was stopped.
+    // Through the centre of the halted body.
     lever_[0] = {};
     apply_impulse();
   }
@@ -85,8 +86,9 @@ class BodyImpulse {
   Vec3 lever_[2];
 };
 
-// A bound on the way that the farthest points of a body go in the step as seen from another one: that of its middle, and what
-// its turning against the other adds. (A rotation differs from its first order by half the angle squared at most.)
+// A bound on the displacement of the farthest points of a body in the step relative to another body: that of
+// its centre, plus the effect of relative rotation. (A rotation differs from its first order by at most half
+// the angle squared.)
 float relative_displacement_bound(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame, std::uint32_t body) {
   const Sweep own = sweep_of_body(w.bodies, body);
   const Vec3 apart = difference(w.bodies.places[body].center, w.bodies.places[seen_from].center);
@@ -95,8 +97,9 @@ float relative_displacement_bound(const RigidWorld& w, std::uint32_t seen_from, 
          length(own.turned - frame.turned) * w.bodies.masses[body].reach;
 }
 
-// What moves by itself runs over what stands in its way, however slow that is: such bodies are fast against it, unless they go
-// along. Where one of the two is a sensor and nothing can stop either, both are looked at for what they cross.
+// Kinematic bodies run over bodies in their path, however slowly: such bodies are fast relative to them,
+// unless they move along. If one of the two is a sensor and nothing can halt either, both are tested for
+// crossings.
 class Overrun {
  public:
   Overrun(const RigidWorld& w, ContinuousScratch& scratch) : w_(w), scratch_(scratch) {}
@@ -158,7 +161,7 @@ std::size_t count_halted_with_joints(const RigidWorld& w, const ContinuousScratc
   return count;
 }
 
-// Of two stopped bodies with a joint between them both keep what the one that is stopped first keeps.
+// Two halted bodies with a joint between them both keep the smaller fraction.
 void halt_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<SavedMotion> kept,
                    Arena& arena) {
   constexpr int kMaxPasses = 16;
@@ -198,14 +201,15 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
   };
   for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), goes_fast).list) {
     const std::uint32_t i = w.bodies.awake[n];
-    // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
+    // A body with contacts must not be halted in the air: it keeps a part of its displacement, and the
+    // contacts respond.
     const float min_fraction = w.bodies.flags[i].touched != 0 ? kMinProgress : 0.0f;
     scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, min_fraction, joints_of(w.bodies, i).empty(), false});
   }
   Overrun(w, scratch).add_all();
 }
 
-// By shape: whether a contact may stop it.
+// By shape: whether a contact with it may be a blocker.
 void mark_near_blockers(const RigidWorld& w, Bitset& near) {
   near.resize(w.shapes.colliders.size());
   near.reset_all();
@@ -217,7 +221,7 @@ void mark_near_blockers(const RigidWorld& w, Bitset& near) {
   });
 }
 
-// Leaves those out that stay in their fat boxes, in which nothing is that may stop them: most of what falls.
+// Removes bodies that stay in fat boxes without any blocker: most falling bodies.
 void remove_unblocked(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   Array<FastBody>& fast = scratch.fast;
@@ -249,9 +253,9 @@ void list_moved_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
   }
 }
 
-// What the listed bodies keep of their ways: into scratch.kept.
+// Sweeps the listed bodies; results go to scratch.kept.
 void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
-  // The shapes of each fast body as plain indices, in a place that is found by body.
+  // The shapes of each fast body as plain indices, by body.
   const std::span<std::span<const std::uint32_t>> shapes =
       arena.make<std::span<const std::uint32_t>>(w.bodies.motion.size());
   for (const FastBody& fast : scratch.fast) {
@@ -278,9 +282,10 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
 }
 
-// The angular velocity of a body that is turned back on its way, as its angular momentum asks for there: of what turns freely that is the one
-// that it had. It never is more than its energy allows: what contacts gave on the way would turn a slender body much faster where it was
-// before, and a stick that whirls along the ground would gain energy each time that it is stopped.
+// The angular velocity of a body that was moved back, from its angular momentum at the earlier orientation;
+// for free rotation that is the velocity it had. Its energy must not grow: impulses of contacts on the way
+// would spin a slender body much faster at its earlier orientation, and a fast-spinning stick on the ground
+// would gain energy each time it is halted.
 Vec3 spin_at(const BodyMass& mass, const BodyFlags& flags, Quat from, Quat to, Vec3 spin) {
   if (mass.isotropic != 0 || flags.locked_angular != 0 || spin == Vec3{}) return spin;
   const Vec3 own_spin = rotate_inverse(from, spin), own_momentum = mass.inertia * own_spin;
@@ -291,7 +296,7 @@ Vec3 spin_at(const BodyMass& mass, const BodyFlags& flags, Quat from, Quat to, V
   return rotate(to, share * turned);
 }
 
-// Puts the listed bodies where they stay. Returns those that were stopped and hang on joints.
+// Moves the halted bodies back. Returns those with joints.
 std::span<const HaltedBody> halt_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
   const std::span<HaltedBody> halted = arena.make<HaltedBody>(count_halted_with_joints(w, scratch));
   std::size_t halted_count = 0;
@@ -331,7 +336,7 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const ContactK
     if (round == 1) report_crossings(w, scratch.collision.crossings());
     const std::span<const HaltedBody> halted = halt_bodies(w, scratch, arena);
     if (halted.empty()) return;
-    // What hangs on those that were stopped comes after, on ways that have not been looked at.
+    // Bodies connected to the halted ones follow, along paths that were not tested yet.
     scratch.moved.clear();
     project_joints_after_ccd(w, halted, round == kMaxRounds, kernels, tasks, scratch.moved, arena);
     list_moved_bodies(w, scratch);

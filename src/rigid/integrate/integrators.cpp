@@ -29,20 +29,20 @@ Vec3 without_locked(Vec3 v, std::uint8_t locked) {
   return v;
 }
 
-// The exact step of dv/dt = a - damping v is v += gain a - lost v.
+// The exact step of dv/dt = a - damping v is v += gain a - loss v.
 struct Damping {
   float gain, loss;
 
   Damping(float damping, float h) : gain(h), loss(0.0f) {
     if (!(damping > 0.0f)) return;
-    // As a change of v: e itself, so near 1, would round the same way in every sub-step.
+    // As a change of v: the factor itself, so near 1, would round in the same direction in every sub-step.
     const double share = 1.0 - exp(-double(damping) * double(h));
     gain = float(share / double(damping));
     loss = float(share);
   }
 };
 
-// The inertia of a body whose orientation is known.
+// The world inertia of a body at its present orientation.
 void refresh_world_inertia(BodyStore& bodies, std::uint32_t i) {
   const BodyMass& mass = bodies.masses[i];
   const BodyFlags& flags = bodies.flags[i];
@@ -50,7 +50,8 @@ void refresh_world_inertia(BodyStore& bodies, std::uint32_t i) {
   bodies.inertia[i] = world_inertia(mass, flags, bodies.orientations[i]);
 }
 
-// The inertia of bodies whose orientation is known, four at once where it is plainly that of their frame, turned.
+// The world inertia of bodies at their present orientation, four at once where it is simply the rotated body
+// inertia.
 class InertiaRefresh {
  public:
   explicit InertiaRefresh(BodyStore& bodies) : bodies_(bodies) {}
@@ -100,7 +101,7 @@ class InertiaRefresh {
   int count_ = 0;
 };
 
-// Turns by rotation vectors wait for others, to be made side by side.
+// Collects rotations by rotation vectors, to compute them side by side.
 class ConstantRotations {
  public:
   ConstantRotations(BodyStore& bodies, const RotationKernels& kernels) : bodies_(bodies), kernels_(kernels) {}
@@ -111,7 +112,7 @@ class ConstantRotations {
     queue_[count_++] = body;
   }
   bool is_full() const { return count_ == kMaxRotations; }
-  // Calls then(body) for each that is turned.
+  // Calls then(body) for each rotated body.
   template <class Then>
   void finish(Then&& then) {
     kernels_.rotate_at_constant_velocity(rotations_, count_);
@@ -130,7 +131,7 @@ class ConstantRotations {
   int count_ = 0;
 };
 
-// Turns bodies with the velocities that they have: they wait for others, to be turned side by side.
+// Rotates bodies by their velocities; collects them, to compute them side by side.
 class BodyRotations {
  public:
   BodyRotations(BodyStore& bodies, const RotationKernels& kernels, float seconds)
@@ -189,7 +190,7 @@ class BodyRotations {
   int count_ = 0;
 };
 
-// Velocity by the forces of a sub-step.
+// Integrates the velocity over a sub-step by forces.
 void integrate_velocity(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
@@ -203,13 +204,13 @@ void integrate_velocity(BodyStore& bodies, std::uint32_t i, const Motions& motio
       motion.linear_velocity + (linear.gain * acceleration - linear.loss * motion.linear_velocity);
   const Vec3 w = motion.angular_velocity +
                  (angular.gain * (inertia.inverse * forces.torque) - angular.loss * motion.angular_velocity);
-  // Adding zero keeps -0 out of the state, so that wide kernels may add zeros to lanes that nothing touches.
+  // Adding zero keeps -0 out of the state, so wide kernels may add zeros to lanes that nothing acts on.
   motion.linear_velocity = clamp_without_overflow(without_locked(v, flags.locked_linear), kMaxSpeed) + Vec3{};
   motion.angular_velocity = clamp_without_overflow(without_locked(w, flags.locked_angular), kMaxSpin) + Vec3{};
 }
 
-// The kicks and moves of all parts of a step for a body without torques: what each part has in common is worked out once, and
-// the spin, which no part changes, is only kept within bounds.
+// All sub-steps of the translation of a body without torques: constants are computed once, and the constant
+// spin is only clamped.
 void integrate_translation(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
@@ -218,7 +219,7 @@ void integrate_translation(BodyStore& bodies, std::uint32_t i, const Motions& mo
   const Vec3 gain =
       damping.gain * (forces.gravity_scale * motions.gravity + bodies.inertia[i].inverse_mass * forces.force);
   Vec3 v = motion.linear_velocity, delta_position = motion.delta_position;
-  // Neither a lock nor the bound on speed is met in any part: nor is -0, once v has none.
+  // No sub-step meets a lock or the bound on speed, or produces -0, once v has none.
   const float fastest = largest(absolute(v)) + float(motions.count) * largest(absolute(gain));
   if (flags.locked_linear == 0 && fastest <= 0.25f * kMaxSpeed) {
     v += Vec3{};
@@ -242,14 +243,14 @@ void integrate_translation(BodyStore& bodies, std::uint32_t i, const Motions& mo
   }
 }
 
-// `turns`: over the whole step.
+// `rotations`: over the whole step.
 void integrate_free_body(BodyStore& bodies, std::uint32_t i, const Motions& motions,
                          const RotationKernels& kernels, BodyRotations& rotations) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
   BodyMotion& motion = bodies.motion[i];
   const bool has_forces = flags.type == BodyType::dynamic;
-  // Without torques the momentum is the same in every sub-step: one rotation instead of many.
+  // Without torques the momentum is constant: one rotation instead of one a sub-step.
   const bool is_torque_free = !has_forces || (forces.torque == Vec3{} && forces.angular_damping == 0.0f);
   if (has_forces && is_torque_free) {
     integrate_translation(bodies, i, motions);
@@ -262,7 +263,7 @@ void integrate_free_body(BodyStore& bodies, std::uint32_t i, const Motions& moti
     motion.delta_position += motions.substep * motion.linear_velocity;
     if (is_torque_free) continue;
     per_substep.add(i);
-    per_substep.finish();  // the next kick reads it
+    per_substep.finish();  // the next sub-step reads it
   }
   if (is_torque_free) rotations.add(i);
 }
@@ -329,7 +330,7 @@ void apply_rotations(BodyStore& bodies, std::span<const MovedBody> moved, std::s
     } else if (moved[n].pose_read) {
       orientation = moved[n].orientation;
       refresh.add(i);
-    }  // who was not shown has the orientation and inertia that it had
+    }  // a body whose pose is not read has the orientation and inertia that it had
     if (rotations.is_full()) flush();
   }
   flush();

@@ -18,7 +18,7 @@ EndMotion motion_of(const SmoothSystem& system, const SpringEnd& end, std::span<
   return {s.x + lever, s.v + cross(spin_of(system.bodies[std::size_t(end.index)], s), lever), lever};
 }
 
-// Torques of bodies with locked axes become what they do to these.
+// Projects torques of bodies with locked axes to the free ones, as angular accelerations.
 DVec3 on_free_axes(const SmoothBody& body, const SmoothState& s, DVec3 torque) {
   if (body.locked_angular == 0) return torque;
   const Quat q = to_float(s.q);

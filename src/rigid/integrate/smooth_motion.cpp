@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// As many parts as a step is ever cut into for the sake of its error.
+// Largest number of sub-steps of the error control.
 constexpr int kMaxSubsteps = 8192;
 
 bool is_unconstrained(const RigidWorld& w, std::uint32_t body) {
@@ -48,7 +48,7 @@ SmoothBody describe(const RigidWorld& w, std::uint32_t i, Arena& arena) {
   return body;
 }
 
-// The last move of a body whose velocities are still those that it was shown with.
+// The last move of a body whose velocities have not been changed since.
 LastMove last_move_of(const RigidWorld& w, std::uint32_t body) {
   if (body >= w.bodies.last_moves.size()) return {};
   const LastMove& move = w.bodies.last_moves[body];
@@ -100,7 +100,7 @@ SmoothSpring make_spring(const RigidWorld& w, std::uint32_t slot,
   return spring;
 }
 
-// Where a carried end is now.
+// Updates a carried end to the present pose.
 void update_end(const RigidWorld& w, SpringEnd& end) {
   if (end.index >= 0 || end.body == kNoBody) return;
   const std::size_t i = std::size_t(end.body);
@@ -125,7 +125,7 @@ bool moves(const RigidWorld& w, const SpringEnd& end) {
   return flags.type != BodyType::fixed && flags.awake != 0 && flags.touched != kNotConstrained;
 }
 
-// Parts [0, parts) of the whole step.
+// Sub-steps [0, substeps) of the whole step.
 void run_substeps_of(const SmoothMotion& motion, SmoothSystem& system, SchemeRoom& room, int substeps) {
   const double h = motion.h * double(motion.substeps) / double(substeps);
   begin_room(*motion.world, system, room);
@@ -139,7 +139,8 @@ void run_substeps_of(const SmoothMotion& motion, SmoothSystem& system, SchemeRoo
   set_pose_velocities(motion.settings.integrator, system, room, system.substep_begin);
 }
 
-// How far apart two ends of the same step of `seconds` are: places, and what the velocities make of them in as much time again.
+// Difference between two results of the same step of `seconds`: of poses, and of the effect of velocities
+// over the same time again.
 double difference_of(const SmoothSystem& system, const SchemeRoom& a, const SchemeRoom& b, double seconds) {
   double largest = 0.0;
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
@@ -152,8 +153,8 @@ double difference_of(const SmoothSystem& system, const SchemeRoom& a, const Sche
   return largest;
 }
 
-// Schemes of order 1: what the two ends say about their error is taken off (local extrapolation), which makes them of order 2, and
-// exact where forces are the same all along.
+// Removes the error that the two results show (local extrapolation). Schemes of order 1 then have order 2,
+// and are exact for constant forces.
 void extrapolate(const SmoothSystem& system, const SchemeRoom& coarse, SchemeRoom& fine) {
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
     const SmoothState& from = coarse.stage[i];
@@ -190,8 +191,8 @@ void run_to_tolerance(const SmoothMotion& motion, std::size_t n) {
 
 // The bodies of each system together, ascending, systems by their lowest body.
 struct Members {
-  std::span<std::uint32_t> system_of;  // by place in the batch
-  std::span<std::uint32_t> in_system;  // by place in the batch
+  std::span<std::uint32_t> system_of;  // by body index in the batch
+  std::span<std::uint32_t> in_system;  // by body index in the batch
   std::span<std::uint32_t> sizes;
 };
 
@@ -224,7 +225,7 @@ Members group_bodies(const RigidWorld& w, const SolveBatch& batch, std::span<con
   return members;
 }
 
-// What feels velocities needs more looks at its forces.
+// Forces that depend on velocities need more evaluations.
 bool feels_velocity(const RigidWorld& w, const SmoothBody& body) {
   bool feels = body.linear_damping > 0.0 || body.angular_damping > 0.0;
   for (const std::uint32_t slot : body.fields) feels = feels || w.fields[slot].is_medium();
@@ -267,7 +268,7 @@ void make_systems(SmoothMotion& motion, const SolveBatch& batch, const Members& 
   }
 }
 
-// Springs go to the system of their free end; those without one are loose.
+// Assigns springs to the system of their free end; springs without one are loose.
 void share_springs(SmoothMotion& motion, const Members& members, std::span<const std::uint32_t> springs,
                    std::span<const std::uint32_t> body_indices, Arena& arena) {
   const RigidWorld& w = *motion.world;
@@ -335,7 +336,7 @@ SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::spa
   for (const std::uint32_t slot : batch.joints) {
     if (is_explicit_spring(w, slot)) springs[count++] = slot;
   }
-  // Who has a spring is looked at in each part: kinematic bodies, and those that constraints act on anyway.
+  // Bodies with springs have their pose read in each sub-step: kinematic bodies, and constrained ones.
   for (const std::uint32_t slot : springs.first(count)) {
     const JointRecord& joint = w.joints.records[slot];
     for (const std::int32_t body : {joint.body_a, joint.body_b}) {
@@ -387,7 +388,7 @@ void move_carried_stage(void* context, int begin, int end, int) {
 void kick_carriers_stage(void* context, int, int, int) {
   SmoothMotion& motion = *static_cast<SmoothMotion*>(context);
   RigidWorld& w = *motion.world;
-  // Loose springs first look at all places and speeds as they were, then act.
+  // Loose springs are all evaluated before any acts.
   for (SmoothSpring& spring : motion.loose) {
     update_end(w, spring.a);
     update_end(w, spring.b);

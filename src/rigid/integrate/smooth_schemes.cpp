@@ -6,12 +6,13 @@ namespace gyre {
 
 namespace {
 
-// No body turns farther than this in a part, rad: beyond it a rotation vector is none.
+// rad: bound on the rotation of a body in a sub-step; rotation vectors are undefined beyond it.
 constexpr double kMaxHalfStepRotation = 3.0;
-// Verlet's implicit turn: each round gains the factor h w / 2; what it cannot reach at large turns no scheme of order 2 can.
+// Verlet's implicit rotation: each round gains the factor h w / 2. Rotations too large to converge are beyond
+// any scheme of order 2.
 constexpr int kRotationRounds = 24;
 constexpr double kRotationTolerance = 1.0e-15;
-// Rounds for the velocity within forces that depend on it: each gains an order.
+// Rounds for velocities within forces that depend on them: each gains an order.
 constexpr int kVelocityRounds = 3;
 
 DQuat rotated_by(DQuat q, DVec3 rotation) { return normalized(exponential_map(rotation) * q); }
@@ -122,8 +123,8 @@ void step_rk4(const SmoothSystem& system, SchemeRoom& room, double time, double 
 
 // ------------------------------------------------------------------------------------------------------------ Verlet
 
-// Within Verlet v and l are those at the middle of the last move; these are they at the time of the pose, by what is known of
-// the forces there, in `stage`.
+// Verlet's v and l are those at the middle of the last move. Extrapolates them to the time of the pose by the
+// known forces there, into `stage`.
 void find_pose_velocities(SchemeRoom& room, bool known) {
   for (std::size_t i = 0; i < room.states.size(); ++i) {
     room.stage[i] = room.states[i];
@@ -134,7 +135,7 @@ void find_pose_velocities(SchemeRoom& room, bool known) {
   }
 }
 
-// Forces at the present poses. Where they depend on velocities these depend on them.
+// Forces at the present poses, iterated where they depend on velocities.
 void find_rates_at_pose(const SmoothSystem& system, SchemeRoom& room, double time, double weight) {
   const int rounds = system.damped ? kVelocityRounds : 1;
   for (int round = 0; round < rounds; ++round) {
@@ -143,7 +144,7 @@ void find_rates_at_pose(const SmoothSystem& system, SchemeRoom& room, double tim
   }
 }
 
-// The turn of which I(q_mid) turn / h = l.
+// The rotation with I(q_mid) rotation / h = l.
 DVec3 find_rotation(const SmoothBody& body, const SmoothState& s, double h) {
   if (body.locked_angular != 0) return h * s.l;
   SmoothState middle = s;
@@ -159,7 +160,7 @@ DVec3 find_rotation(const SmoothBody& body, const SmoothState& s, double h) {
   return size > kMaxHalfStepRotation ? (kMaxHalfStepRotation / size) * rotation : rotation;
 }
 
-// v and l at the middle of the last move, as the last two poses say.
+// v and l at the middle of the last move, from the last two poses.
 void read_last_move(const SmoothBody& body, const LastMove& move, SmoothState& s) {
   if (!(move.seconds > 0.0)) return;
   s.v = move.moved / move.seconds;
@@ -175,7 +176,8 @@ void step_verlet(const SmoothSystem& system, SchemeRoom& room, double time, doub
   for (std::size_t i = 0; i < count; ++i) {
     SmoothState& s = room.states[i];
     LastMove& move = room.moves[i];
-    // A body that has a velocity and no last pose: half a kick makes the one of it that the pose would.
+    // A body with a velocity but no last pose: half a sub-step of acceleration turns it into that of the
+    // middle.
     const double seconds = 0.5 * (h + move.seconds);
     s.v += seconds * room.rates[i].acceleration;
     s.l += seconds * room.rates[i].torque;

@@ -25,10 +25,10 @@ JointEquation equation_at(const ArticulationRows& rows, int i) {
   return {rows.direction.at(i), rows.angular_a.at(i), rows.angular_b.at(i)};
 }
 
-// A force f at arm r turns with the body's orientation like a spring of stiffness (r . f) 1 - sym(r f^T). Springs that a
-// sub-step does not resolve, h^2 k > I, would make the links of a heavily loaded chain flutter ever more; so the inertia
-// against the joints' impulses is raised towards h^2 k, as if the turning of forces were implicit (M. Tournier, M. Nesme,
-// B. Gilles, F. Faure, "Stable Constrained Dynamics", 2015). Of a body that nothing pulls like that it stays as it is, to
+// A force f at arm r rotates with the body like a spring of stiffness (r . f) 1 - sym(r f^T). Unresolved
+// springs, h^2 k > I, would make the links of a heavily loaded chain flutter ever more. So h^2 k is added to
+// the inertia against joint impulses, as if the rotation of forces were implicit (M. Tournier, M. Nesme, B.
+// Gilles, F. Faure, "Stable Constrained Dynamics", 2015). Bodies without such tension keep their inertia to
 // the bit.
 void add_geometric_stiffness_term(ArticulationBody& body, Vec3 r, Vec3 f) {
   const float k = dot(r, f);
@@ -40,7 +40,7 @@ void add_geometric_stiffness_term(ArticulationBody& body, Vec3 r, Vec3 f) {
                                                              -0.5f * (r.y * f.z + r.z * f.y)};
 }
 
-// What of the symmetric matrix holds back.
+// The positive semi-definite part of the symmetric matrix.
 Sym3 positive_part(const Sym3& m) {
   const double matrix[6] = {double(m.xx), double(m.yy), double(m.zz),
                             double(m.xy), double(m.xz), double(m.yz)};
@@ -95,7 +95,7 @@ Rows4 times_rows(const Sym3& m, const RowVectors& arms, int first) {
   return Sym3W<kHalf>{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz} * load_rows(arms, first);
 }
 
-// The rows' spins, and the node's own block K + give.
+// Computes the spins of the rows, and the node's diagonal block K + compliance.
 void make_diagonal_block(ArticulationNode& node, const Articulation& articulation, const ArticulationSolve& s,
                     double* block) {
   constexpr ArticulationBody kImmovable{};
@@ -126,7 +126,7 @@ void make_diagonal_block(ArticulationNode& node, const Articulation& articulatio
   }
 }
 
-// Adds what the shared body couples: signs, because a feels the opposite of what b does.
+// Adds the coupling by the shared body. Signs differ because a gets the opposite of b.
 void add_coupling(const ArticulationCoupling& coupling, const ArticulationNode& row,
                   const ArticulationNode& column, const BodyInertia& body, double* block) {
   const float sign = coupling.row_has_b == coupling.column_has_b ? 1.0f : -1.0f;
@@ -146,7 +146,7 @@ void add_coupling(const ArticulationCoupling& coupling, const ArticulationNode& 
   }
 }
 
-// The bodies of a node while it is read or pushed.
+// The bodies of a node while its rows are measured or solved.
 class NodeBodies {
  public:
   NodeBodies(const ArticulationNode& node, const JointBodies& bodies)
@@ -197,19 +197,20 @@ class NodeBodies {
   Side a_, b_;
 };
 
-// As from_rotation_vector, by series: turns of a sub-step are small, and of those that are not kMaxBiasAngle leaves little.
+// As from_rotation_vector, by series: rotations in a sub-step are small, and for larger ones the bias fades
+// (kMaxBiasAngle).
 Quat small_rotation(Vec3 v) {
   const float a = min(length_squared(v), 1.0f);
   const Vec3 u = (0.5f - a * (1.0f / 48.0f - a / 3840.0f)) * v;
   return {u.x, u.y, u.z, 1.0f - a * (1.0f / 8.0f - a * (1.0f / 384.0f))};
 }
 
-// What a body's velocities do in the coming sub-step.
+// The motion of a body in the coming sub-step.
 struct PredictedMotion {
   Vec3 linear, angular;
   Quat rotation;
 
-  // How far turning takes the end of an arm.
+  // Displacement of the end of an arm by the rotation.
   Vec3 displacement_of(Vec3 arm) const {
     const Vec3 u{rotation.x, rotation.y, rotation.z};
     const Vec3 t = 2.0f * cross(u, arm);
@@ -227,7 +228,7 @@ PredictedMotion predicted_motion(const Articulation& articulation, const Articul
   return {motion.linear_velocity, w, small_rotation(s.settings.substep * w)};
 }
 
-// How the joint's errors will have changed at the end of the sub-step, over its length, beyond what the rows see.
+// Change of the joint's errors in the sub-step, over its length, beyond the linear rows.
 struct SecondOrderBias {
   Vec3 linear, angular;
 };
@@ -255,7 +256,7 @@ SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstr
   const Vec3 apart = h * (b.linear - a.linear) + b.displacement_of(work.from_b) - a.displacement_of(work.from_a);
   switch (joint.kind) {
     case JointKind::slider: {
-      // Seen from a's frame as it will be.
+      // As seen from a's frame at the end.
       const Vec3 now = work.error + along;
       const Vec3 later = now + h * (b.linear - a.linear) + b.displacement_of(work.from_b) - a.displacement_of(anchor_arm);
       second_order_bias.linear = (later + PredictedMotion{{}, {}, conjugate(a.rotation)}.displacement_of(later) - now) / h - seen;
@@ -275,7 +276,7 @@ SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstr
   return second_order_bias;
 }
 
-// The same for each row of a kind that is a list of rows: by what they would say at the end of the sub-step.
+// The same for kinds that are a list of rows, from their errors at the end of the sub-step.
 void rows_second_order_bias(const JointRecord& joint, const JointConstraint& work,
                             const ArticulationNode& node, const PredictedMotion& a, const PredictedMotion& b, float h,
                             float (&biases)[kJointAxisCount]) {
@@ -293,19 +294,21 @@ void rows_second_order_bias(const JointRecord& joint, const JointConstraint& wor
   }
 }
 
-// The square of the rate at which a rod turns, also between bodies that do not (rad/s).
+// The square of the angular rate of a rod, also between bodies that do not rotate (rad/s).
 float rod_rate(const JointRecord& joint, const JointConstraint& work, const PredictedMotion& a, const PredictedMotion& b) {
   if (joint.kind != JointKind::distance || !(work.position > 0.0f)) return 0.0f;
   const Vec3 speed = b.linear + cross(b.angular, work.from_b) - a.linear - cross(a.angular, work.from_a);
   return length_squared(cross(speed, work.axis)) / square(work.position);
 }
 
-// What is asked of the rows: that the end of the sub-step, not its beginning, meets the joints (docs/derive/joints.md).
+// Computes the bias of the rows, so that the end of the sub-step, not its beginning, meets the joints
+// (docs/derive/joints.md).
 void compute_bias(const Articulation& articulation, const ArticulationSolve& s, ErrorBounds bounds) {
   const float h = s.settings.substep;
   for (ArticulationBody& body : articulation.bodies) {
     const Vec3 w = s.bodies.motion[body.body].angular_velocity;
-    const Vec3 gyroscopic = s.bodies.inertia[body.body].inverse * cross(body.inertia * w, w);  // free rotation
+    // free rotation
+    const Vec3 gyroscopic = s.bodies.inertia[body.body].inverse * cross(body.inertia * w, w);
     body.rotation = small_rotation(h * (w + (0.5f * h) * gyroscopic));
   }
   for (ArticulationNode& node : articulation.nodes) {
@@ -343,7 +346,8 @@ void compute_bias(const Articulation& articulation, const ArticulationSolve& s, 
   }
 }
 
-// Solves for the change of all impulses and applies it; soft: what is wanted and the give count, otherwise only the speed.
+// Solves for the change of all impulses and applies it. soft: with bias and compliance, otherwise for zero
+// speed.
 void solve_rows(const Articulation& articulation, const ArticulationSolve& s, bool soft) {
   for (std::size_t n = 0; n < articulation.nodes.size(); ++n) {
     const ArticulationNode& node = articulation.nodes[n];
@@ -415,14 +419,15 @@ void prepare_articulation(const Articulation& articulation, const ArticulationSo
 }
 
 void warm_start_articulation(const Articulation& articulation, const ArticulationSolve& s) {
-  // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
+  // Before the impulses of the last sub-step: after an impact these do not belong to this sub-step, and
+  // neither would their bias.
   compute_bias(articulation, s, kErrorsBeforeContacts);
   add_warm_start_work(articulation, s);
   for (const ArticulationNode& node : articulation.nodes) {
     JointRecord& joint = s.records[node.record];
     const JointConstraint& work = s.work[node.work];
     warm_start_joint_axes(joint, work, s.bodies);
-    // What was kept, along the rows as they are now.
+    // The accumulated impulses, along the present rows.
     float accumulated[kMaxBlockRows];
     for (int i = 0; i < node.count; ++i) accumulated[i] = accumulated_impulse(joint, work, equation_at(node.rows, i), i);
     clear_equation_impulses(joint, work);
@@ -440,7 +445,7 @@ void solve_articulation(const Articulation& articulation, const ArticulationSolv
   solve_rows(articulation, s, true);
   solve_drives(articulation, s, true);
   solve_limits(articulation, s, kErrorsBeforeContacts);
-  compute_bias(articulation, s, kMaxErrors);  // now with velocities that agree with the joints
+  compute_bias(articulation, s, kMaxErrors);  // with velocities that agree with the joints
 }
 
 void solve_articulation_after_contacts(const Articulation& articulation, const ArticulationSolve& s) {

@@ -1,5 +1,5 @@
-// What the kernels keep of a bundle of linkages (solver/articulation/articulation_lanes.h): bodies and joints, W of each side by side, and the way
-// between them and the records of bodies.
+// Bodies and joints of a bundle of articulations (solver/articulation/articulation_lanes.h) for the kernels,
+// W of each side by side, and the exchange with the records of bodies.
 #pragma once
 
 #include "math/wide_vec.h"
@@ -13,17 +13,17 @@ struct WideBody {
   std::int32_t record[W];
   std::int32_t pressed[W];  // 1: contacts act on it
   Vec3W<W> linear,
-      angular;  // velocities, while a stage works on them, or from contacts to contacts (LaneVelocities)
+      angular;  // velocities, within a stage, or from contacts to contacts (LaneVelocities)
   Wide<W> inverse_mass;
-  Sym3W<W> inverse;      // of the inertia, raised to what a sub-step can bear
+  Sym3W<W> inverse;      // of the inertia with geometric stiffness
   Sym3W<W> own_inverse;  // of the inertia as it is
   Sym3W<W> inertia;
-  QuatW<W> rotation;  // what its velocities make of a sub-step
-  // While joints are placed: the pose, and by how much tension holds it (N m/rad).
+  QuatW<W> rotation;  // rotation in the sub-step by its velocities
+  // During preparation: the pose, and the geometric stiffness (N m/rad).
   QuatW<W> orientation;
   Vec3W<W> delta_position;
   Sym3W<W> geometric_stiffness;
-  Vec3W<W> center;  // while inner motion is slowed: from that of the first body
+  Vec3W<W> center;  // while inner motion is scaled: relative to the first body
 };
 
 static_assert(offsetof(WideBody<4>, angular) == offsetof(WideBody<4>, linear) + sizeof(Vec3W<4>));
@@ -65,7 +65,7 @@ static_assert(sizeof(WideLimitAxis<1>) == sizeof(LaneLimitAxis) && sizeof(WideJo
 static_assert(offsetof(WideJoint<1>, swing) == offsetof(LaneJoint, swing));
 static_assert(offsetof(WideJoint<1>, from_a) == offsetof(LaneJoint, from_a));
 
-// A bundle while a stage works on it.
+// A bundle within a stage.
 template <int W>
 struct WideBundle {
   const ArticulationBundle& plain;
@@ -82,12 +82,12 @@ struct WideBundle {
         servos(reinterpret_cast<WideServo<W>*>(bundle.servos)) {}
   GYRE_INLINE bool moves(std::uint32_t body) const { return body < plain.moving_count; }
 
-  // Of the matrix.
+  // Access to the matrix.
   GYRE_INLINE void set_value(std::uint32_t i, Wide<W> v) const { v.store(plain.values + i * W); }
   GYRE_INLINE void add_value(std::uint32_t i, Wide<W> v) const {
     set_value(i, Wide<W>::load(plain.values + i * W) + v);
   }
-  // Of the vector, or of one like it.
+  // Access to the vector, or one like it.
   GYRE_INLINE void set_row(std::uint32_t row, Wide<W> v) const { set_row(plain.vector, row, v); }
   GYRE_INLINE static void set_row(float* vector, std::uint32_t row, Wide<W> v) { v.store(vector + row * W); }
   GYRE_INLINE Wide<W> row(std::uint32_t row) const { return Wide<W>::load(plain.vector + row * W); }
@@ -96,7 +96,7 @@ struct WideBundle {
   }
 };
 
-// The impulse p at the joint and the turning impulse t, on b, and their opposites on a.
+// Applies the impulse p at the joint and the angular impulse t to b, and their opposites to a.
 template <int W>
 GYRE_INLINE void apply_joint_impulse(const WideBundle<W>& bundle, const LaneNode& node, const WideJoint<W>& joint,
                             Vec3W<W> p, Vec3W<W> t) {
@@ -112,7 +112,7 @@ GYRE_INLINE void apply_joint_impulse(const WideBundle<W>& bundle, const LaneNode
   }
 }
 
-// `Fours` times four floats of records of `Stride` floats; of `none` where there is no record.
+// Gathers `Fours` times four floats of records of `Stride` floats; of `none` where there is no record.
 template <int Fours, int W, int Stride>
 GYRE_INLINE void gather_vec4(const float* base, const std::int32_t* indices, const float* none, int first,
                              Wide<W>* out) {
@@ -127,7 +127,7 @@ GYRE_INLINE void gather_vec4(const float* base, const std::int32_t* indices, con
   }
 }
 
-// (These two are not inline: every stage has them.)
+// (These two are not inlined: every stage has them.)
 template <int W>
 __attribute__((noinline)) void load_velocities(const WideBundle<W>& bundle, const LaneArrays& arrays) {
   for (std::uint32_t i = arrays.loads ? 0 : bundle.plain.moving_count; i < bundle.plain.body_count; ++i) {
@@ -154,7 +154,7 @@ __attribute__((noinline)) void store_velocities(const WideBundle<W>& bundle, con
   }
 }
 
-// Where the bodies are, and their inertia.
+// Loads poses and inertia of the bodies.
 template <int W>
 GYRE_INLINE void load_poses(const WideBundle<W>& bundle, const LaneArrays& arrays) {
   alignas(64) static constexpr float kZeros[kRecordFloats] = {};

@@ -10,12 +10,12 @@ namespace gyre {
 namespace {
 
 constexpr int kDriveIterations = 50;
-constexpr float kDriveTolerance = 1.0e-5f;  // m/s or rad/s: impulses that change speeds by less stand
-// An axis that moves by no more than this share of what it would if its bodies were alone is held by the equations, which give way by half
-// of that.
+constexpr float kDriveTolerance = 1.0e-5f;  // m/s or rad/s: smaller changes of speed end the iteration
+// Inverse mass of an axis relative to its two bodies alone, below which the equations hold it; their
+// compliance is half of that.
 constexpr double kMinAxisShare = 2.0e-4;
 
-// The parts of the room, by axis.
+// Scratch memory, by axis.
 struct DriveScratch {
   ResponseColumns columns;
   std::span<double> matrix, impulses, speeds;
@@ -72,7 +72,7 @@ void prepare_drives(const Articulation& articulation, const ArticulationSolve& s
     const double k = room.delassus(c, c);
     if (!(x.mass > 0.0f && k * double(x.mass) > kMinAxisShare)) continue;
     prepare_axis_mass(x, float(1.0 / k), solve.settings);
-    // It need not give way as what is swept late must.
+    // Unlike iterative motors it need not be compliant.
     if (x.axis.motor_frequency <= 0.0f)
       x.drive = {solve.settings.softness.bias_rate, 1.0f / (1.0f + kMotorCompliance),
                  kMotorCompliance / (1.0f + kMotorCompliance)};
@@ -84,7 +84,7 @@ void add_warm_start_work(const Articulation& articulation, const ArticulationSol
   if (count == 0) return;
   const DriveScratch room = scratch_of(articulation);
   for (std::size_t c = 0; c < count; ++c) {
-    // Hard stops tie.
+    // Hard limits are constraints and count as no work.
     const AxisConstraint& x = *articulation.axes[c].axis;
     room.impulses[c] = double(axis_impulse(x.axis));
     if (has_hard_limit(x)) room.impulses[c] -= double(x.axis.low_impulse - x.axis.high_impulse);

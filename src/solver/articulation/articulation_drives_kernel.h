@@ -1,5 +1,6 @@
-// Drives, motors and dry friction of a bundle of linkages (solver/articulation/articulation_lanes.h): what solver/joint/joint_drive.h does for a joint alone, and
-// of hinges the motor and friction of solver/joint/joint_axis.h. They are swept, joint by joint, before the equations have the last word.
+// Drives, motors and dry friction of a bundle of articulations (solver/articulation/articulation_lanes.h), as
+// solver/joint/joint_drive.h for a single joint, and for hinges as solver/joint/joint_axis.h. They are
+// iterated joint by joint before the equations.
 #pragma once
 
 #include "solver/articulation/articulation_prepare.h"
@@ -39,7 +40,7 @@ __attribute__((noinline)) void prepare_lane_drives(const WideBundle<W>& bundle) 
   }
 }
 
-// What solves stops has them too.
+// The limit solver reads them too.
 template <int W>
 __attribute__((noinline)) void prepare_lane_servos(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
@@ -53,7 +54,8 @@ __attribute__((noinline)) void prepare_lane_servos(const WideBundle<W>& bundle) 
 
 // -------------------------------------------------------------------------------------------------------------- sweep
 
-// Turns b by an impulse, and a by its opposite; inertias as they are. (Not inline: it is asked for in many places.)
+// Applies an angular impulse to b, and its opposite to a, with inertias without geometric stiffness. (Not
+// inlined: it has many callers.)
 template <int W>
 __attribute__((noinline)) void apply_drive_impulse(const WideBundle<W>& bundle, const LaneNode& node, Vec3W<W> t) {
   if (bundle.moves(node.a)) bundle.bodies[node.a].angular -= bundle.bodies[node.a].own_inverse * t;
@@ -117,15 +119,15 @@ GYRE_INLINE Vec3W<W> total_impulse_of(const LaneNode& node, const WideDrives<W>&
   if (!node.has_friction) return d.drive_impulse;
   return node.has_drive ? d.drive_impulse + d.friction_impulse : d.friction_impulse;
 }
-// As a turning impulse on b.
+// As an angular impulse on b.
 template <int W>
 GYRE_INLINE Vec3W<W> driven_impulse(const LaneNode& node, const WideJoint<W>& joint, const WideDrives<W>& d) {
   const Vec3W<W> sum = total_impulse_of(node, d);
   return node.kind == JointKind::hinge ? sum.x * joint.axis : sum;
 }
 
-// What drives and the equations gave in the last part of the step, again: a sweep must see all that a joint bears, or it would hold
-// against the fall of what the equations are about to hold.
+// Applies the last impulses of drives and equations again: an iteration must see all impulses of a joint, or
+// it would hold against the fall of what the equations are about to hold.
 template <int W>
 GYRE_INLINE void warm_start_driven(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
@@ -134,7 +136,7 @@ GYRE_INLINE void warm_start_driven(const WideBundle<W>& bundle) {
     if (node.is_driven()) apply_drive_impulse(bundle, node, driven_impulse(node, joint, bundle.drives[node.drives]));
     const Wide<W> zero(0.0f);
     Vec3W<W> angular{zero, zero, zero};
-    if (node.kind == JointKind::hinge) {  // along its rows as they are now
+    if (node.kind == JointKind::hinge) {  // along its present rows
       angular = dot(joint.angular_impulse, joint.perpendicular_1) * joint.perpendicular_1 +
              dot(joint.angular_impulse, joint.perpendicular_2) * joint.perpendicular_2;
       joint.angular_impulse = angular;

@@ -1,10 +1,10 @@
-// Joints do no work, and those of a linkage must do none either (solver/articulation/articulation_lanes.h). Where limbs turn far within a sub-step its
-// equations, whose bend is asked for to second order, may give energy, and what they give in one they give again in the next: small nets
-// of light knots that whipped gained fifty times what they could fall by, thousands with more of the bend asked for. So what they gave
-// in a sub-step, beside what forces and contacts did, is taken away as it ends, and what is more than there was at once, by slowing all
-// inner motion alike: joints that keep to their rows at two velocities do so in between, and what hangs on nothing keeps its momentum and
-// angular momentum.
-// docs/decisions/joint-trees.md has the figures.
+// Limits the kinetic energy that passive joints of a bundle add (solver/articulation/articulation_lanes.h).
+// Where links rotate far within a sub-step, the equations with second-order bias can do work, and each
+// sub-step repeats it: small nets of light knots that whipped gained fifty times the energy of their fall,
+// thousands of times with more bias. So the energy added in a sub-step, beyond forces and contacts, is
+// removed at its end, and gain beyond the existing energy at once, by scaling all inner motion. Velocities
+// between two that satisfy the rows satisfy them too, and a free articulation keeps its momentum and angular
+// momentum. docs/decisions/joint-trees.md has the figures.
 #pragma once
 
 #include "solver/articulation/articulation_block.h"
@@ -12,7 +12,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Where bodies are, as seen from the first.
+// Positions of the centres relative to the first body.
 template <int W>
 GYRE_INLINE void compute_centers(const WideBundle<W>& bundle) {
   const Wide<W> zero(0.0f);
@@ -29,7 +29,8 @@ GYRE_INLINE void compute_centers(const WideBundle<W>& bundle) {
   }
 }
 
-// The motion of what holds a linkage, as that of all its bodies, where one body does and it moves.
+// The motion of the carrier of an articulation as that of all its bodies, if it has a single carrier that
+// moves.
 template <int W>
 struct CarrierMotion {
   bool moves = false;  // in any lane
@@ -55,7 +56,8 @@ __attribute__((noinline)) CarrierMotion<W> carrier_motion_of(const WideBundle<W>
   return carrier;
 }
 
-// J, of what can be pushed, as seen from what holds it. (In one place, as what follows: it is asked for rarely, from many.)
+// J, of the movable bodies, relative to the carrier. (Not inlined, like the next ones: rarely called, from
+// many places.)
 template <int W>
 __attribute__((noinline)) Wide<W> kinetic_energy(const WideBundle<W>& bundle,
                                                  const CarrierMotion<W>& carrier) {
@@ -70,7 +72,8 @@ __attribute__((noinline)) Wide<W> kinetic_energy(const WideBundle<W>& bundle,
   return 0.5f * twice;
 }
 
-// Those lanes whose joints should do no work: of bodies that turn about all axes, that hang on nothing that moves, or on one body.
+// Lanes whose joints should do no work: their bodies rotate about all axes, and they are free or have a
+// static or single carrier.
 template <int W>
 __attribute__((noinline)) Mask<W> find_passive_lanes(const WideBundle<W>& bundle) {
   Mask<W> passive = Mask<W>::splat(!bundle.plain.has_drives);
@@ -85,7 +88,7 @@ __attribute__((noinline)) Mask<W> find_passive_lanes(const WideBundle<W>& bundle
   return passive;
 }
 
-// The motion that a linkage would have as one rigid body, with the momenta that it has; of what hangs on something, that of this.
+// The motion of an articulation as one rigid body with its momenta; of a carried one, that of its carrier.
 template <int W>
 struct RigidMotion {
   Vec3W<W> center, linear, angular;
@@ -129,7 +132,7 @@ GYRE_INLINE RigidMotion<W> rigid_motion(const WideBundle<W>& bundle, const Carri
   return {center, linear, angular, 0.5f * (mass * length_squared(linear) + dot(angular, spin))};
 }
 
-// Slows inner motion until no more than `left` (J) is there, in these lanes. `turns`: whether the rigid motion may.
+// Scales inner motion until `left` (J) remain, in these lanes. `rotates`: whether the rigid motion may.
 template <int W>
 GYRE_INLINE void scale_inner_motion(const WideBundle<W>& bundle, const RigidMotion<W>& rigid, bool rotates,
                            Mask<W> lanes, Wide<W> energy, Wide<W> left) {
@@ -144,7 +147,7 @@ GYRE_INLINE void scale_inner_motion(const WideBundle<W>& bundle, const RigidMoti
   }
 }
 
-// What follows does not begin with the impulses that gave too much, nor gives way under them.
+// Clears the impulses that added energy, so that no warm start or compliance uses them.
 template <int W>
 GYRE_INLINE void clear_impulses(const WideBundle<W>& bundle, Mask<W> lanes) {
   const Wide<W> zero(0.0f);
@@ -162,8 +165,8 @@ GYRE_INLINE void clear_impulses(const WideBundle<W>& bundle, Mask<W> lanes) {
   }
 }
 
-// J: with which all bodies go back to where joints would have them, if they are far off and errors are taken back at `rate` (1/s); and of
-// what turns with a holder, what its way bends by in a sub-step of `h`.
+// J: the energy of all bodies while large errors are removed at `rate` (1/s); for a carried articulation,
+// plus that of its curved path in a sub-step of `h`.
 template <int W>
 GYRE_INLINE Wide<W> energy_of_error_removal(const WideBundle<W>& bundle, const CarrierMotion<W>& carrier,
                                      float rate, float h) {
@@ -180,39 +183,40 @@ GYRE_INLINE Wide<W> energy_of_error_removal(const WideBundle<W>& bundle, const C
   return (0.5f * rate * rate) * sum + 0.5f * carried;
 }
 
-// Those in which a link is so light between others that it may be as fast as can be after any solution.
+// Lanes with a link so light between others that any solution may give it a huge speed.
 template <int W>
 GYRE_INLINE Mask<W> extreme_ratio_lanes(const WideBundle<W>& bundle) {
   return Wide<W>::load(bundle.plain.has_extreme_mass_ratio) > Wide<W>(0.0f);
 }
 
-// How energy is watched while a stage changes velocities, from its making to bound(). What joints gave in the sub-step so far is kept from
-// stage to stage. What they do not change, a linkage's motion as one rigid body, is told before where a link is light: of what has a billion
-// times its energy floats cannot tell it any more.
+// Measures the energy around a stage that changes velocities, from construction to limit_gain(). The gain of
+// a sub-step is passed on from stage to stage. With light links the rigid motion is recorded before the
+// stage: at a billion times its energy floats cannot tell it any more.
 template <int W>
 class EnergyLimiter {
  public:
-  // Of the first stage of a sub-step: in `lanes`.
+  // For the first stage of a sub-step, in `lanes`.
   __attribute__((noinline)) EnergyLimiter(const WideBundle<W>& bundle, Mask<W> lanes)
       : bundle_(bundle), limited_(any(lanes) ? lanes & find_passive_lanes(bundle) : lanes) {
     Wide<W>(0.0f).store(bundle.plain.energy_gain);
     keep(limited_, Wide<W>(1.0f)).store(bundle.plain.energy_gain + W);
     record_energy();
   }
-  // Of a later one.
+  // For later stages.
   __attribute__((noinline)) explicit EnergyLimiter(const WideBundle<W>& bundle)
       : bundle_(bundle), limited_(Wide<W>::load(bundle.plain.energy_gain + W) > Wide<W>(0.0f)) {
     record_energy();
   }
-  // Before bodies move: leaves joints as much as there was, or as errors are taken back with at `rate` (1/s) in a sub-step of `h`, and
-  // takes the rest away.
+  // Before bodies move: limits the gain to the existing energy, or to that of error removal at `rate` (1/s)
+  // in a sub-step of `h`.
   void limit_gain(float rate, float h) const { limit_gain(kMaxEnergyGainAhead, kMaxEnergyGainAhead, rate, h); }
-  // Once they have: takes away what joints have given, if it is more than a little. Returns the lanes of which motion was changed.
+  // After the move: removes the energy that joints added, if it is more than a little. Returns the changed
+  // lanes.
   Mask<W> remove_gain() const { return limit_gain(kMaxEnergyGain, 0.0f, 0.0f, 0.0f); }
 
  private:
-  // Where joints have given more than `most` of what there was, leaves them what `left` says of that. (In one place: hardly anything is
-  // ever to be taken away.)
+  // Where joints added more than `max_gain` of the energy before, leaves the share `left` of that. (Not
+  // inlined: there is hardly ever anything to remove.)
   __attribute__((noinline)) Mask<W> limit_gain(float max_gain, float left, float rate, float h) const {
     if (none(limited_)) return limited_;
     const Wide<W> zero(0.0f), own = max(energy_ - Wide<W>::load(bundle_.plain.energy_gain), zero);
@@ -238,7 +242,7 @@ class EnergyLimiter {
     energy_ = kinetic_energy(bundle_, carrier_);
     if (any(limited_ & extreme_ratio_lanes(bundle_))) rigid_ = rigid_motion(bundle_, carrier_);
   }
-  // As it was before in these lanes, as it is in the others.
+  // The recorded motion in these lanes, the present one in others.
   RigidMotion<W> rigid_in(Mask<W> before) const {
     const RigidMotion<W> now = rigid_motion(bundle_, carrier_);
     return {select<W>(before, rigid_.center, now.center), select<W>(before, rigid_.linear, now.linear),

@@ -1,5 +1,6 @@
-// The velocities of a bundle of linkages (solver/articulation/articulation_lanes.h): what warm_start_articulation(), solve_articulation() and relax_articulation() do for
-// one alone. A ball joint's three rows are one vector here, and an impulse goes to a body as a force at its arm.
+// The velocity stages of a bundle of articulations (solver/articulation/articulation_lanes.h), as
+// warm_start_articulation(), solve_articulation() and relax_articulation() for a single one. The three rows
+// of a ball joint are one vector here, and an impulse acts on a body as a force at its arm.
 #pragma once
 
 #include "solver/articulation/articulation_energy_kernel.h"
@@ -18,7 +19,7 @@ GYRE_INLINE QuatW<W> small_rotation(Vec3W<W> v) {
   return {u.x, u.y, u.z, 1.0f - a * (1.0f / 8.0f - a * (1.0f / 384.0f))};
 }
 
-// How far turning takes the end of an arm.
+// Displacement of the end of an arm by a rotation.
 template <int W>
 GYRE_INLINE Vec3W<W> rotated_displacement(const QuatW<W>& rotation, Vec3W<W> arm) {
   const Vec3W<W> u{rotation.x, rotation.y, rotation.z};
@@ -26,7 +27,7 @@ GYRE_INLINE Vec3W<W> rotated_displacement(const QuatW<W>& rotation, Vec3W<W> arm
   return rotation.w * t + cross(u, t);
 }
 
-// How a hinge's error will have changed at the end of the sub-step, over its length, beyond what the rows see.
+// Change of a hinge's error in the sub-step, over its length, beyond the linear rows.
 template <int W>
 GYRE_INLINE Vec3W<W> hinge_second_order_bias(const WideJoint<W>& joint, const WideBody<W>& a,
                                              const WideBody<W>& b, float per_substep) {
@@ -38,18 +39,18 @@ GYRE_INLINE Vec3W<W> hinge_second_order_bias(const WideJoint<W>& joint, const Wi
          (b.angular - a.angular);
 }
 
-// How their bodies turn makes joints bend: by how much of it they are asked for more. `turns`: the square of how far the faster of a
-// joint's bodies turns in the sub-step.
+// Share of the second-order bias that is used. `angle_squared`: of the faster of the joint's bodies in the
+// sub-step.
 template <int W>
 GYRE_INLINE Wide<W> bias_fade(Wide<W> angle_squared, float max_angle) {
-  // Of those that hardly turn nothing is asked; of those that turn far, less.
+  // None below kMinBiasAngle, a fading share beyond `max_angle`.
   constexpr float kMinSquare = kMinBiasAngle * kMinBiasAngle;
   const float max_square = max_angle * max_angle;
   const Wide<W> share = keep(angle_squared > kMinSquare, Wide<W>(1.0f));
   return select(angle_squared > max_square, max_square / angle_squared, share);
 }
 
-// How fast errors are taken back: what bend that was not asked for opened, at once.
+// 1/s, with a minus sign: the rate of error removal; up to the whole error at once where the bias fades.
 template <int W>
 GYRE_INLINE Wide<W> remove_error(Wide<W> angle_squared, float rate, float per_substep) {
   constexpr float kFastSquare = kFastErrorAngle * kFastErrorAngle;
@@ -75,7 +76,8 @@ GYRE_INLINE void add_second_order_bias(const LaneNode& node, WideJoint<W>& joint
       select(biases, joint.angular_target_2 - dot(angular, joint.perpendicular_2), joint.angular_target_2);
 }
 
-// That the end of the sub-step, not its beginning, meets the joints. (In one place, as stops are: all that solves asks.)
+// Computes the bias of the rows, so that the end of the sub-step, not its beginning, meets the joints. (Not
+// inlined, like the limits: all solves call it.)
 template <int W>
 __attribute__((noinline)) void compute_lane_bias(const WideBundle<W>& bundle, const LaneSettings& s,
                                                  ErrorBounds bounds) {
@@ -105,17 +107,17 @@ __attribute__((noinline)) void compute_lane_bias(const WideBundle<W>& bundle, co
 
 // --------------------------------------------------------------------------------------------------------- equations
 
-// What a solution of the equations is for.
+// The right side of a solve.
 enum class BiasUse : std::uint8_t {
-  first,  // what is wanted; nothing has been given yet
-  again,  // what is wanted, and what gives way by what has been given
-  relax,  // no speed along the rows
+  first,  // bias only; there are no impulses yet
+  again,  // bias, and compliance times the accumulated impulses
+  relax,  // zero speed along the rows
 };
 
-// Where no row misses more, the equations hold to the rounding of velocities: nothing is solved.
+// If no row misses more, the equations hold to the rounding of velocities, and nothing is solved.
 constexpr float kMaxResidual = 1.0e-5f;  // m/s or rad/s
 
-// Sets the right side: what each row misses. Returns the lanes in which that is more than rounding.
+// Sets the right side: the missing speed of each row. Returns the lanes where it is more than rounding.
 template <int W, BiasUse use>
 GYRE_INLINE Mask<W> set_missing(const WideBundle<W>& bundle) {
   Wide<W> largest(0.0f);
@@ -159,7 +161,7 @@ GYRE_INLINE void solve_rows(const WideBundle<W>& bundle, Mask<W> lanes = Mask<W>
     factor_bundle(bundle);
     solve_lanes<W>(bundle.plain);
   } else if (use != BiasUse::first) {
-    return;  // nothing is added to what has been given
+    return;  // the accumulated impulses stay
   }
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
@@ -176,7 +178,8 @@ GYRE_INLINE void solve_rows(const WideBundle<W>& bundle, Mask<W> lanes = Mask<W>
   }
 }
 
-// What is driven or rubs is swept, then the equations have the last word. (In one place each, as stops are: all that is long.)
+// Drives and friction are iterated, then the equations have the last word. (Not inlined, like the limits: all
+// of it is long.)
 template <int W>
 __attribute__((noinline)) void solve_with_accumulated(const WideBundle<W>& bundle) {
   if (bundle.plain.drive_count > 0) iterate_drives(bundle);
@@ -190,7 +193,7 @@ __attribute__((noinline)) void relax(const WideBundle<W>& bundle, Mask<W> lanes)
 
 // -------------------------------------------------------------------------------------------------------------- stops
 
-// What a stop bore in the last part of the step, along its axis as it is now; what nothing can turn bears nothing.
+// The impulse of a limit in the last half step, along its present axis; zero for axes that cannot rotate.
 template <int W>
 GYRE_INLINE Vec3W<W> accumulated_impulse(WideLimitAxis<W>& axis) {
   const Mask<W> is_rotatable = axis.mass > 0.0f;
@@ -230,7 +233,7 @@ GYRE_INLINE void accumulate_limit(WideJoint<W>& joint, WideLimitAxis<W>& axis) {
 
 // ------------------------------------------------------------------------------------------------------------- stages
 
-// Before the first part of a step.
+// Before the first half step of a step.
 template <int W>
 void begin_articulation_bundles(const ArticulationBundle& plain) {
   if (plain.limit_count == 0) return;
@@ -238,7 +241,7 @@ void begin_articulation_bundles(const ArticulationBundle& plain) {
   LimitSolver<W>(bundle, {}, kNoErrors).clear();
 }
 
-// The rows where the bodies are now, and their matrix, factored.
+// Prepares the rows at the present poses, and their matrix.
 template <int W>
 void prepare_articulations(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   prepare_bundle<W>(plain, arrays, s);
@@ -248,8 +251,8 @@ void prepare_articulations(const ArticulationBundle& plain, const LaneArrays& ar
   if (plain.limit_count > 0) LimitSolver<W>(bundle, s, kNoErrors).begin();
 }
 
-// Before what is kept of the last sub-step is given again: after a blow these impulses are not of this one, and the bend of such
-// speeds is none.
+// Before the warm start: after an impact the old impulses do not belong to this sub-step, and neither would
+// their bias.
 template <int W>
 void compute_bundle_bias(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const WideBundle<W> bundle(plain);
@@ -257,7 +260,7 @@ void compute_bundle_bias(const ArticulationBundle& plain, const LaneArrays& arra
   compute_lane_bias(bundle, s, s.first_errors);
 }
 
-// Those in which a body turns so far in a part that the bend shows in its velocities.
+// Lanes in which a body rotates so far in a half step that the bias matters for its velocities.
 template <int W>
 GYRE_INLINE Mask<W> find_fast(const WideBundle<W>& bundle, float substep) {
   Wide<W> largest(0.0f);
@@ -266,7 +269,8 @@ GYRE_INLINE Mask<W> find_fast(const WideBundle<W>& bundle, float substep) {
   return (substep * substep) * largest > kSlowRotation * kSlowRotation;
 }
 
-// The impulses of equations are found from nothing, those of stops from what they were; where something is swept, all from what they were.
+// The impulses of equations start from zero, those of limits from the last ones. With drives, all start from
+// the last ones.
 template <int W>
 void solve_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const WideBundle<W> bundle(plain);
@@ -281,8 +285,8 @@ void solve_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, con
     solve_rows<W, BiasUse::first>(bundle);
   }
   solve_limits(bundle, s, s.first_errors);
-  limiter.limit_gain(s.rate, s.substep);     // before contacts answer it
-  compute_lane_bias(bundle, s, kMaxErrors);  // now with velocities that agree with the joints
+  limiter.limit_gain(s.rate, s.substep);     // before contacts respond to the gain
+  compute_lane_bias(bundle, s, kMaxErrors);  // with velocities that agree with the joints
   store_velocities(bundle, arrays);
 }
 
@@ -312,8 +316,8 @@ __attribute__((noinline)) void sum_impulses(const WideBundle<W>& bundle) {
   }
 }
 
-// Those in which a stop pushes a limb back faster than it may stay. What it gives for that is taken away at once: a stop only pushes, so
-// the next part, whose stops begin with what they gave, does not take it all back.
+// Lanes in which a limit pushes a limb back faster than it may stay. That speed is removed at once: limits
+// only push, so the next half step, whose limits start from these impulses, would not remove all of it.
 template <int W>
 GYRE_INLINE Mask<W> find_rebounding(const WideBundle<W>& bundle) {
   constexpr float kMaxReboundSpeed = 0.01f;  // rad/s
@@ -333,17 +337,18 @@ GYRE_INLINE Mask<W> find_rebounding(const WideBundle<W>& bundle) {
   return rebounding;
 }
 
-// After a move that is not the last: sums the impulses, and asks for what the next part begins with. The speed that took errors back is
-// left to that part: only forces come before its first solution, which leaves J v as wanted whatever it was. Where bodies turn far the
-// speed is taken away here, since the bend is asked for of these velocities, and limbs that start out of their limits would be flung;
-// also where something is swept, which would hold against it.
+// After each move but the last: sums the impulses, and computes the bias of the next half step. The speed
+// from error removal stays for that half step: only forces precede its first solve, which sets J v to the
+// bias anyway. The speed is removed here where bodies rotate far, since the bias is computed from these
+// velocities and limbs that start beyond their limits would be flung, and with drives, which would hold
+// against it.
 template <int W>
 void end_half_step(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
   const bool is_driven = plain.drive_count > 0;
   const Mask<W> fast = find_fast(bundle, s.substep), relaxed = is_driven ? Mask<W>::splat(true) : fast;
-  // Motors hold against what is swept, and it against them.
+  // Motors and drives hold against each other.
   const Mask<W> limited = is_driven && plain.servo_count > 0 ? relaxed : fast | find_rebounding(bundle);
   const EnergyLimiter<W> limiter(bundle);
   relax(bundle, relaxed);
@@ -353,7 +358,7 @@ void end_half_step(const ArticulationBundle& plain, const LaneArrays& arrays, co
   compute_lane_bias(bundle, s, s.first_errors);
   sum_impulses(bundle);
 }
-// After the last move: takes away all speed along the rows and into stops, and sums the impulses.
+// After the last move: removes all speed along the rows and into limits, and sums the impulses.
 template <int W>
 void end_step_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const WideBundle<W> bundle(plain);

@@ -1,5 +1,5 @@
-// Linkages side by side against the same linkages one by one: the equations are the same, so the results agree to rounding; and
-// each lane has the same bits whatever the width.
+// Articulations side by side against the same articulations one by one: the equations are the same, so
+// results agree to rounding; and each lane has the same bits at every width.
 #include "solver/articulation/articulation_matrix.h"
 #include "solver/articulation/articulation_test_kit.h"
 
@@ -9,7 +9,7 @@ namespace gyre::articulation_test {
 namespace {
 
 TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
-  for (const float tension : {0.05f, 50.0f}) {  // the second raises inertias
+  for (const float tension : {0.05f, 50.0f}) {  // the second adds geometric stiffness
     SCOPED_TRACE(tension);
     Shape shape;
     Crowd one_by_one(tension), side_by_side(tension), untouched(tension);
@@ -26,7 +26,7 @@ TEST(LinkageKernel, DrivesAndFrictionInLanesDoWhatTheyDoInOneLinkage) {
   solve_one_by_one(one_by_one, shape);
   solve_side_by_side(side_by_side, shape, 0);
   expect_same(one_by_one, side_by_side);
-  // Some slip, and some hold.
+  // Some slip, and some stick.
   int slipping = 0, holding = 0;
   const auto count = [&](float size, float most) {
     ++(size < 0.999f * kSubstep * most ? holding : slipping);
@@ -41,13 +41,14 @@ TEST(LinkageKernel, DrivesAndFrictionInLanesDoWhatTheyDoInOneLinkage) {
   EXPECT_GT(holding, 3);
 }
 
-// Strong ones keep what they are told, weak ones give all they have.
+// Strong ones reach their targets, weak ones act with all their force.
 TEST(LinkageKernel, MotorsInLanesDoWhatTheyDoInOneLinkage) {
   Shape shape;
   Crowd one_by_one(0.05f, Driven::motors), side_by_side(0.05f, Driven::motors);
   solve_one_by_one(one_by_one, shape);
   solve_side_by_side(side_by_side, shape, 0);
-  // Sweeps over several motors end where none changes a speed by 1e-4 rad/s: 4e-4 N m s where least of the linkage turns.
+  // Iterations over several motors end where none changes a speed by 1e-4 rad/s: 4e-4 N m s for the smallest
+  // inertia of the articulation.
   expect_same(one_by_one, side_by_side, 5.0);
   int weak = 0, strong = 0;
   for (const JointRecord& joint : side_by_side.records) {
@@ -98,14 +99,15 @@ void expect_same_bits_at_every_width(float tension, Driven driven, const Between
 TEST(LinkageKernel, EveryWidthHasTheSameBits) {
   for (const Driven driven : {Driven::no, Driven::iterative, Driven::motors}) {
     for (const float tension : {0.05f, 50.0f}) {
-      // Some lanes keep what others find anew; some spin so fast that they lose what errors gave them at once.
+      // Some lanes have cached entries that others compute anew; some spin so fast that they lose the speed
+      // of error removal at once.
       expect_same_bits_at_every_width(tension, driven, {.turn = 0.4f}, 1.0f);
       expect_same_bits_at_every_width(tension, driven, {.ends = Between::Ends::passes}, 6.0f);
     }
   }
 }
 
-// All of a copy hangs as it should, within its stops, but for speeds of about `noise`.
+// Brings a copy into position, within its limits, with speeds of about `noise`.
 void calm(Crowd& crowd, int copy, float noise) {
   Random random{std::uint32_t(copy)};
   for (std::size_t i = std::size_t(copy * kBodies); i < std::size_t((copy + 1) * kBodies); ++i) {
@@ -144,12 +146,12 @@ TEST(LinkageKernel, WaysOfStopsAreKeptUntilAJointHasTurnedFar) {
       EXPECT_TRUE(same_motion(kept, forgotten, copy)) << "copy " << copy;
     }
   }
-  // Those that hardly turn go on with what they have: to rounding as with what would be found anew.
+  // Copies that hardly rotate go on with cached entries: equal to new ones up to rounding.
   Crowd nearly_kept(0.05f), nearly_forgotten(0.05f);
   solve_side_by_side(nearly_kept, shape, 0, {.turn = 0.02f});
   solve_side_by_side(nearly_forgotten, shape, 0, {.turn = 0.02f, .forget = true});
   expect_same(nearly_kept, nearly_forgotten);
-  int kept_copies = 0;  // not all have a stop in question
+  int kept_copies = 0;  // not all have an active limit
   for (int copy = 1; copy < kCopies; copy += 2)
     kept_copies += same_motion(nearly_kept, nearly_forgotten, copy) ? 0 : 1;
   EXPECT_GE(kept_copies, 2) << "nothing is kept";
@@ -172,8 +174,8 @@ TEST(LinkageKernel, WhatMissesNothingButRoundingIsLeftAsItIs) {
   }
 }
 
-// Rounding of sums of a dozen impulses, which go back and forth and are larger in between than what is left of them: so many of a
-// float's steps of all that a body has and got.
+// Rounding of sums of a dozen impulses that alternate and are larger in between than their sum, as a number
+// of float steps of all momentum and impulses of a body.
 constexpr double kSumRounding = 32 * 0x1p-23;
 
 TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
@@ -183,7 +185,7 @@ TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
   solve_side_by_side(left, shape, 0, {.ends = Between::Ends::passes});
   solve_side_by_side(taken, shape, 0, {.ends = Between::Ends::finishes});
   std::vector<Vec3> given(left.motion.size());
-  std::vector<float> sizes(left.motion.size());  // of all that was given, N s
+  std::vector<float> sizes(left.motion.size());  // of all impulses, N s
   const auto compliance = [&](std::int32_t body, Vec3 impulse) {
     given[std::size_t(body)] += impulse;
     sizes[std::size_t(body)] += length(impulse);
@@ -204,7 +206,7 @@ TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
   }
 }
 
-// What is swept would hold against it.
+// Drives would hold against it.
 TEST(LinkageKernel, WhatCameFromErrorsIsTakenAwayWhereSomethingIsSwept) {
   Shape shape;
   Crowd passed(0.05f, Driven::iterative), finished(0.05f, Driven::iterative);
@@ -223,7 +225,7 @@ TEST(LinkageKernel, PassingOnAsksForWhatTheNextPartBeginsWith) {
   for (int copy = 0; copy < kCopies; ++copy) EXPECT_TRUE(same_motion(passed, asked, copy)) << "copy " << copy;
 }
 
-// More columns than a word has bits. Two branches of a tree, every other column each, that meet where the last of them is.
+// More columns than a word has bits: two branches of a tree, with alternating columns, that meet at the last.
 TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
   constexpr std::uint32_t kColumns = 151, kMeet = 140;
   std::vector<BlockColumn> columns(kColumns);
@@ -257,7 +259,7 @@ TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
   };
   expect(even, 20);
   expect(odd, 67);
-  // Their product is over the columns from the meeting on. (Of numbers that floats hold, sums included.)
+  // Their product is over the columns from the meeting on. (All numbers and sums are exact in floats.)
   std::vector<float> a(rows), b(rows);
   float sum = 0.0f;
   for (std::uint32_t row = 0; row < rows; ++row) {

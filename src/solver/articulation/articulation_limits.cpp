@@ -6,17 +6,17 @@ namespace gyre {
 
 namespace {
 
-constexpr float kSpeedTolerance = 1.0e-4f;     // m/s or rad/s: less is left as it is
-constexpr int kRounds = 3;           // each looks for stops that were passed because others hold
-constexpr double kSettledSpeed = 1.0e-5;  // m/s or rad/s: impulses that change speeds by less stand
+constexpr float kSpeedTolerance = 1.0e-4f;  // m/s or rad/s: smaller violations stay
+constexpr int kRounds = 3;                  // each finds limits that are violated because others hold
+constexpr double kSettledSpeed = 1.0e-5;    // m/s or rad/s: smaller changes of speed end the iteration
 constexpr int kIterations = 100;
 
-// A stop at one end of an axis: it sees sign times the axis' speed.
+// A limit at one end of an axis: its speed is sign times that of the axis.
 struct LimitRow {
   std::uint32_t node = 0;
   AxisConstraint* axis = nullptr;
   float sign = 1.0f;
-  float bias = 0.0f;  // speed below which it holds
+  float bias = 0.0f;  // speed below which it acts
   float& impulse() const { return sign > 0.0f ? axis->axis.low_impulse : axis->axis.high_impulse; }
 };
 
@@ -44,7 +44,7 @@ class LimitSolve {
   }
 
  private:
-  // By how much the stop's speed is above what is asked.
+  // Speed of the limit minus its bias.
   float speed_of(const LimitRow& limit) const {
     const float second_order_bias = bounds_.rotation > 0.0f ? limit.axis->second_order_bias : 0.0f;
     const float speed =
@@ -52,7 +52,7 @@ class LimitSolve {
     return limit.sign * speed - limit.bias;
   }
 
-  // Those that are passed, or bear an impulse.
+  // Lists limits that are violated or have an impulse.
   void list_violated() {
     const std::uint32_t nodes = std::uint32_t(articulation_.nodes.size());
     for (std::uint32_t k = 0; k < nodes && count_ < kMaxLimits; ++k) {
@@ -65,8 +65,7 @@ class LimitSolve {
         if (x.has_low) consider({n, &x, 1.0f}, max(low_gap(x), lowest));
         if (x.has_high) consider({n, &x, -1.0f}, max(high_gap(x), lowest));
       }
-      if (count_ == kMaxLimits)
-        first_ = n;  // those of its stops that found no room come first in the next round
+      if (count_ == kMaxLimits) first_ = n;  // its other limits come first in the next round
     }
   }
   void consider(LimitRow limit, float gap) {
@@ -118,11 +117,11 @@ class LimitSolve {
   const ArticulationSolve& solve_;
   ErrorBounds bounds_;
   std::size_t row_count_;    // of the equations
-  ResponseColumns columns_;  // by stop
+  ResponseColumns columns_;  // by limit
   std::span<double> speeds_;
   std::size_t count_ = 0;
   std::uint32_t first_ = 0;  // node
-  // Of the first `count_` stops; what lies behind is not known.
+  // Valid for the first `count_` limits.
   LimitRow limits_[kMaxLimits];
   ResponseRow rows_[kMaxLimits];
   double matrix_[kMaxLimits][kMaxLimits];

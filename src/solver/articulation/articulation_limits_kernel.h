@@ -1,6 +1,7 @@
-// The stops of a bundle of linkages (solver/articulation/articulation_lanes.h), solved together with the equations: solver/articulation/articulation_limits.h, with a
-// lane for each linkage. A lane takes part only with the stops that it finds passed itself, in the order of the joints, and stands still
-// once its own impulses do, so its neighbours change no bit of it.
+// The limits of a bundle of articulations (solver/articulation/articulation_lanes.h), solved with the
+// equations: solver/articulation/articulation_limits.h with a lane for each articulation. A lane takes part
+// only with limits that are active in itself, in the order of the joints, and stops once its own impulses
+// have converged, so its neighbours change no bit of it.
 #pragma once
 
 #include "solver/articulation/articulation_limit_rows.h"
@@ -13,21 +14,23 @@ inline namespace GYRE_TARGET_NAMESPACE {
 constexpr float kLaneSpeedTolerance = 1.0e-4f;  // rad/s
 constexpr int kLaneRounds = 3, kLaneIterations = 100;
 
-// Impulses that change speeds by less stand.
+// Smaller changes of speed end the iteration.
 constexpr float kLaneTolerance = 1.0e-4f;  // rad/s
 
-// Of the way to where a stop's own speed is as asked, how far each sweep goes (successive over-relaxation).
+// Relaxation factor (successive over-relaxation).
 constexpr float kLaneRelaxation = 1.15f;
 
-// How far a joint, or the axis of its stop, may turn before what its linkage's stops do to each other is found anew.
+// Largest rotation of a joint, or of the axis of its limit, for which Delassus entries stay cached.
 constexpr float kMaxCachedRotation = 0.1f;  // rad
 
-// What a stop may still give way by, of what it would if its two bodies were alone: less is only rounding.
+// Smallest effective inverse mass of a limit, relative to its two bodies alone. Below it there is only
+// rounding, and the equations hold the limit.
 constexpr float kMinInverseMassShare = 1.0e-5f;
 
-// With the equations' matrix as L D L^T, the way of stop i under an impulse at stop j is what it would be without equations less y_i . D^-1
-// y_j, where L y is what the impulse makes of the rows. Elimination reaches few of the rows from one stop, and what is found stands until
-// the joints are placed anew: three solutions have it in common. What the equations answer is found once for all impulses together.
+// With the equations' matrix as L D L^T, the Delassus entry of limits i and j is the one without equations
+// minus y_i . D^-1 y_j, where L y is the effect of the impulse on the rows. Elimination reaches few rows from
+// one limit, and the result is valid until joints are prepared anew: three solves share it. The answer of the
+// equations is found once for all impulses together.
 template <int W>
 class LimitSolver {
  public:
@@ -37,7 +40,7 @@ class LimitSolver {
         bounds_(bounds),
         limits_(reinterpret_cast<WideLimit<W>*>(bundle.plain.limits)),
         responses_(reinterpret_cast<float*>(limits_ + count())),
-        // Before floats of which there may be an odd number.
+        // Before floats whose number may be odd.
         reached_(reinterpret_cast<std::uint64_t*>(responses_ +
                                                   2 * std::size_t(count()) * bundle.plain.row_count * W)),
         matrix_(reinterpret_cast<Wide<W>*>(reached_ + all_reach_words(bundle.plain))),
@@ -50,7 +53,7 @@ class LimitSolver {
         ends_(reinterpret_cast<std::uint8_t*>(computed_ + std::size_t(count()) * count())),
         layout_ends_(ends_ + row_length() * W) {}
 
-  // Before the first part of a step: nothing is known.
+  // Before the first half step of a step: nothing is cached.
   GYRE_INLINE void clear() {
     std::uint32_t next = 0;
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
@@ -65,7 +68,7 @@ class LimitSolver {
     layout_->renewed = layout_->cleared = 0;
   }
 
-  // The joints have been placed.
+  // After the joints have been prepared.
   GYRE_INLINE void begin() {
     const std::uint32_t unchanged = to_bits(find_barely_rotated());
     for (std::uint32_t a = 0; a < count(); ++a) {
@@ -117,7 +120,7 @@ class LimitSolver {
     limit.low_on = limit.high_on = Mask<W>::splat(false);
     limit.low_bias = servo.target_speed - servo.rate * servo.axis.low_gap;
     if (!limit.node->has_twist) return;
-    // Of its own stops it asks nothing that they forbid: both would grow against each other to no end.
+    // A motor targets no speed that its own limits forbid: both would grow against each other without end.
     const WideLimitAxis<W>& own = b_.joints[limit.node - b_.plain.nodes].twist;
     const Wide<W> low = bias_of(own.low_gap), high = Wide<W>(0.0f) - bias_of(own.high_gap);
     limit.low_bias = max(min(limit.low_bias, high), low);
@@ -136,14 +139,14 @@ class LimitSolver {
     compute_delassus();
     find_impulses(live);
   }
-  // Finds the stops that are passed or bear an impulse; returns the lanes in which there is something to do.
+  // Finds the limits that are violated or have an impulse; returns the lanes with work to do.
   GYRE_INLINE Mask<W> find_active(bool first) {
     Mask<W> live = Mask<W>::splat(false);
     for (std::uint32_t a = 0; a < end_count(); ++a) {
       WideLimit<W>& limit = limits_[a];
       const WideLimitAxis<W>& axis = *limit.axis;
       limit.speed = dot(axis.about, b_.bodies[limit.node->b].angular - b_.bodies[limit.node->a].angular);
-      // Those that nothing can turn have no stops.
+      // Axes that cannot rotate have no limits.
       const Mask<W> is_rotatable = axis.mass > 0.0f;
       const auto consider = [&](Wide<W> speed, Wide<W> impulse, Mask<W>& on) {
         const Mask<W> bears = impulse > 0.0f, passed = speed < -kLaneSpeedTolerance;
@@ -157,7 +160,7 @@ class LimitSolver {
     for (std::uint32_t a = end_count(); a < count(); ++a) live = live | find_active_servo(limits_[a], first);
     return live;
   }
-  // Not even a little is left: what stands would be given in each part anew until it is more.
+  // Without tolerance: the remaining error would be added in each half step until it is large.
   Mask<W> find_active_servo(WideLimit<W>& limit, bool first) const {
     const WideServo<W>& servo = servo_of(limit);
     const WideLimitAxis<W>& axis = servo.axis;
@@ -187,9 +190,11 @@ class LimitSolver {
   GYRE_INLINE static bool share_body(const LaneNode& node, const LaneNode& other) {
     return other.a == node.a || other.a == node.b || other.b == node.a || other.b == node.b;
   }
-  // Those lanes in which no joint has turned far since the ways that are kept were found; of the others it notes how they are now.
+  // Lanes in which no joint has rotated far since the cached entries were computed; records the present poses
+  // of others.
   Mask<W> find_barely_rotated() const {
-    constexpr float kMinCosine = 1.0f - 0.125f * kMaxCachedRotation * kMaxCachedRotation;  // the cosine of half of that
+    // the cosine of half of that
+    constexpr float kMinCosine = 1.0f - 0.125f * kMaxCachedRotation * kMaxCachedRotation;
     Mask<W> unchanged = Mask<W>::splat(true);
     for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) {
       const Sym3W<W>&now = b_.bodies[i].inverse, &own = b_.bodies[i].own_inverse;
@@ -206,7 +211,7 @@ class LimitSolver {
     }
     if (!any(~unchanged)) return unchanged;
     const Wide<W> none(0.0f);
-    const QuatW<W> nowhere{none, none, none, none};  // of raised inertias nothing is kept
+    const QuatW<W> nowhere{none, none, none, none};  // with geometric stiffness nothing is cached
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n)
       poses_[n] = select(unchanged, poses_[n], select(stiffened, nowhere, pose_of(n)));
     return unchanged;
@@ -216,7 +221,7 @@ class LimitSolver {
   GYRE_INLINE Vec3W<W> axis_of(const WideLimit<W>& limit) const {
     return rotate_inverse(b_.bodies[limit.node->a].orientation, limit.axis->about);
   }
-  // Where a limb points straight back, the way to a cone's nearest stop goes over to the other side at once.
+  // Where a limb points straight back, the axis of a cone's nearest limit jumps to the other side.
   GYRE_INLINE Mask<W> has_same_axis(const WideLimit<W>& limit) const {
     return length_squared(axis_of(limit) - limit.cached_axis) <
            (kMaxCachedRotation * kMaxCachedRotation) * length_squared(limit.cached_axis);
@@ -233,7 +238,7 @@ class LimitSolver {
     return body == limit.node->a ? limit.spin_a : body == limit.node->b ? limit.spin_b : nothing();
   }
 
-  // What the rows of a joint miss where its bodies turn.
+  // The violation of a joint's rows by spins of its bodies.
   GYRE_INLINE void set_missing(float* vector, std::uint32_t n, Vec3W<W> spin_a, Vec3W<W> spin_b) const {
     const LaneNode& node = b_.plain.nodes[n];
     const WideJoint<W>& joint = b_.joints[n];
@@ -246,7 +251,8 @@ class LimitSolver {
     b_.set_row(vector, node.row + 4, dot(spin_a - spin_b, joint.perpendicular_2));
   }
 
-  // Which columns an impulse at a stop reaches: those of joints that share a body with it, and what elimination makes of them.
+  // Finds the columns that an impulse at a limit reaches: those of joints that share a body with it, and
+  // those that elimination adds.
   void find_reach(std::uint32_t index) {
     WideLimit<W>& limit = limits_[index];
     limit.has_reach = true;
@@ -274,7 +280,7 @@ class LimitSolver {
     }
     solve_reached_down<W>(b_.plain, reached_of(index), response, scaled_of(index));
   }
-  // Between all stops that a lane has in question, anew in lanes that have one of which nothing is kept.
+  // Computes Delassus entries between all active limits, in lanes where one of them is not cached.
   void compute_delassus() {
     std::uint32_t lanes = 0;
     for (std::uint32_t a = 0; a < count(); ++a) lanes |= limits_[a].active & ~limits_[a].cached;
@@ -290,7 +296,7 @@ class LimitSolver {
     for (std::uint32_t i = 0; i < used; ++i)
       for (std::uint32_t j = 0; j <= i; ++j) compute_delassus_entry(listed[i], listed[j], lanes);
   }
-  // The way at one stop under an impulse at another, in those of `lanes` that ask for it.
+  // The Delassus entry of two limits, in those of `lanes` that need it.
   void compute_delassus_entry(std::uint32_t a, std::uint32_t b, std::uint32_t lanes) {
     std::uint32_t& found = computed_[std::size_t(a) * count() + b];
     lanes &= limits_[a].cached & limits_[b].cached & ~found;
@@ -310,8 +316,8 @@ class LimitSolver {
 
   // ------------------------------------------------------------------------------------------------------ impulses
 
-  // Each lane's ends of stops in question stand in slots from the first on, in their order: a lane has few of those that all
-  // lanes have between them. An end is twice the stop's number, one more at the high end.
+  // The ends of active limits of each lane stand in the first slots, in their order: a lane has few of all
+  // active limits. An end is twice the limit's number, plus one at the high end.
   std::uint32_t list_ends(Mask<W> live, std::uint32_t (&counts)[W]) {
     for (std::uint32_t& n : counts) n = 0;
     std::uint32_t largest = 0;
@@ -329,7 +335,7 @@ class LimitSolver {
       if (limit.has_low) list(limit.low_on, 2 * a);
       list(limit.high_on, 2 * a + 1);
     };
-    // Stops have the last word of a sweep.
+    // Limits come last in an iteration.
     for (std::uint32_t a = end_count(); a < count(); ++a) list_limit(a);
     for (std::uint32_t a = 0; a < end_count(); ++a) list_limit(a);
     return largest;
@@ -396,7 +402,7 @@ class LimitSolver {
       }
     }
   }
-  // A motor may give either way, up to what it has, and gives way by what it bears.
+  // The impulse of a motor has either sign and a bound, and the motor is compliant.
   static void bound_servo(LimitSlot<W>& slot, const WideServo<W>& servo, const Wide<W>& diagonal,
                           std::uint32_t lane) {
     const float impulse = lane_of(servo.axis.low_impulse, lane), max_impulse = lane_of(servo.max_impulse, lane);
@@ -405,7 +411,7 @@ class LimitSolver {
     set_lane(slot.max_impulse, lane, max_impulse - impulse);
   }
 
-  // How far a sweep takes the impulse of a slot; `most`: the most that any of them has changed a speed.
+  // The step of the impulse of a slot; `largest`: the largest change of a speed.
   template <bool kServos>
   GYRE_INLINE static Wide<W> step_of(LimitSlot<W>& slot, Wide<W> excess, Wide<W> own, Mask<W> live,
                                      Wide<W>& largest) {
@@ -441,7 +447,7 @@ class LimitSolver {
   }
   template <bool kServos>
   void iterate_many(std::uint32_t slots, Mask<W> live) const {
-    // Of the slot that comes next also in a register: each step waits for it.
+    // The next slot also in a register, because each step waits for it.
     Wide<W> excess = slots_[0].excess;
     for (int iteration = 0; iteration < kLaneIterations && any(live); ++iteration) {
       Wide<W> largest(0.0f);
@@ -456,12 +462,12 @@ class LimitSolver {
     }
   }
 
-  // Projected Gauss-Seidel over the stops in question, in each lane until its impulses stand.
+  // Projected Gauss-Seidel over the active limits, in each lane until its impulses converge.
   void find_impulses(Mask<W> live) {
     std::uint32_t counts[W];
     const std::uint32_t slots = list_ends(live, counts);
     const bool has_servos = b_.plain.servo_count > 0;
-    // Only a servo knows a bound above.
+    // Only servos have an upper bound.
     if (has_servos)
       for (std::uint32_t i = 0; i < slots; ++i) slots_[i].max_impulse = Wide<W>(kUnboundedImpulse);
     fill_slots(slots, counts);
@@ -471,7 +477,7 @@ class LimitSolver {
       const Wide<W> own = slot_delassus_[i * row_length() + i];
       slots_[i].share = keep(own > 0.0f, -kLaneRelaxation / own);
     }
-    // One lane has no use for the registers, and the few slots' code is long.
+    // A single lane has no use for the registers, and the code for few slots is long.
     if (has_servos)
       iterate_many<true>(slots, live);
     else if (W > 1 && slots <= kRegisterSlots)
@@ -489,7 +495,7 @@ class LimitSolver {
     }
   }
 
-  // Applies them, and what the equations answer to all of them.
+  // Applies the impulses and the answer of the equations to all of them.
   void apply() {
     for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) spins_[i] = nothing();
     Mask<W> pushed = Mask<W>::splat(false);
@@ -536,18 +542,18 @@ class LimitSolver {
   const LaneSettings& s_;
   ErrorBounds bounds_;
   WideLimit<W>* limits_;
-  float* responses_;        // y and D^-1 y, by stop
-  std::uint64_t* reached_;  // by stop: the columns that it reaches
+  float* responses_;        // y and D^-1 y, by limit
+  std::uint64_t* reached_;  // by limit: its columns
   Wide<W>* matrix_;
-  QuatW<W>* poses_;  // of b seen from a, by joint: since when ways are kept
+  QuatW<W>* poses_;  // of b in a's frame, by joint: as the entries were cached
   Vec3W<W>* spins_;
   LimitDelassus<W>* layout_;
   LimitSlot<W>* slots_;
   Wide<W>* slot_delassus_;  // by two slots
-  // By two stops, the later first: lanes in which their way was found in this part of the sub-step.
+  // By two limits, the later first: lanes whose entry was computed in this half step.
   std::uint32_t* computed_;
   std::uint8_t* ends_;       // by slot and lane
-  std::uint8_t* layout_ends_;  // those to which the ways of slots belong
+  std::uint8_t* layout_ends_;  // ends of the layout of Delassus entries
 };
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -1,11 +1,12 @@
-// Factors and solves the matrices of a bundle of linkages: the elimination of math/block_ldlt.cpp with a lane for each linkage. Blocks
-// have three rows (a point) or five (a hinge).
+// Factors and solves the matrices of a bundle of articulations: the elimination of math/block_ldlt.cpp with a
+// lane for each articulation. Blocks have three rows (a point) or five (a hinge).
 //
-// In floats, where that of a linkage alone is in doubles: rows give way by a share of their own diagonal (LaneSettings::give), so no
-// pivot falls below that share, and the factors are those of a matrix that differs by some 1e-6 of its diagonal, a hundredth of what
-// rows are made to give way anyway (N. Higham, "Accuracy and Stability of Numerical Algorithms", 2002, chapter 10). That holds of
-// elimination row by row; with the inverses of whole blocks it does not: a block's condition goes into all that comes later, and limbs
-// thrown together at random flew apart. Speeds are measured anew for each solution.
+// The matrices are in float, that of a scalar articulation in double. Rows have a compliance of a share of
+// their own diagonal (LaneSettings::compliance), so no pivot falls below that share. The factors are those of
+// a matrix that differs by some 1e-6 of its diagonal, a hundredth of the compliance (N. Higham, "Accuracy and
+// Stability of Numerical Algorithms", 2002, chapter 10). This holds for elimination row by row. With inverses
+// of whole blocks the condition of a block spreads to all later ones, and limbs thrown together at random
+// flew apart. Speeds are measured anew for each solve.
 #pragma once
 
 #include "math/wide.h"
@@ -14,11 +15,11 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// A pivot below this share of its own diagonal element is only rounding, as in math/dense.h.
+// A pivot below this share of its diagonal element is only rounding, as in math/dense.h.
 constexpr float kMinPivot = 1.0e-6f;
 
-// A diagonal block of which the lower triangle is read, as L P L^T: L below the diagonal, and on it the inverses of the pivots, zero
-// where one was dropped.
+// Factors a diagonal block, whose lower triangle is read, as L P L^T: L below the diagonal, and on it the
+// inverse pivots, zero for dropped ones.
 template <int W, int N>
 void factor_diagonal(float* block) {
   using V = Wide<W>;
@@ -42,7 +43,7 @@ void factor_diagonal(float* block) {
   }
 }
 
-// b L^-T in place of b, with b of R by N, and that times the inverse pivots in `scaled`.
+// b L^-T in place of b, with b of R by N, and its product with the inverse pivots in `scaled`.
 template <int W, int R, int N>
 void scale_block(const float* diagonal, float* b, float* scaled) {
   using V = Wide<W>;
@@ -59,7 +60,7 @@ void scale_block(const float* diagonal, float* b, float* scaled) {
   }
 }
 
-// out -= S B^T, with S of R by C and B of Q by C; of a diagonal block only the lower triangle.
+// out -= S B^T, with S of R by C and B of Q by C; only the lower triangle of a diagonal block.
 template <int W, int R, int Q, int C>
 void subtract_product(const float* s, const float* b, float* out, bool lower_only) {
   using V = Wide<W>;
@@ -168,7 +169,7 @@ void solve_column_down(const ArticulationBundle& bundle, const BlockColumn& colu
   }
 }
 
-// out = P^-1 x, of the column's rows.
+// out = P^-1 x, for the rows of the column.
 template <int W, int C>
 GYRE_INLINE void scale_column(const ArticulationBundle& bundle, const BlockColumn& column,
                               const float* vector, float* out) {
@@ -242,11 +243,12 @@ void solve_lanes(const ArticulationBundle& bundle) {
 
 // ---------------------------------------------------------------------------------------------- right sides of few rows
 
-// The columns that elimination reaches from such a right side: a bit for each, by its place.
+// The columns that elimination reaches from a sparse right side: a bit for each, by its index.
 using ReachedColumns = std::uint64_t*;
 constexpr std::uint32_t reach_words(std::uint32_t columns) { return (columns + 63) / 64; }
 
-// Calls run(column) for those of the bundle's columns whose bits are set, in their order; word(i) tells the bits from 64 i on.
+// Calls run(column) for the columns of the bundle whose bits are set, in their order; word(i) returns the
+// bits from 64 i on.
 template <class Word, class Run>
 GYRE_INLINE void for_columns(const ArticulationBundle& bundle, const Word& word, const Run& run) {
   const std::uint32_t words = reach_words(bundle.column_count);
@@ -255,7 +257,7 @@ GYRE_INLINE void for_columns(const ArticulationBundle& bundle, const Word& word,
       run(bundle.columns[64 * i + std::uint32_t(__builtin_ctzll(left))]);
 }
 
-// Marks, beside the columns that are marked, those that elimination reaches from them: all come later.
+// Marks the columns that elimination reaches from the marked ones; all come later.
 inline void reach_columns(const ArticulationBundle& bundle, ReachedColumns reached) {
   for (std::uint32_t index = 0; index < bundle.column_count; ++index) {
     if ((reached[index / 64] >> index % 64 & 1u) == 0) continue;
@@ -267,7 +269,7 @@ inline void reach_columns(const ArticulationBundle& bundle, ReachedColumns reach
   }
 }
 
-// Clears their rows in x.
+// Clears the rows of the columns in x.
 template <int W>
 void clear_reached(const ArticulationBundle& bundle, const ReachedColumns reached, float* x) {
   const auto own = [&](std::uint32_t i) { return reached[i]; };
@@ -276,7 +278,7 @@ void clear_reached(const ArticulationBundle& bundle, const ReachedColumns reache
   });
 }
 
-// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds P^-1 y.
+// Replaces the right side x of the reached columns by y of L y = x, and computes P^-1 y.
 template <int W>
 void solve_reached_down(const ArticulationBundle& bundle, const ReachedColumns reached, float* x,
                         float* scaled) {

@@ -1,5 +1,6 @@
-// Where the joints of a bundle are in a sub-step, and the matrix of their equations (solver/articulation/articulation_lanes.h): what prepare_joint()
-// and prepare_articulation() do for a linkage alone, with the zeros of a ball joint's rows left out.
+// Prepares the joints of a bundle in a sub-step, and the matrix of their equations
+// (solver/articulation/articulation_lanes.h), as prepare_joint() and prepare_articulation() for a single
+// articulation, without the zeros of a ball joint's rows.
 #pragma once
 
 #include "math/wide_angle.h"
@@ -29,15 +30,15 @@ GYRE_INLINE void prepare_limit_axis(WideLimitAxis<W>& axis, Vec3W<W> about, cons
   axis.mass = keep(k > 0.0f, 1.0f / k);
 }
 
-// `slack`: by how much farther both stops are.
+// `slack`: distance by which both limits are moved outwards.
 template <int W>
 GYRE_INLINE void prepare_twist(WideLimitAxis<W>& axis, Wide<W> position, Wide<W> slack = Wide<W>(0.0f)) {
   axis.low_gap = max(position - axis.low + slack, Wide<W>(-kMaxErrors.rotation));
   axis.high_gap = max(axis.high - position + slack, Wide<W>(-kMaxErrors.rotation));
 }
 
-// Near what the twist of a joint is told: of a cone the nearer way round to its stops, if these are less than a turn apart; otherwise as
-// it was last.
+// The angle near which the twist of a joint is unwrapped: for a cone the middle of its limits if these are
+// less than a turn apart, else the last twist.
 template <int W>
 GYRE_INLINE Wide<W> twist_reference(const LaneNode& node, const WideJoint<W>& joint) {
   if (node.kind == JointKind::hinge || !node.has_twist) return joint.position;
@@ -45,8 +46,8 @@ GYRE_INLINE Wide<W> twist_reference(const LaneNode& node, const WideJoint<W>& jo
   return select(axis.high - axis.low < 2.0f * kWidePi, 0.5f * (axis.low + axis.high), joint.position);
 }
 
-// How far b's axis may still lean out of a's, and the axis about which the stop is nearest: find_swing_limit() of
-// solver/joint/joint_kinds.cpp.
+// The swing of a cone: its distance to the limit, and the axis about which the limit is nearest, as
+// find_swing_limit() of solver/joint/joint_kinds.cpp.
 template <int W>
 GYRE_INLINE void prepare_swing(WideJoint<W>& joint, const Mat3W<W>& frame_a, Vec3W<W> x_b, const WideBody<W>& a,
                              const WideBody<W>& b) {
@@ -61,7 +62,7 @@ GYRE_INLINE void prepare_swing(WideJoint<W>& joint, const Mat3W<W>& frame_a, Vec
   const Wide<W> across = cy * cz * (square(joint.inverse_swing_z) - square(joint.inverse_swing_y)) / share;
   const Vec3W<W> raw = share * along + (across * angle / sine) * cross(x_b, along);
   const Wide<W> size = length(raw);
-  // Opposite to a's axis every direction is as good; along it the stop is far.
+  // Opposite to a's axis all directions are equal; along it the limit is far.
   const Mask<W> opposite = and_not(angle > 1.0f, leans);
   const Wide<W> smallest = 1.0f / max(joint.inverse_swing_y, joint.inverse_swing_z);
   Vec3W<W> about = keep(opposite, frame_a.y);
@@ -69,7 +70,7 @@ GYRE_INLINE void prepare_swing(WideJoint<W>& joint, const Mat3W<W>& frame_a, Vec
   Wide<W> gap = select(opposite, smallest - angle, Wide<W>(kUnreachable));
   gap = select(leans, (1.0f - share * angle) / size, gap);
   prepare_limit_axis(joint.swing, about, a, b);
-  joint.swing.low_gap = gap;  // as it is
+  joint.swing.low_gap = gap;  // without bound
   joint.swing.high_gap = max(gap, Wide<W>(-kMaxErrors.rotation));
 }
 
@@ -120,7 +121,7 @@ GYRE_INLINE void add_geometric_stiffness_term(WideBody<W>& body, Vec3W<W> r, Vec
                                                                  -0.5f * (r.y * f.z + r.z * f.y)};
 }
 
-// As stiffen_bodies() of solver/articulation/articulation.cpp. Hardly any body is pulled like that.
+// As stiffen_bodies() of solver/articulation/articulation.cpp. Few bodies have so much tension.
 template <int W>
 GYRE_INLINE void stiffen_body(WideBody<W>& body, const LaneSettings& s) {
   const Sym3W<W>& i = body.inverse;
@@ -148,7 +149,7 @@ GYRE_INLINE void stiffen_body(WideBody<W>& body, const LaneSettings& s) {
 
 // ------------------------------------------------------------------------------------------------------------- matrix
 
-// The spins that a push along each world axis at `r` gives a body: its inverse inertia times r x axis.
+// Spins of a body for an impulse along each world axis at `r`: inverse inertia times r x axis.
 template <int W>
 GYRE_INLINE Mat3W<W> spins_at(const Sym3W<W>& i, Vec3W<W> r) {
   return {{i.xy * r.z - i.xz * r.y, i.yy * r.z - i.yz * r.y, i.yz * r.z - i.zz * r.y},
@@ -156,7 +157,7 @@ GYRE_INLINE Mat3W<W> spins_at(const Sym3W<W>& i, Vec3W<W> r) {
           {i.xx * r.y - i.xy * r.x, i.xy * r.y - i.yy * r.x, i.xz * r.y - i.yz * r.x}};
 }
 
-// K + give of a joint's own rows.
+// K + compliance of a joint's own rows.
 template <int W>
 GYRE_INLINE void make_diagonal_block(const WideBundle<W>& bundle, const LaneNode& node, float compliance) {
   WideJoint<W>& joint = bundle.joints[&node - bundle.plain.nodes];
@@ -193,7 +194,7 @@ GYRE_INLINE void make_diagonal_block(const WideBundle<W>& bundle, const LaneNode
   bundle.set_value(at + 4 * n + 4, kq + joint.angular_compliance_2);
 }
 
-// One row of what a shared body couples: by the spin that the row's impulse of one gives it.
+// One row of the coupling by a shared body, from the spin of an impulse of one.
 template <int W>
 GYRE_INLINE void put_coupled_row(const WideBundle<W>& bundle, std::uint32_t at, Vec3W<W> direction,
                                  Vec3W<W> spin, Vec3W<W> r, const WideJoint<W>& column, bool is_hinge,
@@ -210,7 +211,7 @@ GYRE_INLINE void put_coupled_row(const WideBundle<W>& bundle, std::uint32_t at, 
   put(at + 4, dot(spin, column.perpendicular_2));
 }
 
-// Signs, because a feels the opposite of what b does.
+// Signs differ because a gets the opposite of b.
 template <int W>
 GYRE_INLINE void put_coupling(const WideBundle<W>& bundle, const LaneCoupling& coupling) {
   const WideJoint<W>&row = bundle.joints[coupling.row], &column = bundle.joints[coupling.column];
@@ -236,7 +237,7 @@ void clear_values(const ArticulationBundle& plain) {
   for (std::uint32_t i = 0; i < plain.value_count; ++i) Wide<W>(0.0f).store(plain.values + i * W);
 }
 
-// The rows where the bodies are now, and their own blocks of the matrix.
+// Prepares the rows at the present poses, and their diagonal blocks of the matrix.
 template <int W>
 void prepare_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const WideBundle<W> bundle(plain);
@@ -257,7 +258,7 @@ void prepare_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, c
   *plain.is_factored = false;
 }
 
-// The rest of the matrix, and its factors: in one place, for it is long and asked for from many.
+// The couplings and the factors of the matrix. Not inlined: it is long and has many callers.
 template <int W>
 __attribute__((noinline)) void make_factors(const WideBundle<W>& bundle) {
   const ArticulationBundle& plain = bundle.plain;
@@ -265,7 +266,7 @@ __attribute__((noinline)) void make_factors(const WideBundle<W>& bundle) {
   factor_lanes<W>(plain);
   *plain.is_factored = true;
 }
-// Once something is to be solved with them. Of linkages that fall freely nothing is.
+// Factors before the first solve. Freely falling articulations need none.
 template <int W>
 GYRE_INLINE void factor_bundle(const WideBundle<W>& bundle) {
   if (!*bundle.plain.is_factored) make_factors<W>(bundle);

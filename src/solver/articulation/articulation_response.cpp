@@ -10,7 +10,7 @@ struct Speeds {
   DVec3 linear, angular;
 };
 
-// What an impulse of one along a row changes of its two bodies' velocities, before the equations answer.
+// Velocity changes of a row's two bodies for an impulse of one, before the answer of the equations.
 struct RowResponse {
   std::int32_t side_a = -1, side_b = -1;
   Speeds a, b;
@@ -41,7 +41,7 @@ bool share_body(const ArticulationNode& node, const ArticulationNode& other) {
   return is_one(node.side_a) || is_one(node.side_b);
 }
 
-// Sets a node's part of a right side: what its rows miss where its bodies move so.
+// Sets a node's part of a right side: the violation of its rows by these velocities.
 void set_missing(const ArticulationNode& node, const Speeds& a, const Speeds& b, double* x) {
   const RowVectors &direction = node.rows.direction, &angular_a = node.rows.angular_a, &angular_b = node.rows.angular_b;
   const DVec3 u = a.linear - b.linear;
@@ -52,7 +52,7 @@ void set_missing(const ArticulationNode& node, const Speeds& a, const Speeds& b,
            double(angular_b.y[i]) * b.angular.y - double(angular_b.z[i]) * b.angular.z;
 }
 
-// What a node's rows give its bodies.
+// Adds the effect of the impulses of a node's rows.
 void add_answers(const ArticulationNode& node, const double* x, float inverse_mass_a, float inverse_mass_b,
                  Speeds& a, Speeds& b) {
   const ArticulationRows& rows = node.rows;
@@ -81,7 +81,7 @@ std::size_t first_row(const Articulation& articulation, std::size_t node) {
   return articulation.plan.columns[articulation.plan.place_of[node]].row;
 }
 
-// Six numbers a body.
+// Velocities of all bodies, six numbers each.
 class BodySpeeds {
  public:
   explicit BodySpeeds(std::span<double> numbers) : numbers_(numbers) {}

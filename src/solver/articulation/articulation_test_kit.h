@@ -1,5 +1,5 @@
-// Crowds of linkages for tests of their lanes (solver/articulation/articulation_lanes.h): each copy in a state of its own, solved one by one and side by
-// side.
+// Crowds of articulations for tests of their lanes (solver/articulation/articulation_lanes.h): each copy has
+// a state of its own and is solved one by one and side by side.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -32,8 +32,8 @@ struct Random {
   Vec3 vector(float size) { return {size * next(), size * next(), size * next()}; }
 };
 
-// Who hangs on whom: from the world a hinge with stops, cones with and without stops, a ball, a hinge without stops, and a second
-// ball between the same two bodies, which makes a loop.
+// The articulation: from the world a hinge with limits, cones with and without limits, a ball, a hinge
+// without limits, and a second ball between the same two bodies, which makes a loop.
 struct Member {
   JointKind kind;
   std::int32_t a, b;
@@ -43,11 +43,11 @@ inline constexpr Member kMembers[kJoints] = {
     {JointKind::hinge, kNoBody, 0, true}, {JointKind::cone, 0, 1, true},  {JointKind::ball, 1, 2, false},
     {JointKind::hinge, 3, 1, false},      {JointKind::cone, 0, 4, false}, {JointKind::ball, 1, 2, false}};
 
-// What drives most of the joints: drives, motors with a frequency and friction, which are swept; or motors of hinges without one, which are
-// solved with the equations, and no stop is near.
+// Drives of most of its joints: iterative ones (drives, motors with a frequency and friction); or motors of
+// hinges without a frequency, which are solved with the equations, with no limit near.
 enum class Driven : std::uint8_t { no, iterative, motors };
 
-// Several copies of that linkage, each in a state of its own, and the work of a step.
+// Several copies of that articulation, each in a state of its own, and the data of a step.
 struct Crowd {
   Arena arena;
   std::vector<BodyMotion> motion{std::size_t(kBodies * kCopies)};
@@ -95,7 +95,7 @@ struct Crowd {
     joint.linear_impulse = random.vector(tension);
     const Quat a = joint.body_a == kNoBody ? Quat{} : orientation[std::size_t(joint.body_a)];
     const Quat b = orientation[std::size_t(joint.body_b)];
-    if (joint.kind == JointKind::hinge) {  // not far from where it should be
+    if (joint.kind == JointKind::hinge) {  // near its target
       joint.local_frame_b =
           conjugate(b) * (from_rotation_vector(random.vector(0.02f)) * a * joint.local_frame_a);
       joint.angular_impulse = random.vector(0.01f);
@@ -118,7 +118,8 @@ struct Crowd {
       detail.axes[int(axis)].high_impulse = 0.002f;
     }
   }
-  // Stopping a body takes some 0.3 N m s: in the first copies friction holds and drives are strong, in the last ones they are weak.
+  // It takes some 0.3 N m s to stop a body: in the first copies friction holds and drives are strong, in the
+  // last ones they are weak.
   void drive_joint(std::size_t i, Random& random) {
     const std::size_t member = i % kJoints;
     const float strength = 8.0f / (1.0f + 3.0f * float(i / kJoints));
@@ -148,7 +149,7 @@ struct Crowd {
     detail.drive.angular_velocity = random.vector(2.0f);
     detail.drive_torque_impulse = random.vector(0.01f);
   }
-  // None is near its stops.
+  // None is near its limits.
   void open_limits() {
     for (JointRecord& joint : records) joint.limits = {-10.0f, 10.0f}, joint.low_impulse = 0.0f;
     for (JointDetail& detail : details) {
@@ -171,7 +172,7 @@ struct Crowd {
   }
 };
 
-// The plan and the couplings, and the lanes' form of them.
+// The plan and the couplings, in scalar form and in that of lanes.
 struct Shape {
   Arena arena;
   BlockPlan plan;
@@ -255,13 +256,13 @@ inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
   for (std::size_t i = 0; i < crowd.records.size(); ++i) finish_joint(crowd.records[i], crowd.work[i]);
 }
 
-// What happens between the two parts of solve_side_by_side.
+// Changes between the two half steps of solve_side_by_side.
 struct Between {
-  float turn = 0.0f;    // rad: how far the second body of every other copy turns
-  bool forget = false;  // nothing of the first part is kept but impulses
-  // What speed came from taking errors back is left to the second part, or not.
+  float turn = 0.0f;    // rad: rotation of the second body of every other copy
+  bool forget = false;  // only impulses remain of the first half step
+  // The stage between the half steps: none, that between half steps, or that at the end of a step.
   enum class Ends : std::uint8_t { no, passes, finishes } ends = Ends::no;
-  bool asks = true;  // what the second part begins with is asked for by itself too
+  bool asks = true;  // the bias of the second half step is computed by itself too
 };
 
 inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKernels& kernels,
@@ -335,7 +336,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
         }
         if (between.forget) kernels.begin(bundle);
       }
-      // Passing on comes after placing, and asks.
+      // end_half_step follows preparation, and computes the bias.
       const bool passed = part == 1 && between.ends == Between::Ends::passes;
       if (!passed) kernels.prepare(bundle, arrays, settings);
       if (!passed || between.asks) kernels.compute_bias(bundle, arrays, settings);
@@ -354,14 +355,14 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, int width, const Betw
 
 inline double apart(Vec3 a, Vec3 b) { return double(length(a - b)); }
 
-// Rounding to float in some ten solutions of a system with a condition of about a thousand.
+// Rounding to float in some ten solves of a system with a condition of about a thousand.
 inline constexpr double kRounding = 2.0e-4;
 
-// How a joint bends in the second part is asked with or without the speeds that errors gave in the first, some 0.8 rad/s beside 8: over a
-// part that makes so many rad/s.
+// Difference of the second half step's bias with or without the speeds of error removal in the first, some
+// 0.8 rad/s beside 8, as rad/s over a half step.
 inline constexpr double kLeftOver = 0.8 * 8.0 * double(kSubstep);
 
-// `times`: so much more than rounding may they differ.
+// `times`: allowed difference as a multiple of rounding.
 inline void expect_same(const Crowd& one, const Crowd& other, double times = 1.0) {
   const double rounding = times * kRounding;
   for (std::size_t i = 0; i < one.motion.size(); ++i) {
@@ -372,7 +373,7 @@ inline void expect_same(const Crowd& one, const Crowd& other, double times = 1.0
   }
   for (std::size_t i = 0; i < one.records.size(); ++i) {
     const JointRecord &a = one.records[i], &b = other.records[i];
-    if (i % kJoints != 2 && i % kJoints != 5) {  // the two balls that share their load by the give alone
+    if (i % kJoints != 2 && i % kJoints != 5) {  // the two balls that share their load by compliance alone
       EXPECT_LT(apart(a.linear_impulse, b.linear_impulse), 3.0 * rounding) << "joint " << i;
       EXPECT_LT(apart(a.total_linear, b.total_linear), 3.0 * rounding) << "joint " << i;
     }

@@ -28,7 +28,7 @@ void set_bodies(const BallKernels& kernels, void* blocks, int block, int lane, c
   }
 }
 
-// Whether anything acts beside the joint's equations.
+// True if anything acts beside the joint's equations.
 bool acts(const JointDetail& detail) {
   for (const JointAxisRecord& axis : detail.axes) {
     if (axis.motion != AxisMotion::locked && is_active(axis)) return true;
@@ -66,7 +66,7 @@ void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, c
     const std::size_t width = std::size_t(kernels.width);
     to[i * width] = v.x, to[(i + 1) * width] = v.y, to[(i + 2) * width] = v.z;
   };
-  // What is left out is placed before it is read.
+  // Fields that are left out are prepared before they are read.
   put(kLocalA, joint.local_anchor_a);
   put(kLocalB, joint.local_anchor_b);
   put(kOffset, offset);

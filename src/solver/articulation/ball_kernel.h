@@ -1,4 +1,5 @@
-// The kernels of ball joints side by side (solver/articulation/ball_joint_simd.h), one template for every width.
+// The kernels of ball joints side by side (solver/articulation/ball_joint_simd.h), one template for every
+// width.
 #pragma once
 
 #include "solver/articulation/ball_joint_simd.h"
@@ -15,27 +16,29 @@ struct BallInertia {
   Sym3W<W> inverse;
 };
 
-// Where motion records lie.
+// Addresses of motion records.
 template <int W>
 using RecordList = float* [W];
 
 template <int W>
 struct BallBlock {
   std::int32_t read_a[W], read_b[W], write_a[W], write_b[W], inertia[W];
-  // As LaneBall. Side by side what the same sweeps read: they wait for memory more than they compute.
+  // As LaneBall. Fields that the same loops read are neighbours: the loops wait for memory more than they
+  // compute.
   Vec3W<W> local_a, local_b, offset, total, from_a, from_b, impulse, error, second_order_bias;
   Mat3W<W> mass;  // of this sub-step: inverse of K
-  // The bodies' records, to be read (zeros for what has none), and where they are written: most blocks push all that they read, and
-  // have one list for both.
+  // The records of the bodies for reading (zeros for none), and for writing: most blocks write all that they
+  // read and have one list for both.
   RecordList<W> record_a, record_b;
   const RecordList<W>* written_a;
   const RecordList<W>* written_b;
-  // Those of the block itself, or of another that has the same: nets are mostly of equal bodies, and then one stays in the cache.
+  // Own inertia, or that of another block with the same: nets mostly have equal bodies, and then one stays in
+  // the cache.
   const BallInertia<W>* inertia_a;
   const BallInertia<W>* inertia_b;
 
   BallInertia<W> own_inertia_a, own_inertia_b;
-  RecordList<W> pushed_a, pushed_b;  // what nothing pushes is written to `nowhere`
+  RecordList<W> pushed_a, pushed_b;  // immovable bodies are written to `nowhere`
   alignas(64) float nowhere[kRecordFloats];
 };
 
@@ -43,7 +46,7 @@ template <int W>
 GYRE_INLINE const RecordList<W>* locate_lanes(float* motion, const std::int32_t* read,
                                               const std::int32_t* write, float* nowhere,
                                               RecordList<W>& record, RecordList<W>& pushed) {
-  // Nothing is written to what is only read.
+  // Read-only records are never written.
   locate_records<W>(motion, read, const_cast<float*>(kNoRecord), record);
   if (all(WideInt<W>::load_unaligned(read) == WideInt<W>::load_unaligned(write)) &&
       none(WideInt<W>::load_unaligned(read) < WideInt<W>(0)))
@@ -127,7 +130,7 @@ template <int W>
 GYRE_INLINE bool are_same(const BallInertia<W>& a, const BallInertia<W>& b) {
   return std::memcmp(&a, &b, sizeof(BallInertia<W>)) == 0;
 }
-// `before`: the block before this one, if it may be looked at.
+// `before`: the block before this one, if it may be shared.
 template <int W>
 GYRE_INLINE void load_inertia(BallBlock<W>& block, const BallBlock<W>* before, const BallArrays& arrays) {
   const auto inertia = WideInt<W>::load_unaligned(block.inertia);

@@ -1,4 +1,4 @@
-// Ball joints side by side: the bits of each joint solved alone, at every width.
+// Ball joints side by side have the bits of each joint solved alone, at every width.
 #include "base/arena/arena.h"
 #include "math/rotation.h"
 #include "solver/articulation/ball_joint_transfer.h"
@@ -16,7 +16,7 @@ constexpr int kJoints = 11;  // no whole number of blocks at any width but one
 constexpr float kSubstep = 1.0f / 480.0f;
 const JointSettings kSettings{kSubstep, {40.0f, 0.96f, 0.04f}, true};
 
-// Pairs of bodies of their own, some joined to the world, one to a body that nothing pushes.
+// Pairs of bodies; some are joined to the world, one to an immovable body.
 struct Pairs {
   Arena arena;
   std::vector<BodyMotion> motion{std::size_t(2 * kJoints)};

@@ -1,15 +1,16 @@
-// The contact kernels: prepare, warm start, solve, project and finish, one template for every width. Lane i of a block
-// computes exactly what a block of width 1 would, so the width never changes a bit.
+// The contact kernels: prepare, warm start, solve, project and finish, one template for every width. Lane i
+// of a block computes exactly what a block of width 1 would, so the width never changes a bit.
 //
-// A manifold has up to four normal rows and one friction row triple at the centre of pressure: two tangents and the twist
-// about the normal, limited together by an ellipsoid (S. Goyal, A. Ruina, J. Papadopoulos, "Planar sliding with dry
-// friction", 1991; R. Howe, M. Cutkosky, 1996), which couples sliding with spinning as a patch of uniform pressure does.
-// Normal rows are soft springs (after E. Catto, "Soft Constraints", 2011) that stiffen with age and get used to their load:
-// docs/decisions/contact-softness.md. Overlap is taken back apart from velocities (contact_project.h).
-// The normal rows of a manifold are solved together: taken one after the other they would set every box rocking.
+// A manifold has up to four normal rows and one friction row triple at the centre of pressure: two tangents
+// and the twist about the normal. An ellipsoid bounds the three together (S. Goyal, A. Ruina, J.
+// Papadopoulos, "Planar sliding with dry friction", 1991; R. Howe, M. Cutkosky, 1996); it couples sliding
+// with spinning like a patch of uniform pressure. Normal rows are soft springs (after E. Catto, "Soft
+// Constraints", 2011) that stiffen with age and adapt to their mean load: docs/decisions/contact-softness.md.
+// Pushout removes penetration apart from velocities (contact_project.h). The normal rows of a manifold are
+// solved together: one after the other they would set every box rocking.
 //
-// Error of a point: s = separation + n . (moved_b - moved_a + turned_b x r_b - turned_a x r_a), first order on purpose: a
-// rolling ball's contact does not rise with the material that was there.
+// Separation of a point: s = separation + n . (delta_b - delta_a + rotation_b x r_b - rotation_a x r_a),
+// first order on purpose: the contact of a rolling ball does not rise with the material that was there.
 #pragma once
 
 #include "solver/contact/contact_pair.h"
@@ -17,14 +18,14 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// The fastest that springs take overlap back, as a share of the speed with which it is pushed apart: unlike that, theirs is
-// momentum.
+// The highest speed with which springs remove penetration, as a share of the pushout speed: unlike pushout,
+// springs add momentum.
 constexpr float kSpringSpeed = 0.125f;
-// By how many slops a point of a linked body must overlap (three tenths of the smaller body's inner radius) to be lost, and what share of its
-// impulse it loses in a second then: a head on the wrong side of somebody's chest cannot get back without passing it, and the neck would
-// press it on the chest ever harder.
+// Penetration in slops (three tenths of the inner radius of the smaller body) from which a point of a jointed
+// body is deep, and the share of its impulse that it then loses in a second. A head on the wrong side of a
+// chest cannot return without passing it, and the neck would press it on the chest ever harder.
 constexpr float kDeepPenetrationSlops = 750.0f, kDeepPenetrationLeak = 2.0f;
-// Projected sweeps over the points of a manifold in which some would pull.
+// Projected iterations over the points of a manifold with tensile points.
 constexpr int kPullIterations = 6;
 
 template <int W, bool kHasA>
@@ -51,7 +52,8 @@ void warm_start_blocks(void* memory, int begin, int end) {
   }
 }
 
-// N s: less than this is no load. The square of its inverse is still a float; what dies away goes through all of them down to zero.
+// N s: below this there is no load. The square of its inverse is still a float; a load that dies away passes
+// all of them down to zero.
 constexpr float kMinLoad = 1.0e-18f;
 
 // Sum of the normal impulses of a manifold.
@@ -62,7 +64,7 @@ GYRE_INLINE Wide<W> normal_load(const ContactBlock<W>& block) {
   return load;
 }
 
-// Friction: the impulse that would stop the slip, pulled back into the ellipsoid of what the load allows.
+// Friction: the impulse that stops the slip, clamped to the ellipsoid of the load.
 template <int W, bool kHasA>
 GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pair) {
   const Wide<W> zero = Wide<W>(0.0f);
@@ -83,7 +85,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   Wide<W> f2 = block.friction_2 - (block.inverse_k12 * v1 + block.inverse_k22 * v2 + block.inverse_k23 * v3);
   Wide<W> f3 = block.twist - (block.inverse_k13 * v1 + block.inverse_k23 * v2 + block.inverse_k33 * v3);
 
-  // Where on its limit the impulse is: 1 on the ellipsoid. No load, no friction.
+  // Use of the limit: 1 is on the ellipsoid. Without load there is no friction.
   const auto was_sliding = Mask<W>::of_bits(block.slides);
   const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
   const Wide<W> inverse_limit = select(was_sliding, block.inverse_dynamic_friction, block.inverse_friction) * per_load;
@@ -92,7 +94,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   const auto sticks = (use <= one) | ~loaded;
 
   if (!all(sticks)) {
-    // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
+    // Sliding: a step along the slip, equal in every direction, then clamped to the ellipsoid.
     const Wide<W> g1 = block.friction_1 - block.cold->slide_mass * v1;
     const Wide<W> g2 = block.friction_2 - block.cold->slide_mass * v2;
     const Wide<W> g3 = block.twist - block.cold->slide_mass * (block.cold->twist_radius * block.cold->twist_radius) * v3;
@@ -119,7 +121,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
                block.friction_from_b, d3 * block.normal);
 }
 
-// Rolling friction: a torque against the relative turning, at most rolling_friction times the load.
+// Rolling friction: a torque against relative rotation, at most rolling_friction times the load.
 template <int W, bool kHasA>
 GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pair) {
   const Wide<W> zero = Wide<W>(0.0f);
@@ -130,7 +132,7 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
   const Wide<W> limit = block.cold->rolling_friction * normal_load<W>(block);
   const Wide<W> size = sqrt(dot(target, target));
   const Wide<W> scale = select(size > limit, limit / select(size > zero, size, one), one);
-  // A lane that does not roll must come out as from a block without this: also where `wanted` leaves a float's range.
+  // A lane without rolling friction must get the bits of a block without it, even where `target` overflows.
   const auto has_rolling = block.cold->rolling_friction > zero;
   const Vec3W<W> bounded = scale * target;
   const Vec3W<W> next{select(has_rolling, bounded.x, zero), select(has_rolling, bounded.y, zero), select(has_rolling, bounded.z, zero)};
@@ -138,8 +140,8 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
   block.cold->rolling = next;
 }
 
-// The impulses of lanes in which some points would pull, by projected sweeps: into `next`, of the others nothing.
-// From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
+// Projected iterations for the impulses of lanes with tensile points, into `next`; other lanes stay. They
+// start from the accumulated impulses: the clamped answer of the block is too strong, and piles would shake.
 template <int W, int Count>
 GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& cold, const Wide<W>* residual,
                                          const Wide<W>* accumulated, Mask<W> pulls, Wide<W>* next) {
@@ -163,26 +165,25 @@ GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& cold, const 
       tried[i] = now;
       change[i] = now - accumulated[i];
     }
-    // What all of them left as it was, as where no point bears anything, the next sweep would not change either. What the others
-    // come to is not asked.
+    // If an iteration changes nothing in these lanes, the next would not either. Other lanes do not matter.
     if (none(and_not(pulls, unchanged))) break;
   }
   GYRE_UNROLL
   for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
 }
 
-// The normal rows of a manifold, solved together as a small complementarity problem: first as if all points pushed (which
-// treats them alike: no order, no rocking), then, where some would pull, by projected sweeps in the space of impulses.
-// Sprung: the spring draws its points to an overlap of `slop`, in both directions, and gives way to what it is not used to.
-// Not sprung: only approach stops, and under load the speed with which springs pushed goes.
+// The normal rows of a manifold, solved together as a small complementarity problem: first as if all points
+// were in compression (all alike: no order, no rocking), then, if some are tensile, by projected iterations
+// on the impulses. Soft: the spring draws its points to a penetration of `slop`, from both sides, and yields
+// to load beyond the mean. Rigid: only approach is stopped, and the speed from springs is removed under load.
 template <int W, bool kSprung, int Count, bool kHasA>
 GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
   const NormalMotion<W> displacements = normal_displacements<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
   const Wide<W> lost = Wide<W>(-kDeepPenetrationSlops) * block.slop;
   const Wide<W> leak(1.0f / (1.0f + kDeepPenetrationLeak * substep));
-  Wide<W> residual[Count];  // speed that the row wants to lose
-  Wide<W> accumulated[Count];      // the impulse as it stands, less what the spring gives way
+  Wide<W> residual[Count];     // speed that the row removes
+  Wide<W> accumulated[Count];  // the accumulated impulse, minus the yield of the spring
   GYRE_UNROLL
   for (int i = 0; i < Count; ++i) {
     const PointBlock<W>& point = block.points[i];
@@ -194,9 +195,9 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
       const Wide<W> fastest = zero - Wide<W>(kSpringSpeed) * block.pushout_speed;
       const auto is_capped = bias < fastest;
       residual[i] = speed + select(apart, separation * rate + block.slop * block.rate, max(bias, fastest));
-      // Where the speed is capped the impulse gives way less by the same share: the spring still bears its load.
+      // Where the speed is capped, the yield shrinks by the same share: the spring still carries its load.
       const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, bias, one), one) : one;
-      // A point that parts ceases to give way by degrees.
+      // The yield of a point fades while it separates.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
       accumulated[i] =
           block.impulses[i] - (block.compliance * near) * share * max(block.impulses[i] - point.mean_impulse, zero);
@@ -204,13 +205,13 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
         accumulated[i] = select(Mask<W>::of_bits(block.jointed) & (separation < lost), leak * accumulated[i], accumulated[i]);
       }
     } else {
-      // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
+      // A separated point may be released but never pulled: that would brake a body about to land.
       const Wide<W> excess = select(block.impulses[i] > zero, max(speed + separation * rate, zero), zero);
       residual[i] = select(apart, excess, speed);
       accumulated[i] = block.impulses[i];
     }
-    // A point that the lane does not have must stay out of the sums even where speeds leave a float's range: 0 times that
-    // would be no number, and a block of the lane's own would not have it.
+    // A missing point of a lane must stay out of the sums even where speeds overflow: 0 times infinity would
+    // not be a number, and a block of the lane alone would not have it.
     if (block.has_uneven_points != 0) residual[i] = keep(Mask<W>::of_bits(block.rows[i]), residual[i]);
   }
   Wide<W> next[Count];
@@ -250,7 +251,7 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
   }
 }
 
-// Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
+// New contacts: friction has no load to bound it, so the normals are solved first once.
 template <int W>
 GYRE_INLINE void apply_new_contact_impulse(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
   const auto fresh = block.cold->fresh > Wide<W>(0.0f);
@@ -275,8 +276,9 @@ GYRE_INLINE void apply_new_contact_impulse(ContactBlock<W>& block, PairMotion<W>
   pair.angular_b = select<W>(fresh, pair.angular_b, old.angular_b);
 }
 
-// What comes before friction and normals. A function of its own, which reads the bodies itself, so that all others may keep them in
-// registers. Few contacts come here, so those without a body A do so as if it were there.
+// The part before friction and normals. It is a function of its own that loads the bodies itself, so the
+// others may keep them in registers. Few contacts come here, so blocks without a body A are treated as if
+// they had one.
 template <int W>
 __attribute__((noinline)) PairMotion<W> begin_pair(ContactBlock<W>& block, float substep) {
   PairMotion<W> pair = load_pair<W>(block);
@@ -285,7 +287,7 @@ __attribute__((noinline)) PairMotion<W> begin_pair(ContactBlock<W>& block, float
   return pair;
 }
 
-// What of it a block has in which no lane has a body A.
+// The part of a pair for blocks in which no lane has a body A.
 template <bool kHasA, int W>
 GYRE_INLINE PairMotion<W, kHasA> reduce_pair(const PairMotion<W>& pair) {
   if constexpr (kHasA) {
@@ -295,7 +297,7 @@ GYRE_INLINE PairMotion<W, kHasA> reduce_pair(const PairMotion<W>& pair) {
   }
 }
 
-// Whether nothing moves: to the bit, so that a block has one answer.
+// True if nothing moves, to the bit, so that a block has one answer.
 template <int W>
 GYRE_INLINE WideInt<W> all_bits(Vec3W<W> v) {
   return bit_pattern(v.x) | bit_pattern(v.y) | bit_pattern(v.z);
@@ -306,7 +308,7 @@ GYRE_INLINE bool is_still(const PairMotion<W, kHasA>& pair) {
   if constexpr (kHasA) bits = bits | all_bits<W>(pair.linear_a) | all_bits<W>(pair.angular_a);
   return all(bits == WideInt<W>(0));
 }
-// Nor has moved since the step began.
+// True if the bodies have not moved since the step began.
 template <int W, bool kHasA>
 GYRE_INLINE bool is_undisplaced(const ContactBlock<W>& block) {
   const BodyDisplacement<W> b(block.read_b);
@@ -318,7 +320,7 @@ GYRE_INLINE bool is_undisplaced(const ContactBlock<W>& block) {
   return all(bits == WideInt<W>(0));
 }
 
-// What a block without rolling friction carries from one sub-step to the next.
+// The impulses that a block without rolling friction keeps between sub-steps.
 template <int W>
 struct SavedImpulses {
   Wide<W> points[kMaxManifoldPoints], friction_1, friction_2, twist;
@@ -338,7 +340,7 @@ struct SavedImpulses {
   }
 };
 
-// Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.
+// Normals come last, so that the final velocities close nowhere; an error of the slip does no harm.
 template <int W, bool kHasA>
 GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
   const bool begins = (block.has_fresh | block.has_rolling) != 0;
@@ -361,7 +363,7 @@ template <int W>
 void solve_blocks(void* memory, int begin, int end, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
-    // A lane by itself saves too little for code of its own.
+    // A single lane saves too little for code of its own.
     if (W == 1 || blocks[i].has_a != 0) {
       solve_block<W, true>(blocks[i], substep);
     } else if constexpr (W > 1) {
@@ -370,7 +372,7 @@ void solve_blocks(void* memory, int begin, int end, float substep) {
   }
 }
 
-// Once, at the end of a step: so seldom that what has no body A is relaxed as if it were there.
+// Runs once at the end of a step, so blocks without body A are treated as if they had one.
 template <int W>
 GYRE_INLINE void relax_block(ContactBlock<W>& block, float substep) {
   PairMotion<W> pair = load_pair<W>(block);

@@ -1,4 +1,4 @@
-// The contact kernels at the edge of what floats can say.
+// The contact kernels at the limits of floats.
 #include "base/arena/arena.h"
 #include "base/processor.h"
 #include "solver/contact/contact_block.h"
@@ -12,7 +12,7 @@
 namespace gyre {
 namespace {
 
-// A ball on fixed ground, with a load from the step before; solved for a sub-step of a 240th of a second.
+// A ball on static ground, with a load from the last step; solved for a sub-step of a 240th of a second.
 BodyMotion touch(int width, float load) {
   const ContactKernels& kernels = select_contact_kernels(width);
   Manifold manifold;
@@ -51,20 +51,22 @@ bool is_finite(const BodyMotion& m) {
   return std::isfinite(sum);
 }
 
-// A load that died away was divided by: below 3e-39 that is infinite, and a ball that rolled out was frozen.
+// A kernel divided by a load that died away: below 3e-39 that is infinite, and a ball that rolled out froze.
 TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
   for (const int width : {0, 1, 4, 8, 16}) {
     for (float load = 1.0f; load > 0.0f; load *= 0.1f) {
       const BodyMotion motion = touch(width, load);
       ASSERT_TRUE(is_finite(motion)) << "width " << width << ", load " << load;
-      // Friction takes no more than the load allows: the ground stops the fall, 1e-3 N s, and what stood.
+      // Friction takes no more than the load allows: the ground stops the fall, 1e-3 N s, and the accumulated
+      // load.
       const float change = std::fabs(motion.linear_velocity.z - 0.2f);
       ASSERT_LE(change, 0.51f * (1e-3f + 2.0f * load)) << "width " << width << ", load " << load;
     }
   }
 }
 
-// Eight lanes that nobody asked for, on a processor that has sixteen, use its registers; asked for, they are those of any with AVX2.
+// With automatic width, eight lanes on a processor that has sixteen use its registers; with a set width they
+// are those of any AVX2.
 TEST(ContactKernel, EightLanesUseTheRegistersOfSixteenWhereNobodyAsksForThem) {
   const ContactKernels &best = select_contact_kernels(0), &asked = select_contact_kernels(8);
   if (max_lanes() < 16) {
@@ -77,7 +79,7 @@ TEST(ContactKernel, EightLanesUseTheRegistersOfSixteenWhereNobodyAsksForThem) {
   EXPECT_NE(&eight, &asked);
 }
 
-// A bone of 0.4 m on fixed ground, which its left end bears and where friction holds it. Then its right end does.
+// A bone of 0.4 m on static ground. First its left end carries the load and friction, then its right end.
 struct Bone {
   BodyMotion motion;
   BodyInertia inertia{.inverse = {.xx = 100.0f, .yy = 80.0f, .zz = 90.0f}, .inverse_mass = 1.0f};
@@ -121,7 +123,8 @@ struct Bone {
   static constexpr Vec3 kFriction{0, 0, 1.2f};
 };
 
-// The same was given at one end and taken back at the other: a bone thrown on the ground left it with six times its energy.
+// The same impulse was given at one end and removed at the other: a bone thrown on the ground left it with
+// six times its energy.
 TEST(ContactKernel, FrictionGoesWhereTheLoadGoes) {
   for (const int width : {0, 1, 4, 8, 16}) {
     Bone bone(width);

@@ -1,6 +1,6 @@
-// Fills contact blocks from manifolds as the step begins, and reads impulses back as it ends. Part of the kernels (one
-// template for every width); apart from contact_kernel.h because it runs once a step. Records are read and written four
-// floats at a time, W records side by side (math/wide_vec.h: Rows).
+// Fills contact blocks from manifolds at the beginning of a step, and stores impulses at its end. Part of the
+// kernels (one template for every width), apart from contact_kernel.h because it runs once a step. Records
+// are read and written four floats at a time, W records side by side (math/wide_vec.h: Rows).
 #pragma once
 
 #include "solver/contact/contact_kernel.h"
@@ -11,20 +11,21 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// How much of the lower body's mobility is denied to it where a contact faces straight up.
+// Share of the lower body's mobility that pushout removes where a contact faces straight up.
 constexpr float kLowerShare = 0.7f;
-// A point gets used to its load as a mean over its age: of at least the first time (s), of at most the second.
+// Bounds of the time over which the mean impulse of a point averages (s): the age of the load, at least the
+// first, at most the second.
 constexpr float kShortestMean = 0.5f;
 constexpr float kLongestMean = 1.0f;
 
-// A patch narrower than this share of the size does not brake spinning.
+// A patch narrower than this share of the size has no spinning friction.
 constexpr float kMinPatch = 1.0e-3f;
-// Friction coefficients beyond this count as this: their inverse must not vanish.
+// Friction coefficients are bounded by this, because their inverse must not vanish.
 constexpr float kMaxFriction = 1.0e6f;
 
 // ----------------------------------------------------------------------------------------------- records, side by side
 
-// Where the fours begin in the records, in floats.
+// Offsets of the groups of four floats in the records.
 constexpr int kManifoldNormal = 0, kManifoldPoints = 4, kManifoldFriction = 52, kManifoldTwist = 56, kManifoldTotals = 61,
               kPointA = 0, kPointB = 4, kPointImpulse = 8, kPointFloats = 12, kInertiaMass = 4, kConstraintFriction = 0,
               kConstraintSize = 4, kConstraintVelocity = 6, kConstraintKinds = 10;
@@ -40,24 +41,24 @@ static_assert(offsetof(BodyInertia, inverse_mass) == 4 * kInertiaMass + 8);
 static_assert(offsetof(ContactConstraint, static_friction) == 4 * kConstraintFriction);
 static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize && offsetof(ContactConstraint, pushout_speed) == 4 * kConstraintSize + 4);
 static_assert(offsetof(ContactConstraint, surface_velocity) == 4 * kConstraintVelocity);
-// Bytes of one four: of the last float.
+// Bytes in the last float of a group.
 static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 && offsetof(ContactConstraint, has_joint) == 4 * kConstraintKinds + 13);
 
-// The constraints and manifolds of a block's lanes. Lanes without a contact, and points that a lane does not have, read zeros
+// The constraints and manifolds of a block's lanes. Lanes without a contact, and missing points, read zeros
 // and are not written.
 template <int W>
 struct LaneRecords {
   const float* constraint[W];
   float* manifold[W];
-  float* point[W];  // the manifold, where a lane has the point that is worked on
+  float* point[W];  // the manifold, in lanes that have the present point
   float* nowhere;
   std::uint32_t lanes = 0;                  // bits
   std::uint32_t has_point[kMaxManifoldPoints];  // bits
-  int point_count = 0;                      // the most of any lane
+  int point_count = 0;                          // the largest of any lane
   Vec3W<W> normal;
   Wide<W> exists[kMaxManifoldPoints];  // 1 or 0
 
-  // Where the fours of point k begin in `point`. Points are worked on in rising order.
+  // Offset of point k in `point`. Points must be visited in rising order.
   GYRE_INLINE int begin_point(int k) {
     for (std::uint32_t without = lanes & ~has_point[k]; without != 0; without &= without - 1)
       point[__builtin_ctz(without)] = nowhere;
@@ -65,7 +66,7 @@ struct LaneRecords {
   }
 };
 
-// Manifolds lie anywhere in memory: those of the next block come while this one is worked on.
+// Manifolds lie anywhere in memory, so those of the next block are fetched during this one.
 template <int W>
 GYRE_INLINE void fetch_ahead(const ContactConstraint* constraints, const std::uint32_t* order) {
   for (int lane = 0; lane < W; ++lane) {
@@ -76,7 +77,7 @@ GYRE_INLINE void fetch_ahead(const ContactConstraint* constraints, const std::ui
   }
 }
 
-// `nowhere` is what lanes without a record read (zeros) and write.
+// Lanes without a record read (zeros) and write `nowhere`.
 template <int W>
 GYRE_INLINE LaneRecords<W> find_records(const ContactConstraint* constraints, const std::uint32_t* order,
                                         float (&nowhere)[80]) {
@@ -105,14 +106,14 @@ GYRE_INLINE LaneRecords<W> find_records(const ContactConstraint* constraints, co
 
 // --------------------------------------------------------------------------------------------------------- preparation
 
-// Lanes of one float, for those who look at single contacts.
+// Access to one lane, for solvers of single contacts.
 template <int W>
 void set_lane(Wide<W>& wide, int lane, float value) {
   wide.set(lane, value);
 }
 template <int W>
 float get_lane(const Wide<W>& wide, int lane) {
-  // Adding zero makes -0 from a lane that rested be the 0 that a narrower kernel would have.
+  // Adding zero turns -0 from a resting lane into the 0 of a narrower kernel.
   return wide[lane] + 0.0f;
 }
 template <int W>
@@ -142,9 +143,9 @@ GYRE_INLINE Vec3W<W> any_perpendicular(Vec3W<W> a) {
   return normalized<W>(cross(a, other));
 }
 
-// The centre of pressure and the patch's mean lever arm. Points weigh by the load they carried; where nothing bore load
-// yet, those that touch count. The share of lever arm: a uniform square's mean distance from its centre is 0.541 of its
-// corners', a uniform segment's half of its ends'. Returns the lever arm.
+// The centre of pressure and the mean lever arm of the patch, which is returned. Points have the load of the
+// last step as weight, or without load their nearness to touch. Factors of the lever arm: a uniform square's
+// mean distance from its centre is 0.541 of its corners', a uniform segment's half of its ends'.
 template <int W>
 GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>& records,
                                    const PointArms<W> (&arms)[kMaxManifoldPoints]) {
@@ -155,7 +156,7 @@ GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>&
   for (int k = 0; k < count; ++k) sum = sum + (weights[k] = block.impulses[k]);
   const auto bears = sum > Wide<W>(kMinLoad);
   if (!all(bears)) {
-    // A point counts less the farther it is above the lowest, in units of the manifold's extent.
+    // The weight of a point falls with its height above the lowest, in units of the manifold's extent.
     Wide<W> extent = zero, nearest = block.points[0].separation;
     for (int k = 1; k < count; ++k) {
       const auto exists = records.exists[k] > zero;
@@ -187,14 +188,14 @@ GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>&
   return select(records.exists[2] > zero, Wide<W>(0.541f), Wide<W>(0.5f)) * arm;
 }
 
-// What a lane's surfaces are like.
+// Surface parameters of the lanes.
 template <int W>
 struct SurfaceLanes {
   Wide<W> static_friction, dynamic_friction, rolling_friction, spinning_friction;
 };
 
-// Effective mass matrix of the friction rows, and its inverse into the block; the twist row is left out where it has no
-// lever arm (all of them where `twists` says so).
+// Effective mass matrix of the friction rows, and its inverse into the block. The twist row is left out
+// without lever arm. Returns K with all rows.
 template <int W>
 GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has_lever, Mask<W>& twists) {
   const Wide<W> zero(0.0f), one(1.0f);
@@ -226,18 +227,18 @@ GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has
   return all_rows;
 }
 
-// The friction rows: their masses and limits. `radius`: the patch's lever arm.
+// Prepares the friction rows: masses and limits. `radius`: the lever arm of the patch.
 template <int W>
 GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>& surface, Wide<W> radius, Wide<W> size) {
   const Wide<W> zero(0.0f), one(1.0f);
   const Wide<W> twist_static = surface.static_friction * radius + surface.spinning_friction;
   const Wide<W> twist_dynamic = surface.dynamic_friction * radius + surface.spinning_friction;
-  // Where one point bears all, the patch is as wide as rounding made it: that is no lever.
+  // Where one point carries all load, the patch is only as wide as rounding and has no lever arm.
   const auto is_patch = (radius > Wide<W>(kMinPatch) * size) | (surface.spinning_friction > zero);
   auto twists = one < zero;
   const Sym3W<W> k = prepare_friction_masses<W>(block, is_patch & (twist_static > zero), twists);
-  // The scale at which a twist of 1 rad/s slips like a metre per second; with it the largest eigenvalue of K is bounded by
-  // its trace, and the inverse of half of it is a safe common step.
+  // The scale at which a twist of 1 rad/s slips like a metre per second. With it the trace bounds the largest
+  // eigenvalue of K, and its inverse is a safe common step.
   const auto slides = surface.dynamic_friction > zero;
   const Wide<W> scale = select(twists & slides, twist_dynamic / select(slides, surface.dynamic_friction, one), radius);
   const Wide<W> bound = max(max(k.xx, k.yy) + absolute(k.xy), keep(twists, scale * scale * k.zz));
@@ -250,15 +251,16 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
   block.inverse_dynamic_friction = inverse_or_zero(surface.dynamic_friction);
   block.inverse_static_twist = keep(twists, inverse_or_zero(twist_static));
   block.inverse_dynamic_twist = keep(twists, inverse_or_zero(twist_dynamic));
-  // Where the patch has shrunk to a point the twist of the last step is far beyond its limit: pulled back as one with the
-  // friction it would take that with it.
+  // Where the patch has shrunk to a point, the twist of the last step is far beyond its limit. Clamped
+  // together with the friction it would take that with it.
   const Wide<W> max_twist = twist_static * normal_load<W>(block);
   block.twist = keep(twists, clamp(block.twist, zero - max_twist, max_twist));
 }
 
-// How soft the lanes' contacts are, and who gives way when overlap is pushed apart: what lies on top, as far as the contact
-// faces up. So a heap is freed from below in few passes, as if the lower body were much heavier (E. Guendelman, R. Bridson,
-// R. Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003, calls it shock propagation).
+// Softness of the contacts, and shares of mobility in pushout: the upper body yields, as far as the contact
+// faces up. So a heap is freed from below in few passes, as if the lower body were much heavier (E.
+// Guendelman, R. Bridson, R. Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003, call it shock
+// propagation).
 template <int W>
 GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W> age, Wide<W> size,
                                   const ContactSettings& settings) {
@@ -275,7 +277,7 @@ GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W>
   block.cold->mobility_b = one + min(rise, zero);
 }
 
-// What friction, twist and rolling begin with.
+// Loads the initial impulses of friction, twist and rolling.
 template <int W>
 GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& records, const SurfaceLanes<W>& surface,
                                   const ContactSettings& settings, Wide<W>& age) {
@@ -291,8 +293,8 @@ GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& 
   gather_columns<4, W>(records.manifold, kManifoldTwist, in);
   block.twist = warm * in[0];
   block.cold->rolling_friction = surface.rolling_friction;
-  // A surface that ceased to brake rolling starts from nothing: otherwise it would depend on the lanes beside it whether
-  // the old impulse acts once more.
+  // A surface that ceased to have rolling friction starts from zero: otherwise the lanes beside it would
+  // decide whether the old impulse acts once more.
   const auto has_rolling = surface.rolling_friction > zero;
   block.cold->rolling = keep<W>(has_rolling, warm * Vec3W<W>{in[1], in[2], in[3]});
   if (any(has_rolling)) block.has_rolling = 1;
@@ -311,7 +313,8 @@ GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_
   inverse_mass = high[2];
 }
 
-// The records of one side's bodies: their motion, and their mass into the block. Returns which lanes have one, as bits.
+// Finds the motion records of one side's bodies and loads their mass into the block. Returns the lanes that
+// have one, as bits.
 template <int W>
 GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t ContactConstraint::* body,
                                     ContactBodies bodies, float* (&motion)[W], Wide<W>& inverse_mass,
@@ -319,7 +322,7 @@ GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t 
   const float* inertia[W];
   std::uint32_t has = 0;
   for (int lane = 0; lane < W; ++lane) {
-    // Never written: who has no record is not pushed.
+    // Never written: a missing record is not movable.
     motion[lane] = const_cast<float*>(kNoRecord);
     inertia[lane] = kNoRecord;
     if ((records.lanes >> lane & 1u) == 0) continue;
@@ -333,7 +336,7 @@ GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t 
   return static_cast<std::uint16_t>(has);
 }
 
-// Where the velocities of the bodies that are pushed go.
+// Finds the records to which velocities of movable bodies are written.
 template <int W>
 GYRE_INLINE void find_write_records(std::uint32_t pushes, float* const (&read)[W], float* nowhere, float* (&write)[W]) {
   for (int lane = 0; lane < W; ++lane)
@@ -347,7 +350,7 @@ GYRE_INLINE void prepare_bodies(ContactBlock<W>& block, const LaneRecords<W>& re
   Sym3W<W>& b = block.inverse_inertia_b;
   block.has_a = find_side<W>(records, &ContactConstraint::body_a, bodies, block.read_a, block.inverse_mass_a, a);
   block.has_b = find_side<W>(records, &ContactConstraint::body_b, bodies, block.read_b, block.inverse_mass_b, b);
-  // Whatever pushes a body turns or moves it by a diagonal element.
+  // Any impulse moves or rotates a body by a diagonal element.
   block.movable_a =
       block.has_a & lane_bits<W>((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
   block.movable_b =
@@ -356,8 +359,8 @@ GYRE_INLINE void prepare_bodies(ContactBlock<W>& block, const LaneRecords<W>& re
   find_write_records<W>(block.movable_b, block.read_b, block.cold->nowhere, block.cold->write_b);
 }
 
-// Which body's centre the arms are measured from, and by how much they differ on the other. From the nearer one: the other
-// may be large or far away, and its arms rounded. What nothing moves has no arms at all.
+// Chooses the body from whose centre arms are measured, and their difference for the other. It is the nearer
+// one: the other may be large or far away, and its arms rounded. Static bodies have no arms.
 template <int W>
 GYRE_INLINE Mask<W> choose_arm_origin(ContactBlock<W>& block, const PointArms<W>& first) {
   const Wide<W> zero(0.0f);
@@ -408,7 +411,7 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   block.pushout_speed = in[1];
   gather_columns<4, W>(records.constraint, kConstraintVelocity, in);
   const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
-  // Not -0: what does not move by itself is left out, and that must be the same.
+  // Not -0: a surface at rest is left out, and that must give the same bits.
   block.cold->surface_1 = dot(surface_velocity, block.tangent_1) + zero;
   block.cold->surface_2 = dot(surface_velocity, block.tangent_2) + zero;
   block.has_surface_velocity = any((block.cold->surface_1 != zero) | (block.cold->surface_2 != zero)) ? 1 : 0;
@@ -439,7 +442,7 @@ void prepare_blocks(void* memory, void* cold_blocks, int begin, int end, const C
 
 // -------------------------------------------------------------------------------------------------------------- finish
 
-// Impulses back into the manifolds; the manifolds' age, and what their points are used to.
+// Stores impulses in the manifolds, and updates age and mean impulses.
 template <int W>
 void finish_block(const ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
                   const ContactSettings& settings) {
@@ -448,13 +451,13 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
   Wide<W> row[4];
   gather_columns<4, W>(records.manifold, kManifoldFriction, row);
-  // Of the whole step: what bore nothing just as it ended is no reason to forget all.
+  // The load of the whole step: a point unloaded just at its end keeps its history.
   Wide<W> load = zero;
   for (int k = 0; k < block.point_count; ++k) load = max(load, block.totals[k]);
   const Wide<W> age = keep(load > zero, row[0] + Wide<W>(settings.step));
   const Wide<W> mean = min(max(age, Wide<W>(kShortestMean)), Wide<W>(kLongestMean));
   const Wide<W> gain = min(Wide<W>(settings.step) / mean, one);
-  // Adding zero makes -0 from a lane that rested be the 0 that a narrower kernel would have.
+  // Adding zero turns -0 from a resting lane into the 0 of a narrower kernel.
   const Vec3W<W> none{zero, zero, zero};
   const Vec3W<W> friction = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2 + none;
   const Vec3W<W> total = block.total_1 * block.tangent_1 + block.total_2 * block.tangent_2 + none;
@@ -504,7 +507,7 @@ void read_block_impulse(const void* memory, int index, int lane, ContactImpulse&
 template <int W>
 void write_block_impulse(void* memory, int index, int lane, const ContactImpulse& impulse) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
-  // The sums over the step count what stands in the end.
+  // The sums over the step count the final impulse.
   const auto replace = [lane](Wide<W>& present, Wide<W>& total, float value) {
     set_lane(total, lane, get_lane(total, lane) + (value - get_lane(present, lane)));
     set_lane(present, lane, value);

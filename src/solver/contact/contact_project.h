@@ -1,9 +1,9 @@
-// Pushing apart what overlaps, once a step, after the bodies have moved. Places change, velocities do not: no energy comes
-// of it, however deep the overlap. Part of the kernels (one template for every width).
+// Pushout of penetration, once a step, after the bodies have moved. Positions change, velocities do not, so
+// no energy results, however deep the penetration. Part of the kernels (one template for every width).
 //
-// Each manifold asks for a share of its overlap beyond the slop back, by displacements along the least-mass direction
-// M^-1 J^T x with x >= 0 (nonlinear projected Gauss-Seidel: J. Jansson, J. Vergeest, 2003; E. Catto, "Iterative Dynamics",
-// 2005), whereby the body on top is the one that gives way (prepare_softness).
+// Each manifold removes a share of its penetration beyond the slop by displacements M^-1 J^T x with x >= 0
+// (nonlinear projected Gauss-Seidel: J. Jansson, J. Vergeest, 2003; E. Catto, "Iterative Dynamics", 2005).
+// The upper body yields (prepare_softness).
 #pragma once
 
 #include "solver/contact/contact_kernel.h"
@@ -11,10 +11,10 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Projected sweeps over the points of a manifold.
+// Projected iterations over the points of a manifold.
 constexpr int kProjectionIterations = 8;
 
-// Displacements so far, without those of bodies that nothing pushes: their records hold velocities.
+// Displacements so far, without those of immovable bodies, whose records hold velocities.
 template <int W, bool kHasA>
 GYRE_INLINE PairMotion<W, kHasA> displacements(const ContactBlock<W>& block) {
   PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
@@ -27,7 +27,8 @@ GYRE_INLINE PairMotion<W, kHasA> displacements(const ContactBlock<W>& block) {
   return pair;
 }
 
-// What a unit push at each point does to the two bodies (A's part only where there is one), and to the separations of the points.
+// Effect of a unit impulse at each point on the two bodies (on A only if there is one), and on the
+// separations of the points.
 template <int W>
 struct PushResponse {
   Wide<W> inverse_mass_a, inverse_mass_b;
@@ -60,7 +61,7 @@ GYRE_INLINE PushResponse<W> push_response(const ContactBlock<W>& block) {
   return response;
 }
 
-// The way of the points so far in the step, and what was pushed already.
+// Displacement of the points in the step so far, with the present pushout.
 template <int W, bool kHasA>
 GYRE_INLINE NormalMotion<W> displacements_so_far(const ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
   const BodyDisplacement<W> b(block.read_b);
@@ -74,7 +75,7 @@ GYRE_INLINE NormalMotion<W> displacements_so_far(const ContactBlock<W>& block, c
   }
 }
 
-// How far each point wants to be pushed; at least minus the way that it may close. False if no lane overlaps.
+// The pushout of each point, or the negative distance by which it may close. False if no lane penetrates.
 template <int W, bool kHasA>
 GYRE_INLINE bool find_pushouts(const ContactBlock<W>& block, const PairMotion<W, kHasA>& pair, float step,
                                Wide<W>* pushouts) {
@@ -118,7 +119,7 @@ GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
       unchanged = unchanged & (now == pushes[i]);
       pushes[i] = now;
     }
-    // What all of them left as it was the next sweep would not change either.
+    // If an iteration changes nothing, the next would not either.
     if (all(unchanged)) break;
   }
   Wide<W> total = zero;

@@ -4,10 +4,10 @@ namespace gyre {
 
 namespace {
 
-constexpr int kPasses = 24;       // over all contacts, until none is closing
+constexpr int kPasses = 24;           // over all contacts, until none closes
 constexpr int kPointIterations = 16;  // over the points of one manifold
 
-// The two bodies of a contact, with their velocities while a blow is worked out.
+// The two bodies of a contact during an impact.
 struct Bodies {
   BodyMotion* a;
   BodyMotion* b;
@@ -51,7 +51,7 @@ struct Bodies {
   }
 };
 
-// Meets the targets of all struck points together: impulses >= 0, speed >= target, one of the two equal.
+// Solves for the targets of all hit points together: impulses >= 0, speed >= target, one of the two equal.
 void meet_targets(ImpactContact& contact, Bodies& bodies) {
   for (ImpactPoint& point : contact.points) point.impulse = 0.0f;
   for (int iteration = 0; iteration < kPointIterations; ++iteration) {
@@ -67,12 +67,12 @@ void meet_targets(ImpactContact& contact, Bodies& bodies) {
       change = max(change, absolute(next - point.impulse) * k_inverse);
       point.impulse = next;
     }
-    // Settled to a float's precision of the speeds at hand.
+    // Converged to the precision of floats.
     if (change <= 1.0e-6f * absolute(contact.points[0].target)) break;
   }
 }
 
-// Friction of the blow at its centre of pressure.
+// Friction of the impact at its centre of pressure.
 void apply_friction(ImpactContact& contact, Bodies& bodies) {
   float total = 0.0f;
   Vec3 from_a, from_b;
@@ -97,15 +97,15 @@ void apply_friction(ImpactContact& contact, Bodies& bodies) {
   bodies.apply_impulse(-min(speed / k_inverse, contact.friction * total) * direction, from_a, from_b);
 }
 
-// Whether the point meets within the sub-step and, if so, what speed it is to leave with.
+// True if the point touches within the sub-step. Sets its separating speed.
 bool apply_point_restitution(ImpactPoint& point, const ImpactContact& contact, const Bodies& bodies,
                              const ImpactSettings& settings) {
   const float closing = -dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
   if (!(closing > settings.threshold)) return false;
-  // Below the surface (a contact that was seen too late) the way back up counts like the way down.
+  // Below the surface (a contact that was found too late) the way up counts like the way down.
   const float separation = point.separation + dot(bodies.displacement(point.from_a, point.from_b), contact.normal);
   if (closing * settings.substep < separation) return false;
-  const float start = closing - point.force_speed;  // u: before this sub-step's forces
+  const float start = closing - point.force_speed;  // u: before the forces of this sub-step
   const float half_force_speed = 0.5f * point.force_speed;
   const float fall = 2.0f * point.force_speed / settings.substep * separation;  // 2 a s
   const float energy = square(start + half_force_speed) + fall;
@@ -154,7 +154,7 @@ void record_approach(std::span<ImpactContact> contacts, ContactBodies bodies) {
 
 void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
                        const ImpactSettings& settings) {
-  // What the forces added: closing speed now less closing speed before.
+  // Effect of the forces: closing speed now minus closing speed before.
   for (ImpactContact& contact : contacts) {
     const Bodies pair(contact, bodies);
     for (int k = 0; k < contact.count; ++k) {

@@ -1,12 +1,16 @@
-// Takes the points of a contact along within the step: what rolls touches elsewhere in each sub-step, and what it weighs on
-// follows (rigid/solve/rolling_contacts.h says where). The lanes of a block that roll side by side. Part of the kernels.
+// Moves the points of a contact within the step: a rolling body touches elsewhere in each sub-step, and its
+// load follows (rigid/solve/rolling_contacts.h says where). The moving lanes of a block are handled side by
+// side. Part of the kernels.
 //
-// The impulses that stand go on acting, but at the new place: what they turn changes by
-//   I'^-1 (r' x p) - I^-1 (r x p)
-// without which they would turn the bodies as if the contact had stayed behind, or what friction was given at one end of a bone would be
-// taken back at the other, once the load lies there. They act where the contact is as the sub-step
-// begins, but the speeds that they bring about are those of its middle: so what the contact's own motion takes at the one end
-// it gives back at the other, as in the leapfrog scheme. With one arm for both, rolling would lose energy to the first order.
+// The accumulated impulses keep acting, but at the new points. Their angular effect changes by
+//
+// I'^-1 (r' x p) - I^-1 (r x p).
+//
+// Without this change they would act on the old contact, and friction given at one end of a bone would be
+// removed at the other, once the load lies there. Impulses act at the points of the beginning of the
+// sub-step, but speeds are measured at those of its middle. So the motion of the contact takes at one end
+// what it gives at the other, as in the leapfrog scheme; with one arm for both, rolling would lose energy to
+// first order.
 #pragma once
 
 #include "solver/contact/contact_prepare.h"
@@ -16,7 +20,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Where the arms lie in AdvancedArms, in floats.
+// Offsets of the arms in AdvancedArms, in floats.
 constexpr int kArmsMiddle = 0, kArmsBefore = 24, kArmsNow = 48, kArmsSeparation = 72, kArmsShares = 76;
 static_assert(offsetof(AdvancedArms, before) == 4 * kArmsBefore &&
               offsetof(AdvancedArms, now) == 4 * kArmsNow);
@@ -25,15 +29,15 @@ static_assert(offsetof(AdvancedArms, middle) == 0 &&
 static_assert(offsetof(AdvancedArms, friction_shares) == 4 * kArmsShares);
 static_assert(sizeof(PointArmPairs) == 4 * kArmsBefore && offsetof(PointArmPairs, from_b) == 48);
 
-// The lanes of a block that are followed. The others read zeros, and what is worked out for them is not kept.
+// The moving lanes of a block. Other lanes read zeros, and their results are discarded.
 template <int W>
 struct AdvancedArmsLanes {
   const float* arms[W];
   const float* inverse_a[W];
   const float* inverse_b[W];
-  std::uint32_t bits = 0, has_a = 0, has_b = 0;  // has_a: whose inertia is known
+  std::uint32_t bits = 0, has_a = 0, has_b = 0;  // has_a: lanes whose inertia is known
   Wide<W> counts{0.0f};
-  int point_count = 0;  // the most of any
+  int point_count = 0;  // the largest of any lane
 
   GYRE_INLINE AdvancedArmsLanes(const AdvancedArmsLane* lanes, int count) {
     alignas(64) static constexpr float kNoArms[sizeof(AdvancedArms) / sizeof(float)] = {};
@@ -70,7 +74,8 @@ GYRE_INLINE PointArms<W> gather_arms(const AdvancedArmsLanes<W>& lanes, int set,
   return {gather_vector<W>(lanes.arms, set + 3 * k), gather_vector<W>(lanes.arms, set + 12 + 3 * k)};
 }
 
-// How the load is shared among the points: friction acts where the load does, or at the lowest point where nothing bears any.
+// Shares of the load among the points: friction acts where the load does, or at the lowest point without
+// load.
 template <int W>
 struct LoadShares {
   Mask<W> exists[kMaxManifoldPoints];
@@ -97,7 +102,7 @@ struct LoadShares {
   }
 };
 
-// By which shares the friction that stands came to act; as the step begins it acts where the load does.
+// Shares with which the accumulated friction was applied; at the beginning of a step those of the load.
 template <int W>
 GYRE_INLINE void previous_shares(const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& now,
                                Wide<W> (&before)[kMaxManifoldPoints]) {
@@ -108,7 +113,7 @@ GYRE_INLINE void previous_shares(const AdvancedArmsLanes<W>& lanes, const LoadSh
     before[k] = select(sum > Wide<W>(0.0f), recorded[k], now.shares[k]);
 }
 
-// Where friction acts, added up point by point.
+// The arm of friction, accumulated point by point.
 template <int W>
 struct FrictionArms {
   Vec3W<W> from_a{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)}, from_b = from_a;
@@ -119,7 +124,7 @@ struct FrictionArms {
   }
 };
 
-// How the impulses that stand turn the two bodies about their centres of mass (N m s) with these arms.
+// Angular impulses of the accumulated impulses about the centres of mass (N m s) with these arms.
 template <int W>
 struct LaneTorques {
   Vec3W<W> a, b;
@@ -150,7 +155,7 @@ GYRE_INLINE void add_spin(float* record, int lane, const Vec3W<W>& change) {
   spin[2] += change.z[lane];
 }
 
-// What decides the masses, for all lanes of a block.
+// Copies the data that decide the masses.
 template <int W>
 GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
   to.has_a = from.has_a, to.has_b = from.has_b;
@@ -158,7 +163,7 @@ GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
   to.inverse_mass_a = from.inverse_mass_a, to.inverse_mass_b = from.inverse_mass_b;
 }
 
-// Takes over what became of the lanes that are followed.
+// Writes the moving lanes back into the block.
 template <int W>
 GYRE_INLINE void write_back(ContactBlock<W>& block, const ContactBlock<W>& updated,
                           const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& load) {
@@ -203,8 +208,8 @@ void advance_points(void* memory, int index, const AdvancedArmsLane* moving, int
   };
   refresh(lanes.has_a, gather_tensor<W>(lanes.inverse_a), block.inverse_inertia_a);
   refresh(lanes.has_b, gather_tensor<W>(lanes.inverse_b), block.inverse_inertia_b);
-  const Vec3W<W> change_a = before_a - block.inverse_inertia_a * now.a,  // a gets the opposite
-                 change_b = block.inverse_inertia_b * now.b - before_b;
+  const Vec3W<W> change_a = before_a - block.inverse_inertia_a * now.a,  // A gets the opposite
+      change_b = block.inverse_inertia_b * now.b - before_b;
   for (int i = 0; i < count; ++i) {
     const int lane = moving[i].lane;
     add_spin<W>(block.cold->write_a[lane], lane, change_a);

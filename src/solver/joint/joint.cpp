@@ -12,10 +12,10 @@ Quat orientation_of(std::int32_t body, const JointBodies& bodies) {
   return body == kNoBody ? Quat{} : bodies.orientation[body];
 }
 
-// How far the anchors part in h by the turning of their arms and of the slide, over h: what the rows, being linear, do not
-// see. Asking the rows for the opposite makes the end of the sub-step, not its beginning, meet the joint, as in SHAKE
-// (J.-P. Ryckaert, G. Ciccotti, H. Berendsen, 1977); with the rows taken anew before velocities relax (RATTLE: H. Andersen,
-// 1983) a swinging pendulum keeps its energy.
+// The second-order bias of a joint: how far the anchors part in h by the rotation of their arms and of the
+// slide, over h, beyond the linear rows. With its opposite as bias, the end of the sub-step instead of its
+// beginning meets the joint, as in SHAKE (J.-P. Ryckaert, G. Ciccotti, H. Berendsen, 1977). Since relaxation
+// takes the rows at the new pose (RATTLE: H. Andersen, 1983), a swinging pendulum keeps its energy.
 Vec3 second_order_bias_of(const JointPair& pair, const JointConstraint& work, bool slides, float h) {
   Vec3 second_order_bias = cross(pair.angular_b, cross(pair.angular_b, work.from_b)) -
                            cross(pair.angular_a, cross(pair.angular_a, work.from_a));
@@ -28,7 +28,7 @@ void prepare_ball(const JointPair& pair, JointConstraint& work) {
   work.linear_mass = inverse(point_matrix(pair, work.from_a, work.from_b));
 }
 
-// The axis of a hinge, slider or distance joint, if anything acts along or about it.
+// The axis of a hinge, slider or distance joint, if anything acts on it.
 AxisConstraint* single_axis(JointConstraint& work) { return work.axes.empty() ? nullptr : &work.axes[0]; }
 
 void prepare_line_axis(JointConstraint& work, const JointPair& pair, const JointSettings& settings) {
@@ -52,7 +52,7 @@ void prepare_hinge(JointRecord& joint, const JointPair& pair, JointConstraint& w
     const Mat3 k = to_matrix(pair.inverse_inertia_a()) + to_matrix(pair.inverse_inertia_b());
     work.angular_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
   }
-  // The twist of b's frame in a's, unwrapped by staying near the last value.
+  // The twist of b's frame in a's, unwrapped to stay near the last value.
   const Quat twist = conjugate(work.frame_a) * work.frame_b;
   work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), joint.position);
   AxisConstraint* const x = single_axis(work);
@@ -69,7 +69,7 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointConstraint& 
   work.perpendicular_1 = axes_a.y;
   work.perpendicular_2 = axes_a.z;
   work.position = joint.position = dot(work.error, work.axis);
-  // The rows act at b's anchor: the arm of a reaches to where b's anchor is now.
+  // The rows act at b's anchor, so the arm of a ends there.
   work.from_a += work.error;
   work.free_offset = work.position * work.axis;
   work.error -= work.free_offset;
@@ -139,7 +139,7 @@ void scale_impulses(JointAxisRecord& axis, float scale) {
   axis.total = 0.0f;
 }
 
-// What acts no longer gives nothing: its last impulse must not go on.
+// Clears impulses of parts that no longer act.
 void clear_inactive_impulses(JointAxisRecord& axis) {
   if (!(axis.motor_force > 0.0f)) axis.motor_impulse = 0.0f;
   if (!has_spring(axis)) axis.spring_impulse = 0.0f;
@@ -152,7 +152,7 @@ void clear_inactive_impulses(JointDetail& detail) {
   if (!(detail.friction > 0.0f)) detail.friction_impulse = {};
 }
 
-// An axis on which something acts.
+// Prepares an axis on which something acts.
 void begin_axis(AxisConstraint& x, JointAxis index, const JointAxisRecord& axis, float warm_scale) {
   x = {};
   x.axis = axis;
@@ -162,7 +162,7 @@ void begin_axis(AxisConstraint& x, JointAxis index, const JointAxisRecord& axis,
   x.has_low = x.has_high = axis.motion == AxisMotion::limited;
 }
 
-// The axes on which anything acts.
+// Prepares all axes on which anything acts.
 void begin_axes(const JointRecord& joint, JointConstraint& work, float warm_scale, Arena& arena) {
   if (stores_axis_in_record(joint.kind)) {
     const JointAxis index = joint.kind == JointKind::hinge ? JointAxis::angular_x : JointAxis::linear_x;

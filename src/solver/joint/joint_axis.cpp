@@ -7,16 +7,16 @@ namespace gyre {
 
 namespace {
 
-// The share of a constant push that arrives as speed, of one sub-step h with 2 d h = decay.
+// Share of a constant force that arrives as speed in a sub-step h with 2 d h = decay.
 double constant_force_share(double decay) { return decay > 1.0e-6 ? (1.0 - exp(-decay)) / decay : 1.0 - 0.5 * decay; }
 
 // Coefficients of a spring row for one sub-step.
 //
-// As long as the sub-step resolves the spring (omega h <= 1) kick and drift together have exactly the eigenvalues of the
-// continuous oscillator: det = exp(-2 zeta omega h), trace = 2 exp(-zeta omega h) cos(omega_d h). An undamped spring then keeps
-// its amplitude for ever and its period exactly. What else changes the speed in the sub-step (weight, contacts, other joints)
-// counts as a constant load, by as much as puts the rest where that load and the spring are equal. Faster springs are
-// implicit: stable at any stiffness.
+// As long as the sub-step resolves the spring (omega h <= 1), semi-implicit Euler has exactly the eigenvalues
+// of the continuous oscillator: det = exp(-2 zeta omega h), trace = 2 exp(-zeta omega h) cos(omega_d h). An
+// undamped spring then keeps its amplitude for ever and its period exactly. Other changes of speed in the
+// sub-step (weight, contacts, other joints) count as a constant load, scaled so that the rest position is
+// where that load and the spring balance. Faster springs are implicit: stable at any stiffness.
 SpringStep make_spring(const JointAxisRecord& axis, float effective_mass, float substep) {
   SpringStep spring;
   const double h = double(substep), mass = double(effective_mass);
@@ -25,7 +25,7 @@ SpringStep make_spring(const JointAxisRecord& axis, float effective_mass, float 
   const double decay = 0.5 * double(axis.damping) / mass;  // zeta omega
   spring.is_implicit = omega * h > 1.0 || decay * h > 1.0;
   if (spring.is_implicit) {
-    // Stiffness and damping over the sub-step, both taken at its end: J = -h (k (x + h v') + c v').
+    // Stiffness and damping at the end of the sub-step: J = -h (k (x + h v') + c v').
     const double a2 = h * (h * omega * omega + 2.0 * decay);
     const double a3 = 1.0 / (1.0 + a2);
     spring.implicit = {float(h * omega * omega / a2), float(a2 * a3), float(a3)};
@@ -78,7 +78,7 @@ float friction_change(const AxisConstraint& x, float speed, float substep) {
   return clamp(x.axis.friction_impulse - x.mass * speed, -max_impulse, max_impulse) - x.axis.friction_impulse;
 }
 
-// A stop that gives way does so once it is reached, and only where errors are taken back.
+// The change of a limit's impulse. A soft limit acts once it is reached, and only in soft solves.
 float limit_change(const AxisConstraint& x, float speed, float gap, float impulse,
                  const JointSettings& settings, bool soft) {
   if (x.axis.limit_frequency <= 0.0f)
@@ -140,13 +140,14 @@ void prepare_axis_mass(AxisConstraint& x, float mass, const JointSettings& setti
 
 namespace {
 
-// Calls push(impulse) for each that changes, and see() for what the row sees then.
+// Calls apply(impulse) for each change, and measure() for the speed along the row.
 template <class Measure, class Apply>
 void solve_axis_by(AxisConstraint& x, const JointSettings& settings, bool soft, Measure&& measure, Apply&& apply) {
   if (!(x.mass > 0.0f)) return;
   JointAxisRecord& axis = x.axis;
   const float second_order_bias = soft ? x.second_order_bias : 0.0f;
-  // Most limits are far away and most frictions hold what rests: what changes nothing is not pushed, and the speed not asked for again.
+  // Most limits are far away and most friction holds, so a zero change is not applied and the speed not
+  // measured again.
   float speed_now = 0.0f;
   bool is_known = false;
   const auto change = [&](float& impulse, float by, float sign) {

@@ -6,7 +6,7 @@ namespace gyre {
 
 namespace {
 
-// The change of an impulse that brings `speed` to what is asked, as far as `most` allows.
+// The change of an impulse that brings `speed` to its target, within a ball of radius `max_impulse`.
 Vec3 drive_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, const Softness& s, float max_impulse) {
   const Vec3 target_impulse =
       impulse - s.mass_scale * (mass * (speed + s.bias_rate * error)) - s.impulse_scale * impulse;

@@ -1,5 +1,5 @@
-// Drives of a joint to a pose, and friction against all of its turning: three rows at once, each impulse held within a
-// ball rather than a box, so that no direction is stronger than another.
+// Pose drives of a joint, and friction against all of its rotation. Three rows are solved at once. Their
+// impulse is bounded by a ball instead of a box, so no direction is stronger than another.
 #pragma once
 
 #include "solver/joint/joint.h"

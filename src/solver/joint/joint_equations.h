@@ -1,5 +1,6 @@
-// The rows of a joint that hold always, one by one, and where their impulses are kept: for linkages (solver/articulation/articulation.cpp), which
-// lay them side by side, and for the solvers that see all of an island as rows (solver/rows/joint_rows.cpp).
+// The equations of a joint one by one, and access to their accumulated impulses. Articulations
+// (solver/articulation/articulation.cpp) and the solvers of whole islands (solver/rows/joint_rows.cpp) use
+// them.
 #pragma once
 
 #include "solver/joint/joint_blocks.h"
@@ -7,9 +8,9 @@
 
 namespace gyre {
 
-// It sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
+// Its speed is direction . (v_b - v_a) + angular_b . w_b - angular_a . w_a.
 struct JointEquation {
-  Vec3 direction;  // direction of a force; zero for a turning row
+  Vec3 direction;  // of a force; zero for an angular row
   Vec3 angular_a, angular_b;
 };
 struct JointEquations {
@@ -17,7 +18,7 @@ struct JointEquations {
   JointEquation rows[kJointAxisCount];
 };
 
-// Calls add(push, arm_a, arm_b) for each of them.
+// Calls add(direction, angular_a, angular_b) for each equation.
 template <class Add>
 inline void list_equations(const JointRecord& joint, const JointConstraint& work, Add&& add) {
   constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -58,7 +59,7 @@ inline void make_equations(JointEquations& node, const JointRecord& joint, const
 
 inline bool is_angular(const JointEquation& row) { return row.direction == Vec3{}; }
 
-// The joint's accumulated impulses in terms of its rows, and back.
+// Conversion between the accumulated impulses of the joint and those of its equations.
 inline float accumulated_impulse(const JointRecord& joint, const JointConstraint& work, const JointEquation& row,
                           int i) {
   if (work.rows != nullptr) return work.detail->row_impulses[i];

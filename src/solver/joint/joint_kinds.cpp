@@ -8,7 +8,8 @@ namespace gyre {
 
 namespace {
 
-// Near what the twist of a cone is told: the nearer way round to its stops, if these are less than a turn apart; otherwise as it was last.
+// The angle near which the twist of a cone is unwrapped: the middle of its limits if these are less than a
+// turn apart, else the last twist.
 float twist_reference(const JointRecord& joint, const JointDetail* detail) {
   if (detail == nullptr) return joint.position;
   const JointAxisRecord& axis = detail->axes[int(JointAxis::angular_x)];
@@ -17,19 +18,20 @@ float twist_reference(const JointRecord& joint, const JointDetail* detail) {
   return is_near ? 0.5f * (l.low + l.high) : joint.position;
 }
 
-// 1 + cos(swing): how well the twist of a cone is told from its swing.
+// 1 + cos(swing): near zero the swing leaves the twist undefined.
 float twist_certainty(Quat frame_a, Quat frame_b) {
   return 1.0f + dot(rotate(frame_a, {1, 0, 0}), rotate(frame_b, {1, 0, 0}));
 }
 
 // ------------------------------------------------------------------------------------------------------ Cardan angles
 
-// The rotation from a's frame to b's as turns about x, then y, then z: the axes about which they turn, world, and the angles.
+// The rotation from a's frame to b's as rotations about x, then y, then z: their axes (world) and angles.
 struct Cardan {
   Vec3 axes[3];
   float angles[3];  // y within a quarter turn
 
-  // d angle / dt = dual . (w_b - w_a): across the other two axes. Where x and z nearly fall together it stays finite.
+  // d angle / dt = dual . (w_b - w_a); the dual vector is normal to the other two axes. It stays finite where
+  // x and z nearly coincide.
   Vec3 dual(int i) const {
     constexpr float kMinDot = 0.05f;
     const Vec3 across = cross(axes[(i + 1) % 3], axes[(i + 2) % 3]);
@@ -61,7 +63,7 @@ JointRow point_row(const JointConstraint& work, Vec3 direction, float error) {
 }
 JointRow angular_row(Vec3 axis, float error) { return {{}, axis, axis, error}; }
 
-// The error of the locked angles as a rotation, to first order.
+// The error of the locked angles as a rotation vector, to first order.
 Vec3 locked_rotation_error(const JointDetail& detail, const Cardan& c, const Vec3 (&axes)[3]) {
   Vec3 error;
   for (int i = 0; i < 3; ++i) {
@@ -72,7 +74,8 @@ Vec3 locked_rotation_error(const JointDetail& detail, const Cardan& c, const Vec
   return error;
 }
 
-// Rows that hold the locked angles: across the axes that are free. An orthonormal basis that turns with the bodies.
+// Adds rows for the locked angles, normal to the free axes. They are an orthonormal basis that rotates with
+// the bodies.
 void add_locked_rotation_rows(const JointDetail& detail, const JointConstraint& work, const Cardan& c,
                       JointRows& rows) {
   int free_axes[3], free_count = 0;
@@ -107,13 +110,13 @@ AxisRow point_axis(const JointConstraint& work, Vec3 direction) {
   return {direction, direction, cross(work.from_a, direction), cross(work.from_b, direction)};
 }
 
-// An angle that a float tells within a turn, told over many.
+// An angle known within a turn, unwrapped in double.
 double unwrap_in_double(float angle, float near) {
   return double(angle) +
          2.0 * kPiDouble * std::floor((double(near) - double(angle)) / (2.0 * kPiDouble) + 0.5);
 }
 
-// How far a frame has turned about its own x since it stood as `reference`.
+// The rotation of a frame about its own x since it was `reference`.
 double rotation_about_x(Quat reference, Quat frame, float near) {
   const Quat rotation = conjugate(reference) * frame;
   return unwrap_in_double(2.0f * atan2(rotation.x, rotation.w), near);
@@ -135,12 +138,12 @@ float rack_error(const JointDetail& detail, const RowPose& pose) {
 
 PathCurve curve_of(const JointConstraint& work) { return {work.path, work.detail->path_closed}; }
 
-// What a curve is at a place, in the world.
+// The frame of a curve at a parameter.
 struct PathFrame {
-  Mat3 axes;      // x along it
-  Quat rotation;      // joint's frame on a from the curve's
+  Mat3 axes;      // x along the curve
+  Quat rotation;  // joint's frame on a from the curve's frame
   Vec3 position;  // in the joint's frame on a
-  Vec3 bending;   // rad/m: how its frame turns along it, world
+  Vec3 bending;   // rad/m: rotation of the frame along the curve, world
 };
 PathFrame path_frame_at(const JointConstraint& work, float parameter, Quat frame_a) {
   const PathCurve curve = curve_of(work);
@@ -163,10 +166,10 @@ Vec3 path_rotation_error(const JointDetail& detail, const RowPose& pose, const P
 
 // -------------------------------------------------------------------------------------------------------------- cones
 
-// The stop of a swing: where it is, and the axis about which it is nearest.
+// The swing limit of a cone: the distance to it, and the axis about which it is nearest.
 struct SwingLimit {
   float gap = 1.0e9f;  // rad
-  Vec3 axis;           // world; turning about it brings the stop nearer
+  Vec3 axis;           // world; rotation about it approaches the limit
 };
 SwingLimit find_swing_limit(const JointDetail& detail, Quat frame_a, Quat frame_b) {
   const Mat3 a = to_matrix(frame_a);
@@ -179,7 +182,8 @@ SwingLimit find_swing_limit(const JointDetail& detail, Quat frame_a, Quat frame_
   const Vec3 along = about / sine;  // the axis of the swing, in a's y z plane
   const float cy = dot(along, a.y), cz = dot(along, a.z);
   const float ly = max(detail.swing_y, kMinSwingLimit), lz = max(detail.swing_z, kMinSwingLimit);
-  // f = |swing / limits| = 1 at the stop; its change with the angle, and with the direction times the angle.
+  // f = |swing / limits| = 1 at the limit; its derivatives by the angle, and by the direction times the
+  // angle.
   const float share = std::sqrt(square(cy / ly) + square(cz / lz));
   const float across = cy * cz * (1.0f / square(lz) - 1.0f / square(ly)) / share;
   const Vec3 raw = share * along + (across * angle / sine) * cross(x_b, along);
@@ -280,7 +284,7 @@ void prepare_rack(JointRecord& joint, JointConstraint& work, const JointPair& pa
   const Vec3 along = rotate(work.frame_b, {1, 0, 0}), about = rotate(work.frame_a, {1, 0, 0});
   JointRow row;
   row.error = rack_error(detail, {{}, center_offset, work.frame_a, work.frame_b});
-  // The teeth meet at the rim: where it moves along the rack.
+  // The teeth meet at the rim, where it moves along the rack.
   const Vec3 rim = detail.ratio * cross(along, about);
   row.direction = along;
   row.angular_a = detail.ratio * about;
@@ -394,7 +398,7 @@ void measure_rows(const JointRecord& joint, const JointConstraint& work, const R
   for (int i = 0; i < 3; ++i) {
     if (is_locked(detail, i)) errors[n++] = dot(pose.anchor_offset, linear[i]) - detail.axes[i].locked_position;
   }
-  // Along the axes of the rows as they are, so that the rows tell how the error changes.
+  // Errors along the axes of the present rows, so that they match the linear rows.
   const Cardan now = cardan_of(work.frame_a, work.frame_b), later = cardan_of(pose.frame_a, pose.frame_b);
   const Vec3 rotation = locked_rotation_error(detail, later, now.axes);
   for (; n < rows.count; ++n) errors[n] = dot(rows.rows[n].angular_a, rotation);

@@ -1,4 +1,4 @@
-// All kernels of one CPU target, as the table that a kernel file exports.
+// The table of all kernels of one CPU target; each kernel file exports one.
 #pragma once
 
 #include "solver/articulation/ball_kernel.h"

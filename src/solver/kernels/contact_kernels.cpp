@@ -1,4 +1,4 @@
-// Chooses the contact kernels for this machine when a world is made.
+// Chooses the kernels for this machine when a world is made.
 #include "base/processor.h"
 #include "solver/contact/contact_block.h"
 
@@ -16,8 +16,8 @@ const ContactKernels& select_contact_kernels(int width) {
   const int lanes = lanes_for(width);
 #if defined(__x86_64__)
   if (lanes >= 16) return kContactKernels_avx512;
-  // Eight lanes with the instructions and the twice as many registers of a processor that has sixteen. (Asked for, eight are those of any
-  // with AVX2.)
+  // Eight lanes with the instructions and registers of a processor that has sixteen. (If the user sets a
+  // width of eight, it is that of any AVX2.)
   if (width == 0 && lanes == 8 && max_lanes() == 16) return kContactKernels_avx512vl;
   if (lanes >= 8) return kContactKernels_avx2;
 #endif
@@ -29,7 +29,8 @@ const ContactKernels& select_contact_kernels(int width) {
 
 const ContactKernels& narrower_kernels(const ContactKernels& kernels) {
 #if defined(__x86_64__)
-  // Eight lanes keep half as much, and turn bodies in one register of doubles for two. (Four have other instructions.)
+  // Eight lanes use half as much memory, and two bodies fit in one register of doubles. (Four lanes have
+  // other instructions.)
   if (&kernels == &kContactKernels_avx512) return kContactKernels_avx512vl;
 #endif
   return kernels;

@@ -1,4 +1,4 @@
-// The contact kernels for one kind of CPU, in a namespace of its own so that the linker can never mix them with others'.
+// The kernels for one CPU target, in a namespace of its own so that the linker never mixes targets.
 #define GYRE_TARGET_NAMESPACE target_avx2
 #include "solver/kernels/contact_kernel_table.h"
 

@@ -1,8 +1,9 @@
-// The contact kernels for one kind of CPU, in a namespace of its own so that the linker can never mix them with others'.
+// The kernels for one CPU target, in a namespace of its own so that the linker never mixes targets.
 #define GYRE_TARGET_NAMESPACE target_sse2
 #include "solver/kernels/contact_kernel_table.h"
 
-// WebAssembly without SIMD would have every lane's code one after the other: its kernels are those of width 1.
+// WebAssembly without SIMD would run every lane's code one after the other, so its kernels are those of width
+// 1.
 #if !defined(__wasm__) || defined(__wasm_simd128__)
 namespace gyre {
 

@@ -1,16 +1,18 @@
-// The motion kernels: forces, displacement and free rotation of W bodies at once, one template for every width. Lane i
-// computes exactly what a block of width 1 would, so the width never changes a bit.
+// The motion kernels: forces, displacement and free rotation of W bodies at once, one template for every
+// width. Lane i computes exactly what a block of width 1 would, so the width never changes a bit.
 //
-// Within a step a body's rotation is kept as a rotation vector since the step began (`turned`), composed by the first terms
-// of Baker, Campbell and Hausdorff; the orientation is made of it once a step, in double (rigid/integrate/integrators.h). So turns far
-// below a float's resolution add up, and there is one exponential map a step instead of one a sub-step.
+// Within a step the rotation of a body is a rotation vector since the step began (delta_rotation), composed
+// by the first terms of Baker, Campbell and Hausdorff. The orientation follows from it once a step, in double
+// (rigid/integrate/integrators.h). So rotations far below the resolution of floats add up, and a step needs
+// one exponential map instead of one a sub-step.
 //
-// Free rotation: the angular momentum is what stays constant in the world frame. The body turns with the angular velocity
-// of the middle of the sub-step, and has at its end the one that its momentum asks for in its new orientation (the error is
-// of order angle^3; faster bodies turn alone). Sources as in solver/motion/torque_free_rotation.h.
+// Free rotation: the angular momentum is constant in the world frame. A body rotates with the angular
+// velocity of the middle of the sub-step; at its end it has the angular velocity of its momentum in the new
+// orientation. The error is of order angle^3; faster bodies get exact rotation. Sources as in
+// solver/motion/torque_free_rotation_kernel.h.
 //
-// Contacts do the same work at the beginning of each sub-step as they did in the last one (warm start). Instead of walking
-// over all contacts, each body remembers what they gave it.
+// Warm start: contacts act at the beginning of each sub-step as in the last one. Instead of a loop over all
+// contacts, each body stores their effect.
 #pragma once
 
 #include "math/wide_vec.h"
@@ -24,17 +26,18 @@ struct MotionBlock {
   std::int32_t body[W];     // kNoBody in lanes without a body
   std::uint32_t pose_read = 0;  // bits of lanes
   std::int32_t any_locked = 0, any_torque = 0, any_loss = 0, any_gyroscopic = 0;
-  std::int32_t was_at_rest = 0;  // in the last sub-step nothing moved, nor had before: what depends on that is up to date
+  std::int32_t was_at_rest = 0;  // nothing moved in the last sub-step, nor before: what depends on the motion
+                                 // is up to date
   Vec3W<W> velocity_gain, torque;
   Wide<W> linear_loss, angular_loss, bounding_radius;
-  Vec3W<W> free_axes;                                 // 1 along world axes that are free, 0 along locked ones
-  Wide<W> rotates;                                  // 1 where the kernel turns the body
+  Vec3W<W> free_axes;                             // 1 along free world axes, 0 along locked ones
+  Wide<W> rotates;                                // 1 where the kernel rotates the body
   Wide<W> gyroscopic;                             // 1 where principal moments differ
-  QuatW<W> start;                                 // orientation as the step began
+  QuatW<W> start;                                 // orientation at the beginning of the step
   Sym3W<W> inertia, inverse_inertia;              // body frame
   Sym3W<W> world_inertia, world_inverse_inertia;  // of the present orientation
-  Vec3W<W> recorded_linear, recorded_angular;         // velocities that contacts started from
-  Vec3W<W> contact_linear, contact_angular;           // what contacts gave in the last sub-step
+  Vec3W<W> recorded_linear, recorded_angular;     // velocities before contacts
+  Vec3W<W> contact_linear, contact_angular;       // velocity change by contacts in the last sub-step
 };
 
 template <int W>
@@ -63,7 +66,7 @@ GYRE_INLINE void store_motion(const MotionBlock<W>& block, BodyMotion* motion, c
   scatter<Columns, W>(&motion->linear_velocity.x, block.body, m.record);
 }
 
-// Where the velocities of blocks are while a kernel works on these: in the records, with all the rest,
+// Access to the velocities of blocks in the motion records, with all other columns.
 template <int W>
 struct InRecords {
   BodyMotion* motion;
@@ -77,11 +80,11 @@ struct InRecords {
     store_motion<Columns, W>(block, motion, m);
   }
 };
-// or in lanes beside them.
+// Access to velocities in lanes.
 template <int W>
 struct InLanes {
   const LaneVelocities& lanes;
-  BodyMotion* motion = nullptr;  // what only needs velocities does without
+  BodyMotion* motion = nullptr;  // null in kernels that only need velocities
 
   template <int Columns>
   GYRE_INLINE MotionW<W> load(const MotionBlock<W>& block, int n) const {
@@ -109,7 +112,7 @@ GYRE_INLINE Vec3W<W> along_free_axes(const MotionBlock<W>& block, Vec3W<W> v) {
           select(block.free_axes.z > zero, v.z, zero)};
 }
 
-// The vector at most `most` long. Without overflow, whatever the numbers.
+// Clamps the length without overflow, whatever the numbers.
 template <int W>
 GYRE_INLINE Vec3W<W> clamp_without_overflow(Vec3W<W> v, float max_length) {
   const Wide<W> top = max(absolute(v.x), max(absolute(v.y), absolute(v.z)));
@@ -117,20 +120,20 @@ GYRE_INLINE Vec3W<W> clamp_without_overflow(Vec3W<W> v, float max_length) {
   if (!any(may_exceed)) return v;
   const Wide<W> scale = select(may_exceed, top, Wide<W>(1.0f));
   const Vec3W<W> u{v.x / scale, v.y / scale, v.z / scale};
-  // In units of the largest component: the length itself may be beyond all floats.
+  // In units of the largest component: the length itself may overflow.
   const Wide<W> size = sqrt(dot(u, u)), limit = Wide<W>(max_length) / scale;
   const auto exceeds = may_exceed & (size > limit);
   const Wide<W> share = limit / select(exceeds, size, Wide<W>(1.0f));
   return select<W>(exceeds, share * v, v);
 }
 
-// log(exp(turn) exp(turned)) but for terms of the fourth order.
+// log(exp(rotation) exp(before)) up to terms of the fourth order.
 template <int W>
 GYRE_INLINE Vec3W<W> compose_rotations(Vec3W<W> rotation, Vec3W<W> before) {
   const Vec3W<W> c = cross(rotation, before), sum = before + rotation;
   const Vec3W<W> composed = sum + 0.5f * c + (1.0f / 12.0f) * cross(rotation - before, c);
-  // Two turns are never more than both together. Of what whirls by several turns a part the series says otherwise, and from
-  // part to part it would grow beyond all bounds.
+  // The angle of two rotations never exceeds their sum. For several turns in a half step the series violates
+  // this, and the result would grow without bound from one half step to the next.
   const Wide<W> bound = 2.1f * (dot(rotation, rotation) + dot(before, before));
   return select<W>(dot(composed, composed) <= bound, composed, sum);
 }
@@ -204,7 +207,7 @@ GYRE_INLINE void record(MotionBlock<W>& block, const MotionW<W>& m) {
   block.recorded_angular = m.angular();
 }
 
-// What velocities gained since they were remembered.
+// Adds the velocity change since the record.
 template <int W>
 GYRE_INLINE void add_gain(MotionBlock<W>& block, const MotionW<W>& m) {
   block.contact_linear = block.contact_linear + (m.linear() - block.recorded_linear);
@@ -224,14 +227,15 @@ GYRE_INLINE void integrate_velocities_of(void* memory, int begin, int end, const
     Vec3W<W> twist = none;
     if (block.any_torque != 0) twist = block.world_inverse_inertia * block.torque;
     if (block.any_loss != 0) {
-      // Not 0 times v where nothing is lost: a lane must not see that another one loses something, whatever its numbers.
+      // Not 0 times v without damping: a lane must not depend on damping in another one, whatever its
+      // numbers.
       gain = gain - select<W>(block.linear_loss > zero, block.linear_loss * v, none);
       twist = twist - select<W>(block.angular_loss > zero, block.angular_loss * w, none);
     }
     v = v + gain;
     w = w + twist;
     if (block.any_locked != 0) v = along_free_axes<W>(block, v);
-    // Adding zero keeps -0 out of the state, so that wide kernels may add zeros to lanes that nothing touches.
+    // Adding zero keeps -0 out of the state, so wide kernels may add zeros to lanes that nothing acts on.
     m.set_linear(clamp_without_overflow<W>(v, kMaxSpeed) + none);
     m.set_angular(clamp_without_overflow<W>(w, kMaxSpin) + none);
     if (warm) add_contact_velocities<W>(block, m);
@@ -270,7 +274,7 @@ void record_velocities_in_lanes(void* memory, int begin, int end, const LaneVelo
   for (int n = begin; n < end; ++n) record<W>(blocks[n], InLanes<W>{lanes}.template load<6>(blocks[n], n));
 }
 
-// Calls `then` with the number of a block and what its records hold.
+// Calls `then` with the number of a block and the values of its records.
 template <int W, class Then>
 GYRE_INLINE void record_change_of(void* memory, int begin, int end, const BodyMotion* motion, const Then& then) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
@@ -294,7 +298,8 @@ void record_velocity_change_in_lanes(void* memory, int begin, int end, const Bod
   });
 }
 
-// Shows the place of some lanes to joints and impacts: mostly of all. Inertia that no torque turns is what it was as the step began.
+// Writes the pose of some lanes, mostly all, for joints and impacts. Without gyroscopic torque the inertia is
+// that of the beginning of the step.
 template <int W>
 GYRE_INLINE void store_pose(const MotionBlock<W>& block, const QuatW<W>& q, MotionArrays arrays) {
   const Sym3W<W>& i = block.world_inverse_inertia;
@@ -317,7 +322,7 @@ GYRE_INLINE void store_pose(const MotionBlock<W>& block, const QuatW<W>& q, Moti
   }
 }
 
-// The rotation of a sub-step: `turn` is made, and the angular velocity follows from the momentum.
+// Rotates over a sub-step; the angular velocity follows from the momentum.
 template <int W>
 GYRE_INLINE void rotate_block(MotionBlock<W>& block, MotionW<W>& m, MotionArrays arrays, float substep) {
   const Wide<W> zero(0.0f);
@@ -344,7 +349,7 @@ GYRE_INLINE void rotate_block(MotionBlock<W>& block, MotionW<W>& m, MotionArrays
     const Vec3W<W> change = next_inverse * (inertia_loss * w);
     m.set_angular(select<W>(gyroscopic, w + change, w));
     block.world_inertia = next;
-    // Of a body without gyroscopic torque the inverse turns with nothing.
+    // Without gyroscopic torque the inverse inertia stays.
     block.world_inverse_inertia = {select(gyroscopic, next_inverse.xx, block.world_inverse_inertia.xx),
                                    select(gyroscopic, next_inverse.yy, block.world_inverse_inertia.yy),
                                    select(gyroscopic, next_inverse.zz, block.world_inverse_inertia.zz),
@@ -355,7 +360,7 @@ GYRE_INLINE void rotate_block(MotionBlock<W>& block, MotionW<W>& m, MotionArrays
   if (block.pose_read != 0) store_pose<W>(block, q, arrays);
 }
 
-// Whether nothing moves or has moved since the step began, to the bit.
+// True if nothing moves or has moved since the step began, to the bit.
 template <int W>
 GYRE_INLINE bool is_at_rest(const MotionW<W>& m) {
   WideInt<W> bits(0);
@@ -376,7 +381,7 @@ GYRE_INLINE void integrate_positions_of(void* memory, int begin, int end, Motion
     const bool resting = is_at_rest<W>(m);
     if (block.any_locked != 0) m.set_linear(along_free_axes<W>(block, m.linear()));
     if (recorded) add_gain<W>(block, m);
-    // Then all that follows gives what is there already.
+    // At rest all that follows would give the values that are there already.
     if (resting && block.was_at_rest != 0) continue;
     block.was_at_rest = resting ? 1 : 0;
     m.set_delta_position(m.delta_position() + Wide<W>(substep) * m.linear());

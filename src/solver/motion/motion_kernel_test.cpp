@@ -19,7 +19,7 @@ struct Random : testing_random::MixedSingles {
   Random() : MixedSingles{{0x94d049bb133111ebu}} {}
 };
 
-// Bodies, and the blocks of one width that move them.
+// Bodies, and the motion blocks of one width.
 struct Crowd {
   std::vector<MovedBody> bodies;
   std::vector<BodyMotion> motion;
@@ -57,7 +57,7 @@ struct Crowd {
     memory.assign(kernels->block_bytes * std::size_t(blocks) / sizeof(std::max_align_t) + 64, {});
     kernels->prepare(place(), 0, blocks, bodies.data(), int(bodies.size()), inertia.data());
   }
-  // Kernels want the alignment of their widest vector.
+  // Kernels need the alignment of their widest vector.
   void* place() {
     void* at = memory.data();
     std::size_t room = memory.size() * sizeof(std::max_align_t);
@@ -91,8 +91,8 @@ double angle_between(const DQuat& a, const DQuat& b) {
   return 2.0 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::fabs(d.w));
 }
 
-// How far two turns of `angle`, composed as rotation vectors, are from the product of both. (Not about axes at right angles:
-// there the fourth order vanishes.)
+// Difference between two rotations of `angle`, composed as rotation vectors, and the product of both. (Not
+// about perpendicular axes: there the fourth order vanishes.)
 double composition_error(float angle) {
   Crowd crowd;
   crowd.add({1, 1, 1}, {});
@@ -127,7 +127,7 @@ TEST(MotionKernel, FreeBodyKeepsItsAngularMomentum) {
     const Sym3 inertia = rotate_inertia(to_matrix(crowd.orientations[0]), crowd.bodies[0].inertia);
     const Vec3 now = inertia * crowd.motion[0].angular_velocity;
     EXPECT_LT(length(now - momentum), 3e-6f * length(momentum)) << "round " << round;
-    // It did turn, and what it turned by is what its orientation shows.
+    // It rotated, and its rotation vector matches its orientation.
     const Quat pose_read = crowd.orientations[0];
     const DQuat turned = product(exponential(crowd.motion[0].delta_rotation), {start.x, start.y, start.z, start.w});
     EXPECT_LT(angle_between(turned, {pose_read.x, pose_read.y, pose_read.z, pose_read.w}), 1e-6);
@@ -156,7 +156,7 @@ TEST(MotionKernel, GivesAgainWhatContactsGave) {
   crowd.prepare(1);
   crowd.integrate_velocities(true);
   EXPECT_EQ(crowd.motion[0].linear_velocity, (Vec3{0, -1, 0}));
-  // A contact holds it; twice, as sweeps do.
+  // A contact stops it; twice, as iterations do.
   crowd.motion[0].linear_velocity = {0, -0.25f, 0};
   crowd.record_velocity_change();
   crowd.motion[0].linear_velocity = {0, 0, 0};
@@ -198,7 +198,7 @@ TEST(MotionKernel, ProjectionMovesWithoutTouchingVelocities) {
   EXPECT_EQ(crowd.turns[0], (Vec3{0, 0, 0.125f}));
 }
 
-// Bodies of every sort.
+// Bodies of every kind.
 Crowd make_crowd(Random& random) {
   Crowd crowd;
   for (int i = 0; i < 37; ++i) {
@@ -220,7 +220,7 @@ Crowd make_crowd(Random& random) {
   }
   return crowd;
 }
-// Whole sub-steps: as blocks of `width`.
+// Whole sub-steps in blocks of `width`.
 Crowd move_crowd(int width) {
   Random random;
   Crowd crowd = make_crowd(random);
@@ -250,7 +250,7 @@ TEST(MotionKernel, EveryWidthHasTheBitsOfWidthOne) {
   for (const int width : {4, 8, 16}) expect_same_bits(move_crowd(width), narrow, width);
 }
 
-// Lanes with room of one vector between those of two blocks; what contacts do goes by the records.
+// Lanes with a gap of one vector between blocks; the effect of contacts comes from the records.
 class Lanes {
  public:
   Lanes(Crowd& crowd, int width)
@@ -282,7 +282,7 @@ class Lanes {
   LaneVelocities velocities_;
 };
 
-// From contacts to contacts, velocities in lanes or in records.
+// From contacts to contacts, with velocities in lanes or in records.
 Crowd pass_parts(int width, bool in_lanes) {
   Random random;
   Crowd crowd = make_crowd(random);

@@ -1,5 +1,6 @@
-// The kernels of bodies that turn freely: sorted by how their turn is worked out, in float and W at once, then turned W at once
-// in two halves of doubles (solver/motion/torque_free_rotation.h). Lane i has the bits of width 1.
+// The kernels of freely rotating bodies. Bodies are sorted by the mode of their rotation, W at once in float,
+// and then rotated in two halves in double (solver/motion/torque_free_rotation_kernel.h). Lane i has the bits
+// of width 1.
 #pragma once
 
 #include "math/wide_vec.h"
@@ -11,16 +12,18 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Below this angle nothing but the steady part of the turn reaches a float.
+// Below this angle only the steady part of the rotation reaches a float.
 constexpr float kNoAngle = 1.0e-6f;
-// Below this angle a sub-step of the midpoint rule is as exact as float can hold.
+// Below this angle a sub-step of the midpoint rule is as exact as floats.
 constexpr float kTinyAngle = 2.0e-3f;
-// Two principal moments this near to each other (relative) are one: shapes of revolution have theirs rounded.
+// Principal moments this near to each other (relative) count as equal: those of shapes of revolution are
+// rounded.
 constexpr float kEqualMoments = 1.0e-6f;
-// An angular velocity this near to parallel with the momentum (relative) spins about a principal axis.
+// An angular velocity this near to parallel with the momentum (relative) is about a principal axis.
 constexpr float kParallel = 1.0e-7f;
 
-// How a free rotation is worked out: at constant velocity, in closed form, by one midpoint step, or in inner steps.
+// How a free rotation is computed: at constant velocity, in closed form, by one midpoint step, or in inner
+// Runge-Kutta steps.
 enum class RotationMode : std::uint8_t { constant_velocity, symmetric_top, midpoint, runge_kutta };
 constexpr int kRotationModeCount = 4;
 
@@ -29,7 +32,7 @@ template <int W>
 struct RotationColumns {
   float* orientations[W];
   float* motions[W];
-  int count;  // lanes from here on repeat the last body, and what becomes of them goes nowhere
+  int count;  // lanes from here on repeat the last body, and their results are discarded
   float nowhere[kRecordFloats];
   QuatW<W> orientation;
   Vec3W<W> spin, delta_rotation;
@@ -37,7 +40,7 @@ struct RotationColumns {
 };
 static_assert(offsetof(Sym3, xz) == 4 * sizeof(float) && sizeof(Quat) == 4 * sizeof(float));
 
-// The first of a list of `count` bodies.
+// Gathers the first bodies of a list of `count`.
 template <int W>
 __attribute__((noinline)) void gather_rotations(const TorqueFreeRotation* rotations, const std::uint8_t* list,
                                             int count, RotationColumns<W>& columns) {
@@ -71,7 +74,7 @@ GYRE_INLINE void scatter_rotations(const RotationColumns<W>& columns) {
   scatter_columns<3, W>(columns.motions, kMotionDeltaRotation, out + 7);
 }
 
-// Which of the body's axes (0, 1, 2) is one of revolution: that bit alone in the masks.
+// Masks of the body axis (0, 1, 2) that is one of revolution; at most one is set in a lane.
 template <int W>
 struct SymmetryMasks {
   Mask<W> about_x, about_y, about_z, any;
@@ -87,7 +90,7 @@ struct SymmetryMasks {
   }
 };
 
-// The ways of the bodies of the columns, one a lane.
+// The rotation modes of the bodies, one a lane.
 template <int W>
 GYRE_INLINE WideInt<W> find_rotation_modes(const RotationColumns<W>& columns, float seconds) {
   const Vec3W<W> w = rotate_inverse(columns.orientation, columns.spin);  // body frame
@@ -109,7 +112,7 @@ struct RotationHalf {
   DQuatW<H> orientation;  // in and out
   DVec3W<H> spin;         // in and out, rad/s
   DVec3W<H> delta_rotation;       // out, rad
-  WideDouble<H> angle;    // about how far it turns
+  WideDouble<H> angle;            // rough angle of the rotation
   TensorW<H> inertia;
   SymmetricTopW<H> top;
 };
@@ -134,7 +137,7 @@ __attribute__((noinline)) void rotate_half(RotationHalf<H>& t, RotationMode mode
   t.delta_rotation = logarithm_map(t.orientation * conjugate(start));
 }
 
-// Floats of all lanes, and doubles of a half of them.
+// Access to the floats of half of the lanes as doubles.
 template <int W>
 class HalfView {
  public:
@@ -165,8 +168,8 @@ class HalfView {
   std::size_t first_;
 };
 
-// Turns the first `count` orientations by rotation vectors: in double, so that turns far below a float's resolution still add up
-// without bias.
+// Rotates the first `count` orientations by rotation vectors. In double, so that rotations far below the
+// resolution of floats add up without bias.
 template <int W>
 __attribute__((noinline)) void rotate_by_vectors(QuatW<W>& orientation, const Vec3W<W>& rotation, int count) {
   for (int half = 0; half < kHalves<W> && half * kHalfLanes<W> < count; ++half) {
@@ -175,7 +178,7 @@ __attribute__((noinline)) void rotate_by_vectors(QuatW<W>& orientation, const Ve
   }
 }
 
-// Turns the bodies of the columns, which turn at constant velocity.
+// Rotates columns of bodies at constant velocity.
 template <int W>
 GYRE_INLINE void rotate_steady_columns(RotationColumns<W>& columns, float seconds) {
   const Wide<W> zero(0.0f);
@@ -183,12 +186,12 @@ GYRE_INLINE void rotate_steady_columns(RotationColumns<W>& columns, float second
   const Mask<W> is_rotating = (rotation.x != zero) | (rotation.y != zero) | (rotation.z != zero);
   QuatW<W> orientation = columns.orientation;
   rotate_by_vectors<W>(orientation, rotation, columns.count);
-  // What stands still keeps its orientation, however long that is.
+  // A body at rest keeps its orientation, whatever its length.
   columns.orientation = select(is_rotating, orientation, columns.orientation);
   columns.delta_rotation = columns.delta_rotation + keep(is_rotating, rotation);
 }
 
-// Turns the bodies of the columns, all in one of the other ways.
+// Rotates columns of bodies that have the same other mode.
 template <int W>
 GYRE_INLINE void rotate_free_columns(RotationColumns<W>& columns, RotationMode mode, float seconds) {
   const Wide<W> one(1.0f);

@@ -1,4 +1,4 @@
-// The kernels of bodies that turn freely against the same turns worked out one body at a time, to the bit, at every width.
+// The rotation kernels against the same rotations computed one body at a time, to the bit, at every width.
 #include "math/rotation.h"
 #include "random.h"
 #include "solver/contact/contact_block.h"
@@ -109,7 +109,7 @@ void turn_plainly(Spinner& body, float seconds) {
   body.motion.delta_rotation += to_float(logarithm_map(q * conjugate(start)));
 }
 
-// Of all sizes, from standing still to whirling; with and without an axis of revolution.
+// Of all sizes, from rest to very fast; with and without an axis of revolution.
 Spinner make_spinner(Random& random) {
   Spinner body;
   body.orientation = normalized(

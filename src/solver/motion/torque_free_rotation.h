@@ -1,12 +1,13 @@
-// The turn of a single body at constant momentum (solver/motion/torque_free_rotation.h tells how and why).
+// Torque-free rotation of a single body at constant momentum, in double. The equations are in
+// solver/motion/torque_free_rotation_kernel.h.
 #pragma once
 
 #include "math/rotation.h"
 
 namespace gyre {
 
-// A symmetric tensor in double. The inverse is found here from the float inertia: the float inverse is not quite its
-// inverse, and that error, the same in every sub-step, would add up over minutes.
+// A symmetric tensor in double. The inverse comes from the float inertia: the stored float inverse is
+// slightly off, and this error, equal in every sub-step, would add up over minutes.
 struct Tensor {
   double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
 };
@@ -17,7 +18,8 @@ constexpr DVec3 times(const Tensor& m, DVec3 v) {
           m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
 
-// The orientation after `seconds` at a constant angular momentum (world frame, kg m^2/s); `angle`: about how far it turns, rad.
+// The orientation after `seconds` at constant angular momentum (world frame, kg m^2/s); `angle`: rough angle
+// of the rotation, rad.
 DQuat rotate_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds,
                        double angle);
 

@@ -1,13 +1,15 @@
-// Torque-free rotation of rigid bodies, H side by side in double: the exact drift between two kicks.
+// Torque-free rotation of rigid bodies, H side by side in double: the exact drift between two force steps.
 //
-// The angular momentum L in the world frame is constant, so the only unknown is the orientation: q' = 1/2 w q with
-// w = R I^-1 R^T L. L is kept exactly (to rounding) by construction and the energy to the order of the scheme, for any
-// inertia tensor and any speed; bodies that spin about a principal axis turn by the exponential map, and bodies of
-// revolution by two of them (the axis goes round L, the body about its axis), which is exact.
+// The angular momentum L in the world frame is constant, so the only unknown is the orientation: q' = 1/2 w q
+// with w = R I^-1 R^T L. L is exact (to rounding) by construction and the energy to the order of the scheme,
+// for any inertia tensor and any speed. Bodies that spin about a principal axis rotate by the exponential
+// map, and bodies of revolution by two of them (the axis precesses about L, the body spins about its axis),
+// which is exact.
 //
-// Method: Runge-Kutta 4 on the orientation with L fixed, in inner steps of at most kInnerAngle; one midpoint step (error
-// of order angle^3) where the angle is so small that it is exact in float. Source of the idea: E. Hairer, C. Lubich,
-// G. Wanner, "Geometric Numerical Integration", VII.5; L as the variable: J. C. Simo, K. K. Wong, 1991.
+// Method: Runge-Kutta 4 on the orientation with L fixed, in inner steps of at most kInnerAngle; one midpoint
+// step (error of order angle^3) where the angle is so small that it is exact in float. Source of the idea: E.
+// Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", VII.5; L as the variable: J. C. Simo, K.
+// K. Wong, 1991.
 #pragma once
 
 #include "math/wide_double_vec.h"
@@ -17,7 +19,8 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 // Angle of one inner Runge-Kutta step, rad: its energy error is of order angle^5 / 120, 3e-11 here.
 constexpr double kInnerAngle = 0.02;
-// A spin beyond all sense costs accuracy, not time without end: momentum is kept whatever the steps.
+// An absurd spin costs accuracy instead of unbounded time: momentum is conserved whatever the number of
+// steps.
 constexpr double kMaxInnerSteps = 4096.0;
 
 // Symmetric tensors side by side.
@@ -40,7 +43,7 @@ GYRE_INLINE TensorW<H> inverse(const TensorW<H>& m) {
           s * cxz, s * (m.xy * m.xz - m.xx * m.yz)};
 }
 
-// Angular velocity in the body's frame of a body with world momentum `momentum`.
+// Angular velocity in the body frame for the world momentum `momentum`.
 template <int H>
 GYRE_INLINE DVec3W<H> body_velocity(DQuatW<H> q, DVec3W<H> momentum, const TensorW<H>& inverse_inertia) {
   return times(inverse_inertia, rotate_inverse(q, momentum));
@@ -52,8 +55,8 @@ GYRE_INLINE DQuatW<H> derivative(DQuatW<H> q, DVec3W<H> momentum, const TensorW<
   return WideDouble<H>(0.5) * (q * DQuatW<H>{w.x, w.y, w.z, WideDouble<H>(0.0)});
 }
 
-// One Runge-Kutta step of the orientation with the momentum held fixed. Intermediate quaternions drift from length 1 by
-// the order of the step only; the result is scaled back.
+// One Runge-Kutta step of the orientation at fixed momentum. Intermediate quaternions leave length 1 only by
+// the order of the step; the result is normalised.
 template <int H>
 GYRE_INLINE DQuatW<H> runge_kutta_4(DQuatW<H> q, DVec3W<H> momentum, const TensorW<H>& inverse_inertia,
                                     WideDouble<H> h) {
@@ -65,7 +68,8 @@ GYRE_INLINE DQuatW<H> runge_kutta_4(DQuatW<H> q, DVec3W<H> momentum, const Tenso
   return normalized(q + h / WideDouble<H>(6.0) * (k1 + two * (k2 + k3) + k4));
 }
 
-// The orientations after `seconds` at constant angular momentum (world frame, kg m^2/s); `angle`: about how far each turns, rad.
+// The orientations after `seconds` at constant angular momentum (world frame, kg m^2/s); `angle`: rough angle
+// of each rotation, rad.
 template <int H>
 GYRE_INLINE DQuatW<H> rotate_in_steps(DQuatW<H> q, DVec3W<H> momentum, const TensorW<H>& inverse_inertia,
                                     WideDouble<H> seconds, WideDouble<H> angle) {
@@ -80,13 +84,14 @@ GYRE_INLINE DQuatW<H> rotate_in_steps(DQuatW<H> q, DVec3W<H> momentum, const Ten
   return q;
 }
 
-// Bodies of revolution: their axis (body frame), and their moments about that axis and across it.
+// Bodies of revolution: axis (body frame), and moments about it and across it.
 template <int H>
 struct SymmetricTopW {
   DVec3W<H> axis;
   WideDouble<H> along, across;
 };
-// With w = L / across + spin axis, the axis goes round L steadily while the body turns about it steadily: exact for any time.
+// With w = L / across + spin axis, the axis precesses steadily about L while the body rotates steadily about
+// it: exact for any time.
 template <int H>
 GYRE_INLINE DQuatW<H> rotate_symmetric_top(DQuatW<H> start, DVec3W<H> momentum, const SymmetricTopW<H>& top,
                                WideDouble<H> seconds) {
@@ -96,7 +101,7 @@ GYRE_INLINE DQuatW<H> rotate_symmetric_top(DQuatW<H> start, DVec3W<H> momentum, 
                     exponential_map((seconds * spin) * top.axis));
 }
 
-// A turn so small that the velocity of its middle tells. Velocity and momentum in the body's frame.
+// A rotation so small that the velocity of its middle suffices. Velocity and momentum are in the body frame.
 template <int H>
 GYRE_INLINE DQuatW<H> rotate_by_midpoint(DQuatW<H> start, DVec3W<H> velocity, DVec3W<H> momentum,
                                     const TensorW<H>& inverse_inertia, WideDouble<H> seconds) {

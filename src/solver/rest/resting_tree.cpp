@@ -6,16 +6,16 @@ namespace gyre {
 
 namespace {
 
-// Errors of place are taken back with this rate (1/s), twice a step.
+// 1/s, at which errors of position are removed.
 constexpr float kErrorRate = 10.0f;
-// Nearer than this share of the size a point is where it belongs.
+// Separation at rest, as a share of the size: nearer points need no correction.
 constexpr float kMaxRestSeparation = 1.0e-6f;
 
-// Shares >= 0 of the points of a patch that put the centre of pressure at (x, y) of the contact plane: their sum is 1 and
-// their mean point is (x, y). False if it lies outside the patch.
+// Shares >= 0 of the points of a patch that put the centre of pressure at (x, y) of the contact plane: their
+// sum is 1 and their mean point is (x, y). False if it lies outside the patch.
 bool share_pressure(const float (&px)[4], const float (&py)[4], int count, float x, float y, float (&shares)[4]) {
   for (float& share : shares) share = 0.0f;
-  // The least uneven shares first: 1/n each plus what is linear in the place.
+  // The most even shares first: 1/n each plus a linear function of the position.
   float mx = 0.0f, my = 0.0f;
   for (int k = 0; k < count; ++k) mx += px[k], my += py[k];
   mx /= float(count), my /= float(count);
@@ -34,7 +34,7 @@ bool share_pressure(const float (&px)[4], const float (&py)[4], int count, float
     even = even && shares[k] >= 0.0f;
   }
   if (even) return true;
-  // Near the rim: the triangle of points that holds the place, the one with the largest least share.
+  // Near the rim: the triangle of points around (x, y) with the largest smallest share.
   float best = -1.0e-6f;
   bool found = false;
   float chosen[4] = {};
@@ -59,13 +59,13 @@ bool share_pressure(const float (&px)[4], const float (&py)[4], int count, float
   return found;
 }
 
-// The anchor of the node's contact on its own body.
+// The arm of a contact point on the node's body.
 Vec3 arm_of(const TreeNode& node, const ContactConstraint& constraint, int k) {
   const ContactPointState& point = constraint.manifold->points[k];
   return node.sign > 0.0f ? point.from_b : point.from_a;
 }
 
-// The wrench (force and torque impulse about the contact's first anchor) that a contact's present impulses put on B.
+// The wrench (force and torque impulse about the contact's first anchor) of the contact's impulses on B.
 void current_wrench(const ContactImpulse& impulse, const ContactConstraint& constraint, Vec3 origin, Vec3& force, Vec3& torque) {
   const Manifold& manifold = *constraint.manifold;
   force = impulse.friction;
@@ -77,7 +77,8 @@ void current_wrench(const ContactImpulse& impulse, const ContactConstraint& cons
   }
 }
 
-// Finds impulses of points, friction and twist that make up the wrench on B about `origin`; false if the contact cannot.
+// Finds impulses of points, friction and twist with this wrench on B about `origin`; false if the contact
+// cannot carry it.
 bool solve_wrench(const ContactConstraint& constraint, Vec3 origin, Vec3 force, Vec3 torque, ContactImpulse& impulse) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal;
@@ -97,7 +98,7 @@ bool solve_wrench(const ContactConstraint& constraint, Vec3 origin, Vec3 force, 
   const float y = (height * dot(tangential, v) + dot(torque, u)) / load;
   float shares[4];
   if (!share_pressure(px, py, manifold.count, x, y, shares)) return false;
-  // What is left about the normal once the friction acts at the centre of friction that the kernels use.
+  // The twist that remains with the friction at the kernels' centre of friction.
   const Vec3 at = impulse.friction_from_b - origin;
   const float twist = dot(torque, n) - dot(cross(at, tangential), n);
   const float slide = constraint.static_friction * load;
@@ -146,7 +147,7 @@ TreeCorrection correction_of(const ContactConstraint& constraint, const BodyMoti
   return c;
 }
 
-// Whether the sweeps left every body as good as at rest, where it belongs.
+// True if the iterations left every body practically at rest, in position.
 bool is_at_rest(const RestingTree& tree, const TreeSolve& s) {
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     const TreeNode& node = s.nodes[i];
@@ -185,13 +186,13 @@ void solve_tree(const RestingTree& tree, const TreeSolve& s) {
     const Sym3 inertia = rotate_inertia(node.orientation, node.inertia);
     work.spin = DVec3(inertia * motion.angular_velocity) - cross(arm, work.momentum);
   }
-  // Leaves to root: what lies beyond a contact, about that contact.
+  // Leaves to root: sums the momentum beyond each contact, about that contact.
   for (std::uint32_t i = tree.end; i-- > tree.begin;) {
     const TreeNode& node = s.nodes[i];
     TreeScratch& work = s.work[i];
     const ContactConstraint& constraint = s.constraints[node.constraint];
     s.kernels->read_impulse(s.blocks, int(node.block), int(node.lane), work.impulse);
-    // The change that brings the subtree to rest acts on the node's body; the manifold counts impulses on B.
+    // The change that stops the subtree acts on the node's body; the manifold counts impulses on B.
     const Vec3 origin = constraint.manifold->points[0].from_b;
     Vec3 force, torque;
     current_wrench(work.impulse, constraint, origin, force, torque);
@@ -204,8 +205,8 @@ void solve_tree(const RestingTree& tree, const TreeSolve& s) {
       below.spin += work.spin + cross(work.point - below.point, work.momentum);
     }
   }
-  // Root to leaves: impulses as found, and velocities that take back errors of place. They are made as
-  // displacements over the step; what stays is rest.
+  // Root to leaves: writes the impulses, and finds velocities that remove errors of position. They are
+  // applied as displacements over the step, and the velocities are zero.
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     const TreeNode& node = s.nodes[i];
     TreeScratch& work = s.work[i];
@@ -226,7 +227,8 @@ void solve_tree(const RestingTree& tree, const TreeSolve& s) {
       angular = below.angular;
       linear = below.linear + cross(angular, offset);
     }
-    // The correction is of B against A at the middle of the patch; `own` is the body's centre from there.
+    // The correction is that of B against A at the middle of the patch; `middle_own` is the middle from the
+    // body's centre.
     const TreeCorrection& c = work.correction;
     const Vec3 middle_own = c.middle + arm_of(node, constraint, 0) - constraint.manifold->points[0].from_b;
     const Vec3 tilt = node.sign * c.tilt;

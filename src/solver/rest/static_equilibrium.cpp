@@ -10,51 +10,54 @@ namespace gyre {
 
 namespace {
 
-// What counts as one that does not stand: after so many rounds, or multiplications where these are fewer rounds. Pyramids and
-// walls take one round, card houses and towers of planks up to six, arches near their limit up to twenty.
+// Bounds on the search: rounds, or multiplications if these are fewer rounds. Pyramids and walls take one
+// round, card houses and towers of planks up to six, arches near their limit up to twenty.
 constexpr int kMaxRounds = 30;
 constexpr int kMinRounds = 12;
-constexpr int kMaxStuck = 5;  // rounds in turn after which no less was left over
+constexpr int kMaxStuck = 5;  // successive rounds without a smaller residual
 constexpr std::uint64_t kMaxWork = 6'000'000;
-// Where a round is so many multiplications they have to bring more: what holds goes straight there.
+// Above this number of multiplications a round must achieve more: a stable structure converges at once.
 constexpr std::uint64_t kExpensiveWork = 250'000;
-constexpr int kMaxStuckIfExpensive = 2;  // rounds in turn after which more than this share was left over
+constexpr int kMaxStuckIfExpensive = 2;  // successive rounds that left more than this share of the residual
 constexpr double kProgressIfExpensive = 0.7;
 constexpr int kMaxRoundsIfNew =
-    2;  // and dear: what was put as it lies holds at once, what has yet to settle does not
-// What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
+    2;  // new and expensive: a structure put in place converges at once, one that has yet to settle does not
+// Share of its stiffness that an inactive point keeps in the second derivative, but not in its impulse.
 constexpr double kInactiveStiffness = 1.0e-6;
-// The longest step, in Newton's, and after how many tries it is taken as it is.
+// The longest step, in Newton steps, and the number of tries before it is taken as it is.
 constexpr double kLongestStep = 1.0e3;
 constexpr int kMaxBisections = 40;
-// A slope counts as none below this share of what it is where the step begins, if that is Newton's own step; if not, below the next.
+// A slope counts as zero below the first share of its initial value for Newton's own step, below the second
+// otherwise.
 constexpr double kFlatSlope = 1.0e-9, kRoundingSlope = 1.0e-13;
-// Contacts begin this stiff sideways, as elastic bodies are (R. Mindlin, 1949: 2 (1 - nu) / (2 - nu) = 0.82 for nu = 0.3), and
-// what is softer than this bears nothing sideways.
+// Initial tangential stiffness of contacts, as of elastic bodies (R. Mindlin, 1949: 2 (1 - nu) / (2 - nu) =
+// 0.82 for nu = 0.3). Softer contacts than the second carry no friction.
 constexpr float kShear = 0.8f;
 constexpr float kMinShear = 1.0e-7f;
-// A contact asked for too much friction is softened so that it bears this share of what it can.
+// Share of its friction limit to which a contact with too much friction is softened.
 constexpr double kFrictionAim = 0.7;
-constexpr double kMaxSoftening = 0.05;  // at once
-// The age of contacts that were held and are not any more (s).
+constexpr double kMaxSoftening = 0.05;  // largest softening at once
+// s: age of contacts that cease to be rigid.
 constexpr float kReleasedAge = 2.0f;
-// Points further apart than this share of the size do not touch.
+// Points with a larger separation, as a share of the size, do not touch.
 constexpr float kTouchingGap = 1.0e-3f;
 constexpr double kInfinite = 1.0e30;
-// What an answer may leave of a body's speed, over what counts as still: rounding. Of one that leaves more than the next share of
-// that a round more is made.
+// Residual speed of a body that counts as rounding, as a multiple of its rest speed. A residual above the
+// second share of that costs one more round.
 constexpr double kResidual = 100.0;
 constexpr double kExactShare = 0.01;
-// The most that a point of an answer may bear, over all that the structure weighs. What is wedged between two walls would hold by a thrust
-// that is large enough, though nothing presses it: a thousand times its weight, even by the little friction that a point has about
-// its normal. Arches bear less than once that, a wedge of two degrees between smooth walls 29 times.
+// The largest impulse of a point over the weight of the structure. A body wedged between two walls would hold
+// by a large enough thrust though nothing presses it: a thousand times its weight, even by the little
+// friction that a point has about its normal. Arches carry less than once their weight, a wedge of two
+// degrees between smooth walls 29 times.
 constexpr double kMaxThrust = 30.0;
-// What a structure that was held may move by, over what counts as still: what thirty rows of boxes weigh rounds to more than that, and
-// solving would but round it anew. It may grow as the structure buckles, and then takes one round.
+// Motion of a rigid structure that counts as rest, as a multiple of the rest speed: the weight of thirty rows
+// of boxes rounds to more than that, and a solve would only round anew. The motion may grow as the structure
+// buckles; then one round follows.
 constexpr float kRigidRestFactor = 30.0f;
 
-// A row of a contact: what it is about, on either body, and what it bears before anything moves. The structure's rows are those
-// of bodies: place, then rotation.
+// A row of a contact on both bodies: direction, stiffness, and impulse before any displacement. Rows of
+// bodies are linear, then angular.
 struct ContactRow {
   double a[6], b[6];
   double stiffness = 0.0, before = 0.0;
@@ -70,7 +73,7 @@ ContactRow make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness, 
           double(before)};
 }
 
-// The rows of a contact: one for each point, two of friction and one of twist where the load gives them any.
+// The rows of a contact: one for each point, two of friction and one of twist if it has a load.
 struct ContactRows {
   ContactRow normal[kMaxManifoldPoints];
   ContactRow tangent[2], twist;
@@ -78,7 +81,7 @@ struct ContactRows {
   bool rubs = false;
 };
 
-// Those of friction and twist, as stiff as the contact is sideways now.
+// Friction and twist rows with the present tangential stiffness.
 void prepare_friction_rows(const ContactConstraint& constraint, const StructureScratch& work, ContactRows& rows) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal, from_b = work.impulse.friction_from_b;
@@ -106,7 +109,7 @@ void prepare_rows(const ContactConstraint& constraint, const StructureScratch& w
   if (rows.rubs) prepare_friction_rows(constraint, work, rows);
 }
 
-// Whether the sweeps left every body as good as at rest.
+// True if the iterations left every body practically at rest.
 bool is_at_rest(const RestingStructure& s, const StructureSolve& solve) {
   const float factor = s.was_rigid ? kRigidRestFactor : 1.0f;
   for (const StructureNode& node : s.nodes) {
@@ -124,14 +127,14 @@ void halt(const RestingStructure& s, const StructureSolve& solve) {
   }
 }
 
-// From now on its contacts are no springs,
+// Makes the contacts of the structure rigid.
 void make_rigid(const RestingStructure& s, const StructureSolve& solve) {
   for (const StructureContact& contact : s.contacts) {
     solve.constraints[contact.constraint].manifold->age = kRigidContactAge;
     solve.kernels->make_rigid(solve.blocks, int(contact.block), int(contact.lane));
   }
 }
-// and from now on they are.
+// Makes its rigid contacts soft again.
 void make_soft(const RestingStructure& s, const StructureSolve& solve) {
   for (const StructureContact& contact : s.contacts) {
     Manifold& manifold = *solve.constraints[contact.constraint].manifold;
@@ -143,8 +146,8 @@ class Solver {
  public:
   Solver(RestingStructure& structure, const StructureSolve& solve) : s_(structure), solve_(solve) {}
 
-  // Finds impulses that stop everything; false if it cannot. Newton's method on the springs' energy, which is convex: pieces of
-  // parabolas that meet where points let go.
+  // Finds impulses that stop everything; false if it cannot. Newton's method on the energy of the springs,
+  // which is convex: pieces of parabolas that meet where points become inactive.
   bool find() {
     if (!plan()) return false;
     if (!s_.has_scratch) begin();
@@ -209,7 +212,7 @@ class Solver {
     return true;
   }
 
-  // Every point bears, but those that are ahead of their contact: they never will.
+  // All points are active, except those that do not touch and never will.
   void begin() {
     s_.has_scratch = true;
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
@@ -223,7 +226,7 @@ class Solver {
     }
   }
 
-  // A body that touches nothing falls.
+  // A body without any touching point falls.
   bool touches_all() {
     for (double& x : direction_) x = 0.0;
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
@@ -244,7 +247,7 @@ class Solver {
   const BlockColumn& column(std::uint32_t node) const { return plan_.columns[plan_.place_of[node]]; }
   double* rows_at(std::span<double> x, std::uint32_t node) const { return x.data() + column(node).row; }
 
-  // What the contacts must bear: what they do, less the momentum that is left over.
+  // The load of the contacts: their present impulses minus the remaining momentum.
   void gather_loads() {
     for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
       const StructureNode& node = s_.nodes[i];
@@ -259,7 +262,7 @@ class Solver {
       StructureScratch& work = s_.work[i];
       solve_.kernels->read_impulse(solve_.blocks, int(contact.block), int(contact.lane), work.before);
       add_wrench(contact, constraint(i), work.before, 1.0, loads_);
-      // A contact that bore nothing yet begins with all its points.
+      // A contact without load begins with all its points.
       std::uint8_t was_loaded = 0;
       for (int k = 0; k < kMaxManifoldPoints; ++k) {
         if ((work.touching >> k & 1) == 0) work.before.normal[k] = 0.0f;
@@ -271,7 +274,7 @@ class Solver {
     }
   }
 
-  // Adds what the impulses do to both bodies.
+  // Adds the effect of the impulses on both bodies.
   void add_wrench(const StructureContact& contact, const ContactConstraint& c, const ContactImpulse& impulse,
                   double factor, std::span<double> x) const {
     const Manifold& manifold = *c.manifold;
@@ -298,7 +301,8 @@ class Solver {
     }
   }
 
-  // The second derivative of the energy; points that do not bear keep a trace of stiffness, so that what nothing holds has one.
+  // The second derivative of the energy. Inactive points keep a trace of stiffness, so that free bodies have
+  // one.
   void assemble() {
     for (double& value : values_) value = 0.0;
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
@@ -325,7 +329,7 @@ class Solver {
     add_outer_six(values + contact.coupling.offset, a_first ? row.a : row.b, a_first ? row.b : row.a, stiffness);
   }
 
-  // How far the bodies' moves `x` press the row together.
+  // Compression of the row by the displacements `x` of the bodies.
   double row_displacement(const StructureContact& contact, const ContactRow& row, std::span<double> x) const {
     double sum = 0.0;
     if (contact.node_a != kNoNode) {
@@ -338,7 +342,7 @@ class Solver {
     }
     return sum;
   }
-  // What the row bears where the bodies are now.
+  // The impulse of the row at the present displacement.
   double row_impulse(const StructureContact& contact, const ContactRow& row) const {
     return row.before + row.stiffness * row_displacement(contact, row, displacement_);
   }
@@ -352,7 +356,7 @@ class Solver {
     }
   }
 
-  // What is not borne yet.
+  // The residual load.
   void find_residual() {
     std::copy(loads_.begin(), loads_.end(), direction_.begin());
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
@@ -370,7 +374,7 @@ class Solver {
     }
   }
 
-  // How far to go along `way_`: to where the energy is least. Its derivative grows, in straight pieces.
+  // The step along `direction_` to the minimum of the energy, whose derivative grows in straight pieces.
   double find_step() {
     slope_ = curve_ = 0.0;
     for (std::size_t j = 0; j < direction_.size(); ++j) slope_ -= loads_[j] * direction_[j];
@@ -399,7 +403,7 @@ class Solver {
       low = high, high *= 2.0;
       here = slope_at(high);
     }
-    // Newton's method ends as soon as it meets the right piece; where it leads out of the bracket, that is halved.
+    // Newton's method ends as soon as it meets the right piece; outside the bracket it bisects.
     double t = high;
     for (int cut = 0; cut < kMaxBisections && low < high && absolute(here.value) > kRoundingSlope * start; ++cut) {
       (here.value < 0.0 ? low : high) = t;
@@ -409,7 +413,7 @@ class Solver {
     }
     return t;
   }
-  // The energy's derivative along the way, and how fast that grows.
+  // The derivative of the energy along the direction, and its growth.
   struct Slope {
     double value, growth;
   };
@@ -438,7 +442,7 @@ class Solver {
     }
   }
 
-  // Friction and twist of all contacts, no more than there can be; those that were asked for more give way sideways.
+  // Clamps friction and twist of all contacts to their limits, and softens those beyond.
   void limit_friction() {
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
@@ -469,7 +473,7 @@ class Solver {
     }
   }
 
-  // The most that a body has left to be borne, over what it may: bodies that could still move have no load to do so.
+  // The largest residual of a body over its tolerance: a body that could still move has no load for it.
   double max_residual() {
     std::copy(loads_.begin(), loads_.end(), direction_.begin());
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
@@ -483,7 +487,7 @@ class Solver {
       const double spin =
           length_of(rest + 3) / double(min(node.inertia.xx, min(node.inertia.yy, node.inertia.zz)));
       const double left = max(speed / double(node.rest_speed), spin / double(node.rest_spin)) / kResidual;
-      if (!(speed + spin < kInfinite)) return kInfinite;  // no number
+      if (!(speed + spin < kInfinite)) return kInfinite;  // not a number
       largest = max(largest, left);
     }
     return largest;
@@ -500,12 +504,12 @@ class Solver {
   RestingStructure& s_;
   const StructureSolve& solve_;
   BlockPlan plan_;
-  double slope_ = 0.0, curve_ = 0.0;  // of the energy along the way, without its points
+  double slope_ = 0.0, curve_ = 0.0;  // of the energy along the direction, without points
   std::span<double> values_, room_, loads_, displacement_, direction_;
   std::span<ContactRows> rows_;  // by contact
 };
 
-// Brings the structure to rest; false if its contacts cannot.
+// Stops the structure; false if its contacts cannot.
 bool bring_to_rest(RestingStructure& structure, const StructureSolve& solve) {
   if (!is_at_rest(structure, solve)) {
     const ArenaScope scope(*solve.arena);

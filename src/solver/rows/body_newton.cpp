@@ -7,12 +7,12 @@ namespace gyre {
 
 namespace {
 
-// A number for each of the velocities that a row sees: a's three and three of turning, then b's.
+// Velocities in a row of J: linear and angular of a, then of b.
 constexpr int kJacobianSize = 12;
 
 using Pair = WideDouble<2>;
 
-// to += by values, of C numbers.
+// to += by values, for C numbers.
 template <int C>
 void add_times(const double* values, double by, double* to) {
   const Pair wide(by);
@@ -21,7 +21,7 @@ void add_times(const double* values, double by, double* to) {
     (Pair::load_loose(to + k) + wide * Pair::load_loose(values + k)).store_loose(to + k);
 }
 
-// block += push gain^T.
+// block += column gain^T.
 void add_product(const double* column, const double* gain, double* block) {
   GYRE_UNROLL
   for (int r = 0; r < kLuBlock; ++r) add_times<kLuBlock>(gain, column[r], block + r * kLuBlock);
@@ -61,7 +61,7 @@ class BodyNewton {
   }
 
   bool find_step(std::span<const double> x, std::span<const double> w, double damping, std::span<double> dx) {
-    // What loads are made of first.
+    // Rows that make up loads come first.
     for (const bool of_loads : {true, false}) {
       for (std::size_t i = 0; i < rows(); ++i) {
         const RowKind kind = p_.rows[i].limits.kind;
@@ -86,7 +86,7 @@ class BodyNewton {
   }
 
  private:
-  // dx = constant - gain dv of row i, and of the second of a cone.
+  // dx = constant - gain dv of row i, and of the second row of a cone.
   void resolve(std::size_t i, std::span<const double> x, std::span<const double> w, double damping) {
     const Row& row = p_.rows[i];
     const RowLimits& limits = row.limits;
@@ -96,7 +96,7 @@ class BodyNewton {
     if (is_cone) at.x[1] = x[i + 1], at.w[1] = w[i + 1], at.rate = max(at.rate, p_.rows[i + 1].diagonal);
     if (limits.kind != RowKind::box) at.load = load_of(limits, [&](int j) { return x[std::size_t(j)]; });
     const MapEquations e = is_cone ? cone_equations(limits, *p_.friction, at) : scalar_equation(limits, at);
-    // (own + speed give) dx = right - speed J dv - load dL.
+    // (own + speed compliance) dx = right - speed J dv - load dL.
     double own[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
     for (std::size_t r = 0; r < count; ++r) {
       for (std::size_t k = 0; k < count; ++k)
@@ -146,7 +146,7 @@ class BodyNewton {
         if (row.body_a != kNoRowBody) add_times<kLuBlock>(gains_a, constants_[i], at(row.body_a));
         if (row.body_b != kNoRowBody) add_times<kLuBlock>(gains_b, constants_[i], at(row.body_b));
       }
-      // Limits that are not reached, which are most rows of a crowd's joints.
+      // Inactive limits, which are most rows of joints in a crowd.
       if (is_idle(gain)) continue;
       if (row.body_a != kNoRowBody) add_product(gains_a, gain, &lu_.lower[column_of(row.body_a).diagonal]);
       if (row.body_b != kNoRowBody)
@@ -170,10 +170,10 @@ class BodyNewton {
   const BlockColumn& column_of(std::int32_t body) const {
     return lu_.plan->columns[lu_.plan->place_of[std::size_t(body)]];
   }
-  // Where the body's part of the step lies; null if no row moves it.
+  // The part of the step of the body; null if no row moves it.
   double* at(std::int32_t body) const { return body == kNoRowBody ? nullptr : &step_[column_of(body).row]; }
 
-  // Adds what impulses do to the velocities.
+  // Adds the effect of impulses to the velocities.
   void add_impulses(std::span<const double> impulses) const {
     for (std::size_t i = 0; i < rows(); ++i) {
       if (impulses[i] == 0.0) continue;

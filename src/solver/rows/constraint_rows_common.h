@@ -1,4 +1,4 @@
-// How contacts and joints begin and end a row.
+// The first and the last step in making a row of a contact or joint.
 #pragma once
 
 #include "solver/rows/constraint_rows.h"
@@ -12,8 +12,8 @@ inline Row& begin_row(RowList& list) {
   return row;
 }
 
-// J is known. What a body that rows do not move brings along is part of what is wanted. `still`: in displacements, where such a
-// body has none.
+// Completes a row whose J is known. The velocity of a body that rows do not move becomes part of the target.
+// `still`: rows in displacements, where such a body has none.
 inline void end_row(Row& row, std::int32_t body_a, std::int32_t body_b, const RowFrame& frame,
                     bool still = false) {
   const auto set_body = [&](std::int32_t body, std::int32_t& index, DVec3 linear, DVec3 angular) {

@@ -1,4 +1,4 @@
-// Contacts as rows; joints are in joint_rows.cpp.
+// Rows of contacts; rows of joints are in joint_rows.cpp.
 #include "solver/rows/constraint_rows.h"
 #include "solver/rows/constraint_rows_common.h"
 
@@ -66,7 +66,7 @@ void add_contact_rows(const ContactConstraint& c, const RowFrame& frame, float w
     row.limits = {k % 2 == 0 ? RowKind::cone : RowKind::cone_second, 0.0, 0.0, friction, normals + k / 2, 1};
     point_row(row, axis, point);
     row.target_speed = dot(DVec3(c.surface_velocity), axis);
-    // Friction is kept for the contact as a whole: points share it as they share the load.
+    // Friction is stored for the contact as a whole; points share it in proportion to the load.
     if (load > 0.0)
       row.impulse =
           double(warm) * dot(DVec3(manifold.friction_impulse), axis) * double(point.normal_impulse) / load;
@@ -120,7 +120,7 @@ void store_contact_impulses(const ContactConstraint& c, const FrictionSet& set, 
     if (tangents == 0) continue;
     const double x = rows[2 * k].impulse, y = rows[2 * k + 1].impulse;
     friction += x * axes.tangent_1 + y * axes.tangent_2;
-    // At the limit but for rounding.
+    // At the limit, up to rounding.
     const double radius = kNearlyAll * rows[2 * k].limits.friction * normal;
     slides = slides && (normal == 0.0 || nearest_friction(set, radius, x, y).region != FrictionRegion::inside);
   }

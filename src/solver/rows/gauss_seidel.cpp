@@ -6,7 +6,7 @@ namespace gyre {
 
 namespace {
 
-// The residual is as dear as a sweep: it is looked at this often.
+// The residual costs as much as an iteration, so it is computed this rarely.
 constexpr int kIterationsPerCheck = 8;
 
 double row_w(const Row& row, std::span<const RowBody> bodies) {
@@ -27,7 +27,7 @@ double coupling(const Row& i, const Row& j) {
          dot(i.linear_b, j.gain_linear_b) + dot(i.angular_b, j.gain_angular_b);
 }
 
-// The equations of a joint, exactly. Returns the sum of squared changes.
+// Solves the equations of a joint exactly. Returns the sum of squared changes.
 double solve_block(std::span<Row> rows, std::span<RowBody> bodies) {
   const std::size_t n = rows.size();
   double k[kMaxRowBlock * kMaxRowBlock], x[kMaxRowBlock];
@@ -106,7 +106,7 @@ GaussSeidelResult solve_nncg(std::span<Row> rows, std::span<RowBody> bodies, con
     for (std::size_t i = 0; i < rows.size(); ++i) before[i] = rows[i].impulse;
     iterate_rows_once(rows, bodies, friction);
     ++result.iterations;
-    // What stands now is a plain sweep's: within its limits.
+    // The impulses are those of a plain iteration here, within their bounds.
     if (result.iterations % kIterationsPerCheck == 0 || result.iterations == max_iterations) {
       result.residual = find_row_residual(rows, bodies, friction);
       if (result.residual <= tolerance || result.iterations == max_iterations) return result;

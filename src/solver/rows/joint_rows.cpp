@@ -1,4 +1,4 @@
-// Joints as rows; contacts are in contact_rows.cpp.
+// Rows of joints; rows of contacts are in contact_rows.cpp.
 #include "solver/rows/constraint_rows.h"
 #include "solver/rows/constraint_rows_common.h"
 #include "solver/joint/joint_drive.h"
@@ -16,7 +16,7 @@ void set_axis(Row& row, const AxisRow& axis, float sign) {
   row.linear_b = s * DVec3(axis.linear_b), row.angular_b = s * DVec3(axis.angular_b);
 }
 
-// Soft: gives way as the implicit spring and damper does that the softness stands for.
+// Completes a soft row: its compliance is that of the implicit spring and damper of the softness.
 void end_soft_row(Row& row, const JointRecord& joint, const Softness& soft, const RowFrame& frame) {
   end_row(row, joint.body_a, joint.body_b, frame);
   if (!(soft.mass_scale > 0.0f)) return;
@@ -28,7 +28,8 @@ int equations_of(const JointRecord& joint, const JointConstraint& work) {
   return count_equations(joint, work.detail);
 }
 
-// Of bodies that turn by more than this in a sub-step (rad) rows ask for less and less of the bend, as linkages do.
+// rad. Bodies that rotate further than this in a sub-step get less of the second-order bias. Articulations
+// fade it from kMaxBiasAngle on.
 constexpr double kMaxTurn = 0.15;
 
 float bias_fade(const JointRecord& joint, const RowFrame& frame) {
@@ -65,7 +66,7 @@ void add_equations(JointRecord& joint, JointConstraint& work, const RowFrame& fr
   }
 }
 
-// What acts on one axis of a joint, as rows.
+// The rows of one axis of a joint.
 class AxisRows {
  public:
   AxisRows(const JointRecord& joint, AxisConstraint& work, const JointSettings& settings,
@@ -83,7 +84,7 @@ class AxisRows {
       end_row(row, joint_.body_a, joint_.body_b, frame_);
     }
     if (x_.is_rod) return;  // an equation
-    if (x_.slack > 0.0f) {  // no rows for what cannot be reached
+    if (x_.slack > 0.0f) {  // no rows for limits out of reach
       axis.low_impulse = axis.high_impulse = 0.0f;
       return;
     }
@@ -134,7 +135,7 @@ class AxisRows {
     row.target_speed -= double(x_.drive.bias_rate * (axis.position - axis.motor_position));
     end_soft_row(row, joint_, x_.drive, frame_);
   }
-  // A stop at `gap` from here; one that gives way does so once it is reached.
+  // A limit at distance `gap`; a soft one acts once it is reached.
   void add_limit(float& impulse, float gap, float sign) {
     const bool is_soft = x_.axis.limit_frequency > 0.0f;
     if (is_soft && gap > 0.0f) {

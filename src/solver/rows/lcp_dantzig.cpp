@@ -6,7 +6,7 @@ namespace {
 constexpr double kNever = 1.0e301;
 }
 
-// The tableau says y = T u + qt: of rows in the basis u is w and y is x, of the others the other way round.
+// The tableau is y = T u + qt: in the basis u is w and y is x, outside it u is x and y is w.
 Dantzig::Dantzig(std::span<const double> a, std::span<const double> q, double compliance, NumberRoom& room)
     : n_(int(q.size())),
       t_(room.take(a.size())),
@@ -53,7 +53,7 @@ void Dantzig::pivot(int k) {
   basic_[std::size_t(k)] = is_basic(k) ? 0.0 : 1.0;
 }
 
-// What depends on the impulses at their limits: the basis's impulses, the others' speeds.
+// Recomputes the impulses in the basis and the speeds outside it from the impulses at their limits.
 void Dantzig::refresh() {
   for (int i = 0; i < n_; ++i) {
     double sum = qt_[std::size_t(i)];
@@ -69,13 +69,13 @@ bool Dantzig::is_satisfied(int i) const {
   const std::size_t n = std::size_t(i);
   if (is_basic(i)) return x_[n] >= low_[n] - tolerance_ && x_[n] <= high_[n] + tolerance_;
   if (low_[n] == high_[n]) return true;
-  const double slack = tolerance_ * diagonal_[n];  // of impulse, as one of speed
+  const double slack = tolerance_ * diagonal_[n];  // tolerance of the impulse, as a speed
   if (x_[n] <= low_[n]) return w_[n] >= -slack;
   if (x_[n] >= high_[n]) return w_[n] <= slack;
   return false;
 }
 
-// Drives row i, which is out of the basis, until its speed is zero or its impulse at a limit.
+// Drives row i, outside the basis, until its speed is zero or its impulse is at a limit.
 bool Dantzig::drive(int i, int max_pivots) {
   const std::size_t own = std::size_t(i);
   const double sign = w_[own] > 0.0 ? -1.0 : 1.0;
@@ -84,7 +84,7 @@ bool Dantzig::drive(int i, int max_pivots) {
     const double limit = sign > 0.0 ? high_[own] : low_[own];
     const double gain = at(i, i);
     double distance = limit <= -kNoLimit || limit >= kNoLimit ? kNever : max(sign * (limit - x_[own]), 0.0);
-    int first = -1;  // the row's limit
+    int first = -1;  // -1: the limit of the row itself
     if (gain > 0.0) {
       const double until = max(-sign * w_[own] / gain, 0.0);
       if (until <= distance) distance = until, first = i;
@@ -134,7 +134,7 @@ bool Dantzig::solve(double tolerance, int max_pivots) {
       any = true;
       for (int j = 0; j < n_; ++j) satisfied_[std::size_t(j)] = is_satisfied(j) ? 1.0 : 0.0;
       if (is_basic(i)) {
-        // Beyond a limit: it is let go, and driven back to it.
+        // Beyond a limit: the row leaves the basis and is driven back to the limit.
         const double limit =
             x_[std::size_t(i)] > high_[std::size_t(i)] ? high_[std::size_t(i)] : low_[std::size_t(i)];
         const double back = limit - x_[std::size_t(i)];

@@ -4,8 +4,8 @@ namespace gyre {
 
 namespace {
 
-// Variables are numbered: w_i is i, z_i is n + i, z0 is 2 n. The dictionary says: each basic variable is its constant plus its
-// row of the tableau times the variables outside the basis.
+// Variables have numbers: w_i is i, z_i is n + i, z0 is 2 n. In the dictionary each basic variable is its
+// constant plus its row of the tableau times the variables outside the basis.
 class Dictionary {
  public:
   Dictionary(std::span<const double> m, std::span<const double> q, double tie_break, NumberRoom& room)
@@ -19,7 +19,7 @@ class Dictionary {
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j) at(i, j) = m[i * n_ + j];
       at(i, n_) = 1.0;
-      // A golden step: no two rows get nearly the same.
+      // A golden step: no two rows get nearly the same fraction.
       const double fraction = double((i + 1) * 40503u % 65536u) / 65536.0;
       constant_[i] = q[i] + tie_break * largest * (0.5 + fraction);
       basic_[i] = double(i);
@@ -32,7 +32,7 @@ class Dictionary {
   double constant(std::size_t i) const { return constant_[i]; }
   std::size_t basic(std::size_t i) const { return std::size_t(basic_[i]); }
 
-  // The row that the artificial variable must replace so that all constants are positive; n if none is negative.
+  // The row that the artificial variable replaces so that all constants are positive; n if none is negative.
   std::size_t find_worst_row() const {
     std::size_t row = n_;
     double smallest = 0.0;
@@ -41,7 +41,8 @@ class Dictionary {
     }
     return row;
   }
-  // The row that reaches zero first as the variable of a column grows; n if none does. The artificial one wins ties.
+  // The row that reaches zero first as the variable of a column grows; n if none does. The artificial
+  // variable wins ties.
   std::size_t blocking(std::size_t column) {
     std::size_t row = n_;
     double smallest = 0.0, slope = 0.0;
@@ -56,7 +57,7 @@ class Dictionary {
     }
     return row;
   }
-  // The variable of the row and that of the column change places.
+  // Exchanges the variable of the row with that of the column.
   void pivot(std::size_t row, std::size_t column) {
     double* const own = &t_[row * (n_ + 1)];
     const double inverse = 1.0 / own[column];

@@ -1,14 +1,16 @@
-// The natural map of a row and its derivative: what a step of the semi-smooth Newton methods asks of it.
+// The natural map of a row and its derivative, for the semi-smooth Newton methods.
 //
-// The residual of a row is its impulse less the nearest to (impulse - w / rate) that its limits allow (solver/rows/complementarity.h).
-// That has a derivative wherever it is looked at, chosen by which limit holds there: a row at rest asks for w = 0, one at a limit
-// stays there, one that slides along the rim of Coulomb's disc turns with it. Each becomes an equation
+// The residual of a row is its impulse minus the nearest allowed impulse to (impulse - w / rate)
+// (solver/rows/complementarity.h). Its derivative depends on the active limit: a row at rest wants w = 0, a
+// row at a bound stays there, and an impulse on the rim of Coulomb's disc rotates with it. Each becomes an
+// equation
 //
-//   own dx + speed dw + load dL = right,
+// own dx + speed dw + load dL = right,
 //
-// of the change of its impulse, of its speed w, and of the sum L of the impulses that its limit depends on.
+// of the change of its impulse, of its speed w, and of the sum L of the impulses that bound it.
 //
-// Sources: P. Alart, A. Curnier, 1991; S. Hueeber, B. Wohlmuth, 2005 (solver/rows/newton_search.h has the titles).
+// Sources: P. Alart, A. Curnier, 1991; S. Hueeber, B. Wohlmuth, 2005 (solver/rows/newton_search.h has the
+// titles).
 #pragma once
 
 #include "solver/rows/row.h"
@@ -17,19 +19,20 @@
 
 namespace gyre {
 
-// Of a cone's two rows; of others only the first.
+// Two equations for a cone; other rows use only the first.
 struct MapEquations {
   double own[2][2] = {}, speed[2][2] = {};
   double load[2] = {};
   double right[2] = {};
 };
 
-// A row where the method stands.
+// The state of a row in the search.
 struct MapPoint {
-  double x[2], w[2];  // of a cone's two rows
+  double x[2], w[2];  // of the two rows of a cone
   double rate;        // the diagonal, of a cone the larger of its two
-  double load;        // what its limit depends on
-  double damping;        // share of the rate by which a row at rest resists change: tells redundant rows apart
+  double load;        // the load that bounds it
+  double damping;     // share of the rate by which a row at rest is regularised: it separates redundant
+                      // rows
 };
 
 namespace natural_map {
@@ -112,7 +115,7 @@ inline MapEquations cone_equations(const RowLimits& limits, const FrictionSet& s
       const double size = std::sqrt(px * px + py * py), share = radius / size;
       const double out[2] = {px / size, py / size}, along[2] = {-out[1], out[0]};
       natural_map::fix_impulse_along(e, 0, out, at, radius, limits.friction);
-      // Across: the direction of p turns with it.
+      // Across the direction: p rotates with it.
       for (int k = 0; k < 2; ++k) {
         e.own[1][k] = (1.0 - share + at.damping) * along[k];
         e.speed[1][k] = share / at.rate * along[k];

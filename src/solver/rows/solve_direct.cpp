@@ -9,13 +9,15 @@ namespace gyre {
 
 namespace {
 
-// Share by which diagonals are raised for pivoting: redundant rows then have one solution. Newton's method takes it back.
+// Share by which diagonals are raised for pivoting, so that redundant rows have one solution. Newton's method
+// removes its effect.
 constexpr double kRegularization = 1.0e-9;
 constexpr double kTieBreak = 1.0e-10;
 constexpr int kDantzigRounds = 20;
 constexpr int kRoundSteps = 8, kPolishSteps = 30;
 
-// A variable of a method in terms of the problem's rows: x_row and, of a cone, x_(row + 1) get its value times these.
+// A variable of a method in terms of the rows of the problem: it adds its value times these factors to x_row
+// and, for a cone, to x_(row + 1).
 struct Segment {
   int row = 0;
   double first = 1.0, second = 0.0;
@@ -41,7 +43,8 @@ double load_in(const RowLimits& limits, std::span<const double> x) {
   return load_of(limits, [&](int j) { return x[std::size_t(j)]; });
 }
 
-// Which parts a row is made of for a method, as fn(part); a polygon is the sum of one segment for each pair of its sides.
+// Calls fn(segment) for each variable of a row. A polygon is the sum of one segment for each pair of its
+// sides.
 template <class Fn>
 void for_each_segment(const RowLimits& limits, int row, const FrictionSet& polygon, Fn&& fn) {
   if (limits.kind == RowKind::cone_second) return;
@@ -57,7 +60,7 @@ std::size_t count_segments(std::span<const RowLimits> limits, const FrictionSet&
   return count;
 }
 
-// Numbers kept as doubles so that one room holds all.
+// Doubles, so that one room holds all numbers.
 struct SegmentList {
   std::span<double> rows, first, second;
   std::size_t count = 0;
@@ -121,7 +124,7 @@ void run_dantzig(const DenseProblem& p, const FrictionSet& polygon, double toler
 
 // -------------------------------------------------------------------------------------------------------------- Lemke
 
-// How many variables a row has: those of its impulse, and a multiplier if these have a limit together.
+// Number of variables of a row: those of its impulse, and a multiplier if they have a common bound.
 int count_corners(const RowLimits& l, const FrictionSet& polygon) {
   if (l.kind == RowKind::cone) return polygon.sides;
   if (l.kind == RowKind::load) return 2;
@@ -176,7 +179,7 @@ void list_lemke(const DenseProblem& p, const FrictionSet& polygon, LemkeProblem&
   }
 }
 
-// The problem's equations by themselves: their part of the matrix `a`, factored.
+// The equations of the problem: their part of the matrix `a`, factored.
 class Equations {
  public:
   static std::size_t room_for(std::size_t count) { return count * count + 2 * count; }
@@ -197,7 +200,7 @@ class Equations {
     factor_ldlt(own_, int(e));
   }
 
-  // Takes the equations out of the matrix `a` and the right side, which then hold for the other rows.
+  // Eliminates the equations from the matrix `a` and the right side of the other rows.
   void eliminate(std::span<double> a, std::span<double> q) {
     const std::size_t n = size();
     for (std::size_t j = 0; j <= n; ++j) {
@@ -212,7 +215,7 @@ class Equations {
       }
     }
   }
-  // The equations' impulses beside those of the other rows.
+  // Computes the impulses of the equations from those of the other rows.
   void fill(std::span<const double> q, std::span<double> x) {
     for (std::size_t i = 0; i < count_; ++i) {
       double sum = -q[row_of(i)];
@@ -235,7 +238,7 @@ class Equations {
   std::span<double> own_, column_, at_;
 };
 
-// With the diagonal raised by the share `give`.
+// `compliance`: share by which the diagonal is raised.
 void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double compliance, double tolerance,
                std::span<double> x, NumberRoom room, DirectResult& result) {
   const std::size_t n = std::size_t(p.size);
@@ -303,7 +306,7 @@ std::size_t direct_room(const DirectSize& size, const FrictionSet& set, DirectMe
     numbers = max(numbers, 3 * segments + segments * segments + segments + Dantzig::room_for(segments) + n + newton_room(n));
   }
   if (method == DirectMethod::lemke) {
-    // Rows with a limit on either side have three variables at the most.
+    // Rows with a limit on either side have at most three variables.
     const std::size_t z = 3 * n + size.cones * (sides + 1);
     const std::size_t own = 3 * z + z * z + z + 2 * n + n * n + n + z + Equations::room_for(size.equations);
     numbers = max(numbers, own + lemke_room(z) + newton_room(n));
@@ -317,7 +320,7 @@ DirectResult solve_direct(const DenseProblem& problem, const FrictionSet& polygo
   if (method == DirectMethod::dantzig) {
     run_dantzig(problem, polygon, tolerance, x, room, result);
   } else {
-    // Where rows are so redundant that pivots are rounding, more of it tells them apart.
+    // More compliance separates rows so redundant that pivots are rounding.
     for (const double compliance : {kRegularization, 100.0 * kRegularization, 10000.0 * kRegularization}) {
       run_lemke(problem, polygon, compliance, tolerance, x, room, result);
       if (result.residual <= tolerance) break;

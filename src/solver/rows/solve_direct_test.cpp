@@ -1,4 +1,5 @@
-// Direct solvers against each other, against all combinations of limits tried one by one, and against the solvers that sweep.
+// Direct solvers against each other, against an enumeration of all combinations of limits, and against
+// iterative solvers.
 #include "solver/rows/solve_direct.h"
 
 #include "math/dense.h"
@@ -25,7 +26,8 @@ std::vector<double> random_psd(Chance& chance, int n, int rank) {
   return a;
 }
 
-// All 3^n choices of (low, between, high), each solved as linear equations. The first that fits; w is unique, x need not be.
+// Solves all 3^n choices of (low, between, high) as linear equations and returns the first that fits; w is
+// unique, x need not be.
 bool enumerate(const std::vector<double>& a, const std::vector<double>& q, const std::vector<double>& low,
                const std::vector<double>& high, std::vector<double>& w) {
   const int n = int(q.size());
@@ -156,7 +158,7 @@ TEST(SolveDirect, DantzigLemkeAndNncgAgreeOnHeapsWithFriction) {
       ++ended;
       EXPECT_LT(apart(dantzig, iterated.bodies), 1.0e-5) << sides << " sides, seed " << seed;
     }
-    // Redundant joints may make a heap so ill-conditioned that sweeps do not end.
+    // Redundant joints may make a heap so ill-conditioned that iterations do not converge.
     EXPECT_GE(ended, 58) << sides;
   }
 }
@@ -183,12 +185,13 @@ TEST(SolveDirect, TrueConesAreSolvedToo) {
 }
 
 TEST(SolveDirect, RedundantCornersBearAThousandfoldLoad) {
-  // Four corners a face, three would do; every box bears a thousand times what it weighs.
+  // Each face has four corners where three would do; every box carries a thousand times its weight.
   const double kick = 9.81 / 240.0;
   const Island island = make_stack({1, 1, 1, 1, 1000}, kick);
   const FrictionSet polygon = make_friction_set(4);
   const Dense dense(island, polygon);
-  // A residual of r leaves speeds of r times the largest diagonal, and of the ground's impulse that times all mass.
+  // A residual of r leaves speeds of r times the largest diagonal, and in the impulse of the ground that
+  // times the total mass.
   double stiffest = 0.0;
   for (const Row& row : island.rows) stiffest = std::max(stiffest, row.diagonal);
   const auto check = [&](const char* method, double residual, const std::vector<double>& x) {
@@ -210,7 +213,7 @@ TEST(SolveDirect, RedundantCornersBearAThousandfoldLoad) {
   const NewtonResult newton =
       solve_body_newton({island.rows, island.bodies, &polygon, &plan}, 1.0e-11, 10, x, NumberRoom(numbers));
   check("Newton", newton.residual, x);
-  // What many sweeps make of the same.
+  // The same by many iterations.
   Island iterated = island;
   for (int i = 0; i < 50; ++i) iterate_rows_once(iterated.rows, iterated.bodies, polygon);
   EXPECT_GT(length(iterated.bodies.back().linear), 0.5 * kick);
@@ -240,7 +243,7 @@ TEST(SolveDirect, FrictionOfAPolygonIsBetweenItsInnerAndItsOuterCircle) {
     for (int k = 0; k < 64; ++k) {
       const double angle = 2.0 * double(kPi) * k / 64.0;
       Island island;
-      // A point that turns do not reach: a ball's lowest, with no inertia against turning to speak of.
+      // A point without lever arm: the lowest of a ball with almost no inertia.
       add_body(island.bodies, 1.0, 1.0, {std::cos(angle), -kick, std::sin(angle)});
       for (double& v : island.bodies[0].inverse_inertia) v = 0.0;
       add_contact(island.rows, island.bodies, -1, 0, {}, {}, {0, 1, 0}, friction);
@@ -264,7 +267,7 @@ TEST(FrictionSet, NearestPointsAreNearest) {
       const FrictionPoint p = nearest_friction(set, radius, x, y);
       const double distance = std::hypot(x - p.x, y - p.y);
       EXPECT_LE(std::hypot(p.x, p.y), radius + 1.0e-12);
-      // No other point of the set is nearer: points of the rim and the middle.
+      // No other point of the set is nearer: points of the rim and the centre.
       for (int k = 0; k < 200; ++k) {
         double ox = 0, oy = 0;
         if (sides == 0) {

@@ -45,7 +45,7 @@ class DenseNewton {
   }
 
  private:
-  // Equation `row` of those that begin at row i of the problem.
+  // Writes equation `row` of those that begin at row i of the problem.
   void write(const MapEquations& e, int row, int i, int count, const RowLimits& limits,
              std::span<double> right) {
     const std::size_t n = rows();
@@ -62,7 +62,7 @@ class DenseNewton {
     right[std::size_t(i + row)] = e.right[row];
   }
 
-  // Gauss's elimination with partial pivoting; false if singular.
+  // Gaussian elimination with partial pivoting; false if singular.
   bool solve(std::span<double> right) {
     const std::size_t n = rows();
     for (std::size_t k = 0; k < n; ++k) {
