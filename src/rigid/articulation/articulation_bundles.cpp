@@ -57,8 +57,8 @@ ArticulationBundle make_bundle(const ArticulationTopology& topology, const Artic
 // 1/kg: mobility of a body at a joint, averaged over all directions.
 float mobility(const BodyMass& mass, Vec3 arm) {
   const Sym3& i = mass.inverse_inertia;
-  const float turning = (i.xx + i.yy + i.zz) * length_squared(arm) - dot(arm, i * arm);
-  return mass.inverse_mass + (1.0f / 3.0f) * turning;
+  const float angular = (i.xx + i.yy + i.zz) * length_squared(arm) - dot(arm, i * arm);
+  return mass.inverse_mass + (1.0f / 3.0f) * angular;
 }
 // True if a joint couples bodies whose effective masses differ by more than 50, one of them with another
 // joint too. Such links may get any speed from a solve, since their second-order bias is not resolved.
@@ -123,12 +123,12 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWo
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
       const LaneNode& node = bundle.lanes.nodes[n];
       for (std::size_t lane = 0; lane < bundle.articulations.size(); ++lane) {
-        const ArticulationJoint& linked = bundle.articulations[lane]->joints[n];
-        const JointRecord& joint = w.joints.records[linked.record];
+        const ArticulationJoint& joint_of_lane = bundle.articulations[lane]->joints[n];
+        const JointRecord& joint = w.joints.records[joint_of_lane.record];
         if (has_extreme_mass_ratio(w, joint)) bundle.lanes.has_extreme_mass_ratio[lane] = 1.0f;
-        set_lane_body(bundle.lanes, int(lane), node.a, linked.body_a, linked.pressed_a);
-        set_lane_body(bundle.lanes, int(lane), node.b, linked.body_b, linked.pressed_b);
-        load_lane(bundle.lanes, int(lane), n, joint, detail_of(w.joints, linked.record),
+        set_lane_body(bundle.lanes, int(lane), node.a, joint_of_lane.body_a, joint_of_lane.pressed_a);
+        set_lane_body(bundle.lanes, int(lane), node.b, joint_of_lane.body_b, joint_of_lane.pressed_b);
+        load_lane(bundle.lanes, int(lane), n, joint, detail_of(w.joints, joint_of_lane.record),
                   joint_offset(w, joint), start);
       }
     }

@@ -39,7 +39,7 @@ class LaneProjection {
         bodies_(bodies),
         arena_(arena),
         is_projected_(arena.make<std::uint8_t>(groups.size())) {
-    for (std::uint8_t& led : is_projected_) led = 0;
+    for (std::uint8_t& projected : is_projected_) projected = 0;
   }
 
   std::span<const std::uint8_t> project(bool stop_at_impact, const ContactKernels& kernels,

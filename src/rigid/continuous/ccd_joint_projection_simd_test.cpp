@@ -19,7 +19,7 @@ constexpr float kHalf = 0.2f, kMaxSwing = 0.1f;
 // Chains along x, each 3 m further along z, that move along y and rotate a little: joined by a ball, by a
 // cone with a swing of 0.1 rad, by a hinge about z, and by a joint of the test. The third link of each is
 // halted.
-class ChainsFollow : public ::testing::Test {
+class ChainsAfterImpact : public ::testing::Test {
  protected:
   void add_chain(JointKind last = JointKind::ball) {
     const int chain = int(stopped_.size());
@@ -120,7 +120,7 @@ class ChainsFollow : public ::testing::Test {
   std::span<ProjectionGroup> groups_;
 };
 
-TEST_F(ChainsFollow, WhereJointsAndLimitsHoldAndAsRowsDo) {
+TEST_F(ChainsAfterImpact, SatisfyJointsAndLimitsAsByRows) {
   for (int i = 0; i < 3; ++i) add_chain();
   for (const std::uint8_t led : project_batched(3)) EXPECT_EQ(led, 1);
   expect_closed();
@@ -134,7 +134,7 @@ TEST_F(ChainsFollow, WhereJointsAndLimitsHoldAndAsRowsDo) {
   EXPECT_LT(places[2].y, 0.05);
 }
 
-TEST_F(ChainsFollow, WithTheSameBitsWhateverStandsBeside) {
+TEST_F(ChainsAfterImpact, HaveTheSameBitsInAnyLane) {
   spread_ = 1.0f;  // lanes end one after the other
   for (int i = 0; i < 5; ++i) add_chain();
   project_batched(1);
@@ -146,7 +146,7 @@ TEST_F(ChainsFollow, WithTheSameBitsWhateverStandsBeside) {
   }
 }
 
-TEST_F(ChainsFollow, WithOtherJointsByRows) {
+TEST_F(ChainsAfterImpact, WithOtherJointsByRows) {
   add_chain();
   add_chain(JointKind::fixed);
   const std::span<const std::uint8_t> led = project_batched(2);

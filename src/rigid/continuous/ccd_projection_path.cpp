@@ -40,13 +40,17 @@ void ProjectionPath::find_displacements() const {
     const BodyMotion& motion = w_->bodies.motion[member.body];
     const bool is_simulated_body = is_simulated(w_->bodies.flags[member.body]);
     const HaltedBody* const halt = member.halted;
-    const Vec3 moved = halt != nullptr ? halt->delta_position : is_simulated_body ? motion.delta_position : Vec3{};
-    const Vec3 turned = halt != nullptr ? halt->delta_rotation : is_simulated_body ? motion.delta_rotation : Vec3{};
+    const Vec3 delta_position = halt != nullptr     ? halt->delta_position
+                                : is_simulated_body ? motion.delta_position
+                                                    : Vec3{};
+    const Vec3 delta_rotation = halt != nullptr     ? halt->delta_rotation
+                                : is_simulated_body ? motion.delta_rotation
+                                                    : Vec3{};
     const Quat end = w_->bodies.orientations[member.body];
-    member.start_displacement = first * moved;
+    member.start_displacement = first * delta_position;
     member.start_orientation =
-        normalized(from_rotation_vector(first * turned) * w_->bodies.places[member.body].orientation);
-    member.is_in_motion = member.moves || moved != Vec3{} || turned != Vec3{};
+        normalized(from_rotation_vector(first * delta_rotation) * w_->bodies.places[member.body].orientation);
+    member.is_in_motion = member.moves || delta_position != Vec3{} || delta_rotation != Vec3{};
     member.fixed = false;
     member.remaining_displacement = member.remaining_rotation = {};
     if (!member.is_in_motion) continue;

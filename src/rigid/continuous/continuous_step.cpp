@@ -42,8 +42,8 @@ DVec3 center_of_mass_of(const RigidWorld& w, std::uint32_t body) {
 // centre. Resting and sleeping bodies are not moved.
 class BodyImpulse {
  public:
-  BodyImpulse(RigidWorld& w, std::uint32_t body, const SavedMotion& kept)
-      : w_(w), bodies_{body, kept.other}, normal_(kept.blow), at_(kept.blow_at) {}
+  BodyImpulse(RigidWorld& w, std::uint32_t body, const SavedMotion& result)
+      : w_(w), bodies_{body, result.other}, normal_(result.blow), at_(result.blow_at) {}
 
   void apply() {
     for (int k = 0; k < 2; ++k) lever_[k] = to_float(at_ - center_of_mass_of(w_, bodies_[k]));
@@ -162,28 +162,28 @@ std::size_t count_halted_with_joints(const RigidWorld& w, const ContinuousScratc
 }
 
 // Two halted bodies with a joint between them both keep the smaller fraction.
-void halt_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<SavedMotion> kept,
+void halt_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<SavedMotion> results,
                    Arena& arena) {
   constexpr int kMaxPasses = 16;
   const std::span<std::uint32_t> index = arena.make<std::uint32_t>(w.bodies.motion.size());
   for (std::uint32_t& p : index) p = kNoIndex;
-  for (std::uint32_t k = 0; k < kept.size(); ++k) {
-    if (kept[k].fraction < 1.0f) index[scratch.fast[k].body] = k;
+  for (std::uint32_t k = 0; k < results.size(); ++k) {
+    if (results[k].fraction < 1.0f) index[scratch.fast[k].body] = k;
   }
   bool changed = true;
   for (int pass = 0; pass < kMaxPasses && changed; ++pass) {
     changed = false;
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      if (!(kept[k].fraction < 1.0f)) continue;
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      if (!(results[k].fraction < 1.0f)) continue;
       const std::int32_t body = std::int32_t(scratch.fast[k].body);
       for (const std::uint32_t slot : joints_of(w.bodies, std::uint32_t(body))) {
         const JointRecord& joint = w.joints.records[slot];
         const std::int32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
         if (other == kNoBody || index[std::size_t(other)] == kNoIndex || !constrains_position(w, slot))
           continue;
-        const float others = kept[index[std::size_t(other)]].fraction;
-        changed = changed || others < kept[k].fraction;
-        kept[k].fraction = min(kept[k].fraction, others);
+        const float others = results[index[std::size_t(other)]].fraction;
+        changed = changed || others < results[k].fraction;
+        results[k].fraction = min(results[k].fraction, others);
       }
     }
   }
@@ -192,14 +192,14 @@ void halt_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
 void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   scratch.fast.clear();
-  const auto goes_fast = [&](std::uint32_t n) {
+  const auto is_moving_fast = [&](std::uint32_t n) {
     const std::uint32_t i = w.bodies.awake[n];
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
     return is_fast(motion.delta_position, motion.delta_rotation, mass.reach, mass.size) && is_movable(w.bodies.flags[i]) &&
            !w.bodies.shapes[i].empty();
   };
-  for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), goes_fast).list) {
+  for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), is_moving_fast).list) {
     const std::uint32_t i = w.bodies.awake[n];
     // A body with contacts must not be halted in the air: it keeps a part of its displacement, and the
     // contacts respond.
@@ -238,10 +238,10 @@ void remove_unblocked(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
       if (scratch.near_stops.test(id.index)) return false;
     return true;
   };
-  std::size_t kept = 0;
+  std::size_t count = 0;
   for (std::size_t k = 0; k < fast.size(); ++k)
-    if (!is_free(k)) fast[kept++] = fast[k];
-  fast.resize(kept);
+    if (!is_free(k)) fast[count++] = fast[k];
+  fast.resize(count);
 }
 
 void list_moved_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
@@ -303,20 +303,21 @@ std::span<const HaltedBody> halt_bodies(RigidWorld& w, ContinuousScratch& scratc
   if (!halted.empty()) halt_together(w, scratch, scratch.kept, arena);
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
-    const SavedMotion& kept = scratch.kept[k];
-    if (!(kept.fraction < 1.0f)) continue;
+    const SavedMotion& result = scratch.kept[k];
+    if (!(result.fraction < 1.0f)) continue;
     BodyMotion& motion = w.bodies.motion[i];
     if (!joints_of(w.bodies, i).empty())
-      halted[halted_count++] = {i, kept.fraction, motion.delta_position, motion.delta_rotation};
-    const Quat impact_orientation = pose_at(sweep_of_body(w.bodies, i), double(kept.fraction)).orientation;
+      halted[halted_count++] = {i, result.fraction, motion.delta_position, motion.delta_rotation};
+    const Quat impact_orientation = pose_at(sweep_of_body(w.bodies, i), double(result.fraction)).orientation;
     const Quat end = w.bodies.orientations[i];
-    w.bodies.orientations[i] = kept.turn == Vec3{} ? impact_orientation : integrate_rotation(impact_orientation, kept.turn);
+    w.bodies.orientations[i] =
+        result.turn == Vec3{} ? impact_orientation : integrate_rotation(impact_orientation, result.turn);
     motion.angular_velocity = spin_at(w.bodies.masses[i], w.bodies.flags[i], end, w.bodies.orientations[i],
                                       motion.angular_velocity);
-    motion.delta_position = kept.fraction * motion.delta_position + kept.slide;
-    motion.delta_rotation = kept.fraction * motion.delta_rotation + kept.turn;
+    motion.delta_position = result.fraction * motion.delta_position + result.slide;
+    motion.delta_rotation = result.fraction * motion.delta_rotation + result.turn;
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
-    if (!(kept.blow == Vec3{})) BodyImpulse(w, i, kept).apply();
+    if (!(result.blow == Vec3{})) BodyImpulse(w, i, result).apply();
   }
   return halted;
 }

@@ -110,7 +110,7 @@ void update_end(const RigidWorld& w, SpringEnd& end) {
   end.velocity = DVec3(motion.linear_velocity) + cross(DVec3(motion.angular_velocity), lever);
 }
 
-void kick_end(RigidWorld& w, const SpringEnd& end, DVec3 impulse) {
+void apply_impulse_to_end(RigidWorld& w, const SpringEnd& end, DVec3 impulse) {
   if (end.index >= 0 || end.body == kNoBody || !is_active(w, std::uint32_t(end.body))) return;
   const std::size_t i = std::size_t(end.body);
   BodyMotion& motion = w.bodies.motion[i];
@@ -385,7 +385,7 @@ void move_carried_stage(void* context, int begin, int end, int) {
   }
 }
 
-void kick_carriers_stage(void* context, int, int, int) {
+void push_carriers_stage(void* context, int, int, int) {
   SmoothMotion& motion = *static_cast<SmoothMotion*>(context);
   RigidWorld& w = *motion.world;
   // Loose springs are all evaluated before any acts.
@@ -398,14 +398,14 @@ void kick_carriers_stage(void* context, int, int, int) {
     spring.length = on_b.length;
     spring.total += spring.impulse;
   }
-  const auto kick = [&](const SmoothSpring& spring) {
-    kick_end(w, spring.a, -spring.impulse);
-    kick_end(w, spring.b, spring.impulse);
+  const auto apply = [&](const SmoothSpring& spring) {
+    apply_impulse_to_end(w, spring.a, -spring.impulse);
+    apply_impulse_to_end(w, spring.b, spring.impulse);
   };
-  for (const SmoothSpring& spring : motion.loose) kick(spring);
+  for (const SmoothSpring& spring : motion.loose) apply(spring);
   for (const SmoothSystem& system : motion.systems) {
     if (!system.carried) continue;
-    for (const SmoothSpring& spring : system.springs) kick(spring);
+    for (const SmoothSpring& spring : system.springs) apply(spring);
   }
   motion.time += motion.h;
 }
@@ -413,7 +413,7 @@ void kick_carriers_stage(void* context, int, int, int) {
 void finish_smooth_stage(void* context, int begin, int end, int) {
   const SmoothMotion& motion = *static_cast<SmoothMotion*>(context);
   RigidWorld& w = *motion.world;
-  const bool keeps_moves = motion.settings.integrator == IntegratorKind::verlet;
+  const bool stores_last_move = motion.settings.integrator == IntegratorKind::verlet;
   for (int n = begin; n < end; ++n) {
     SmoothSystem& system = motion.systems[std::size_t(n)];
     SchemeRoom& room = motion.rooms[std::size_t(n)];
@@ -435,7 +435,7 @@ void finish_smooth_stage(void* context, int begin, int end, int) {
       const BodyFlags& flags = w.bodies.flags[i];
       if (mass.isotropic == 0 || flags.locked_angular != 0)
         w.bodies.inertia[i] = world_inertia(mass, flags, w.bodies.orientations[i]);
-      if (!keeps_moves) continue;
+      if (!stores_last_move) continue;
       LastMove& move = w.bodies.last_moves[i];
       move = room.moves[k];
       move.linear = to.linear_velocity;

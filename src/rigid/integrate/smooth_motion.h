@@ -44,7 +44,7 @@ SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::spa
 void move_smooth_stage(void* context, int begin, int end, int worker);  // once, before all sub-steps
 // in each sub-step, before its forces
 void move_carried_stage(void* context, int begin, int end, int worker);
-void kick_carriers_stage(void* context, int begin, int end, int worker);  // after that; one block
+void push_carriers_stage(void* context, int begin, int end, int worker);  // after that; one block
 void finish_smooth_stage(void* context, int begin, int end, int worker);  // once, after all sub-steps
 
 // Stores the impulses of springs in their joints, and the error control in the report.

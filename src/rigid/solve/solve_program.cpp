@@ -371,7 +371,7 @@ void add_before_contacts(ProgramWriter& program, BatchContext& solve, const Half
   program.add(record_approach_stage, &solve, part.impacts);
   if (solve.smooth.any_carried) {
     program.add(smooth_stage<move_carried_stage>, &solve, solve.smooth.count());
-    program.add(smooth_stage<kick_carriers_stage>, &solve, 1);
+    program.add(smooth_stage<push_carriers_stage>, &solve, 1);
   }
   add_motion(program, solve, is_warm ? predict_warm_stage : predict_stage, part.bodies);
   program.add(apply_restitution_stage, &solve, part.impacts);

@@ -8,7 +8,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// -------------------------------------------------------------------------------------------------------------- place
+// -------------------------------------------------------------------------------------------------------------- preparation
 
 template <int W>
 GYRE_INLINE void prepare_hinge_drives(const WideJoint<W>& joint, WideDrives<W>& d, const WideBody<W>& a,
@@ -52,7 +52,7 @@ __attribute__((noinline)) void prepare_lane_servos(const WideBundle<W>& bundle) 
   }
 }
 
-// -------------------------------------------------------------------------------------------------------------- sweep
+// -------------------------------------------------------------------------------------------------------------- iteration
 
 // Applies an angular impulse to b, and its opposite to a, with inertias without geometric stiffness. (Not
 // inlined: it has many callers.)
@@ -111,7 +111,7 @@ __attribute__((noinline)) void iterate_drives(const WideBundle<W>& bundle) {
   }
 }
 
-// ------------------------------------------------------------------------------------------------- what they bore
+// ------------------------------------------------------------------------------------------------- impulses
 
 // Of a joint's drive and friction together.
 template <int W>

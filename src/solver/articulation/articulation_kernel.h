@@ -10,7 +10,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// -------------------------------------------------------------------------------------------------- what is asked for
+// -------------------------------------------------------------------------------------------------- bias
 
 template <int W>
 GYRE_INLINE QuatW<W> small_rotation(Vec3W<W> v) {
@@ -191,7 +191,7 @@ __attribute__((noinline)) void relax(const WideBundle<W>& bundle, Mask<W> lanes)
   if (any(lanes)) solve_rows<W, BiasUse::relax>(bundle, lanes);
 }
 
-// -------------------------------------------------------------------------------------------------------------- stops
+// -------------------------------------------------------------------------------------------------------------- limits
 
 // The impulse of a limit in the last half step, along its present axis; zero for axes that cannot rotate.
 template <int W>
@@ -276,7 +276,7 @@ void solve_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, con
   const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
   const EnergyLimiter<W> limiter(
-      bundle, Mask<W>::splat(s.keeps_energy) & (extreme_ratio_lanes(bundle) | find_fast(bundle, s.substep)));
+      bundle, Mask<W>::splat(s.limits_energy) & (extreme_ratio_lanes(bundle) | find_fast(bundle, s.substep)));
   warm_start_limits(bundle);
   if (plain.drive_count > 0) {
     warm_start_driven(bundle);

@@ -8,7 +8,7 @@
 namespace gyre::articulation_test {
 namespace {
 
-TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
+TEST(ArticulationKernel, LanesMatchOneArticulation) {
   for (const float tension : {0.05f, 50.0f}) {  // the second adds geometric stiffness
     SCOPED_TRACE(tension);
     Shape shape;
@@ -20,7 +20,7 @@ TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
   }
 }
 
-TEST(LinkageKernel, DrivesAndFrictionInLanesDoWhatTheyDoInOneLinkage) {
+TEST(ArticulationKernel, DrivesAndFrictionInLanesMatchOneArticulation) {
   Shape shape;
   Crowd one_by_one(0.05f, Driven::iterative), side_by_side(0.05f, Driven::iterative);
   solve_one_by_one(one_by_one, shape);
@@ -42,7 +42,7 @@ TEST(LinkageKernel, DrivesAndFrictionInLanesDoWhatTheyDoInOneLinkage) {
 }
 
 // Strong ones reach their targets, weak ones act with all their force.
-TEST(LinkageKernel, MotorsInLanesDoWhatTheyDoInOneLinkage) {
+TEST(ArticulationKernel, MotorsInLanesMatchOneArticulation) {
   Shape shape;
   Crowd one_by_one(0.05f, Driven::motors), side_by_side(0.05f, Driven::motors);
   solve_one_by_one(one_by_one, shape);
@@ -96,7 +96,7 @@ void expect_same_bits_at_every_width(float tension, Driven driven, const Between
   }
 }
 
-TEST(LinkageKernel, EveryWidthHasTheSameBits) {
+TEST(ArticulationKernel, EveryWidthHasTheSameBits) {
   for (const Driven driven : {Driven::no, Driven::iterative, Driven::motors}) {
     for (const float tension : {0.05f, 50.0f}) {
       // Some lanes have cached entries that others compute anew; some spin so fast that they lose the speed
@@ -108,7 +108,7 @@ TEST(LinkageKernel, EveryWidthHasTheSameBits) {
 }
 
 // Brings a copy into position, within its limits, with speeds of about `noise`.
-void calm(Crowd& crowd, int copy, float noise) {
+void settle(Crowd& crowd, int copy, float noise) {
   Random random{std::uint32_t(copy)};
   for (std::size_t i = std::size_t(copy * kBodies); i < std::size_t((copy + 1) * kBodies); ++i) {
     crowd.motion[i].linear_velocity = random.vector(noise);
@@ -132,7 +132,7 @@ bool same_motion(const Crowd& a, const Crowd& b, int copy) {
   return std::memcmp(&a.motion[first], &b.motion[first], kBodies * sizeof(BodyMotion)) == 0;
 }
 
-TEST(LinkageKernel, WaysOfStopsAreKeptUntilAJointHasTurnedFar) {
+TEST(ArticulationKernel, DelassusEntriesStayCachedUntilAJointRotatesFar) {
   Shape shape;
   Crowd kept(0.05f), forgotten(0.05f), still(0.05f);
   solve_side_by_side(kept, shape, 0, {.turn = 0.4f});
@@ -147,26 +147,26 @@ TEST(LinkageKernel, WaysOfStopsAreKeptUntilAJointHasTurnedFar) {
     }
   }
   // Copies that hardly rotate go on with cached entries: equal to new ones up to rounding.
-  Crowd nearly_kept(0.05f), nearly_forgotten(0.05f);
-  solve_side_by_side(nearly_kept, shape, 0, {.turn = 0.02f});
+  Crowd nearly_cached(0.05f), nearly_forgotten(0.05f);
+  solve_side_by_side(nearly_cached, shape, 0, {.turn = 0.02f});
   solve_side_by_side(nearly_forgotten, shape, 0, {.turn = 0.02f, .forget = true});
-  expect_same(nearly_kept, nearly_forgotten);
-  int kept_copies = 0;  // not all have an active limit
+  expect_same(nearly_cached, nearly_forgotten);
+  int cached_copies = 0;  // not all have an active limit
   for (int copy = 1; copy < kCopies; copy += 2)
-    kept_copies += same_motion(nearly_kept, nearly_forgotten, copy) ? 0 : 1;
-  EXPECT_GE(kept_copies, 2) << "nothing is kept";
+    cached_copies += same_motion(nearly_cached, nearly_forgotten, copy) ? 0 : 1;
+  EXPECT_GE(cached_copies, 2) << "nothing is kept";
 }
 
-TEST(LinkageKernel, WhatMissesNothingButRoundingIsLeftAsItIs) {
+TEST(ArticulationKernel, WhatMissesNothingButRoundingIsLeftAsItIs) {
   Shape shape;
-  const auto calm_every_other = [](Crowd& crowd) {
-    for (int copy = 0; copy < kCopies; copy += 2) calm(crowd, copy, copy == 2 ? 1.0e-4f : 1.0e-6f);
+  const auto settle_every_other = [](Crowd& crowd) {
+    for (int copy = 0; copy < kCopies; copy += 2) settle(crowd, copy, copy == 2 ? 1.0e-4f : 1.0e-6f);
   };
   Crowd before(0.05f);
-  calm_every_other(before);
+  settle_every_other(before);
   for (const int width : {0, 1, 4, 8, 16}) {
     Crowd after(0.05f);
-    calm_every_other(after);
+    settle_every_other(after);
     solve_side_by_side(after, shape, width);
     for (int copy = 0; copy < kCopies; ++copy)
       EXPECT_EQ(same_motion(before, after, copy), copy % 2 == 0 && copy != 2)
@@ -178,7 +178,7 @@ TEST(LinkageKernel, WhatMissesNothingButRoundingIsLeftAsItIs) {
 // of float steps of all momentum and impulses of a body.
 constexpr double kSumRounding = 32 * 0x1p-23;
 
-TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
+TEST(ArticulationKernel, SpeedFromErrorsMayStayForTheNextHalfStep) {
   Shape shape;
   Crowd left(0.05f), taken(0.05f), before(0.05f);
   for (Crowd* crowd : {&left, &taken}) crowd->open_limits();
@@ -207,7 +207,7 @@ TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
 }
 
 // Drives would hold against it.
-TEST(LinkageKernel, WhatCameFromErrorsIsTakenAwayWhereSomethingIsSwept) {
+TEST(ArticulationKernel, SpeedFromErrorsIsRemovedWithIterativeDrives) {
   Shape shape;
   Crowd passed(0.05f, Driven::iterative), finished(0.05f, Driven::iterative);
   for (Crowd* crowd : {&passed, &finished}) crowd->open_limits();
@@ -217,16 +217,16 @@ TEST(LinkageKernel, WhatCameFromErrorsIsTakenAwayWhereSomethingIsSwept) {
     EXPECT_TRUE(same_motion(passed, finished, copy)) << "copy " << copy;
 }
 
-TEST(LinkageKernel, PassingOnAsksForWhatTheNextPartBeginsWith) {
+TEST(ArticulationKernel, EndOfHalfStepComputesTheNextBias) {
   Shape shape;
   Crowd passed(0.05f), asked(0.05f);
-  solve_side_by_side(passed, shape, 0, {.ends = Between::Ends::passes, .asks = false});
+  solve_side_by_side(passed, shape, 0, {.ends = Between::Ends::passes, .computes_bias = false});
   solve_side_by_side(asked, shape, 0, {.ends = Between::Ends::passes});
   for (int copy = 0; copy < kCopies; ++copy) EXPECT_TRUE(same_motion(passed, asked, copy)) << "copy " << copy;
 }
 
 // More columns than a word has bits: two branches of a tree, with alternating columns, that meet at the last.
-TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
+TEST(ArticulationMatrix, WhatEliminationReachesHasABitForEachColumn) {
   constexpr std::uint32_t kColumns = 151, kMeet = 140;
   std::vector<BlockColumn> columns(kColumns);
   std::vector<BlockEntry> entries(kColumns - 1);

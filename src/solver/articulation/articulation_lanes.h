@@ -38,7 +38,7 @@ struct LaneJoint {
   float position = 0.0f;                           // rad: the twist
   float inverse_swing_y = 0.0f, inverse_swing_z = 0.0f;  // cones: 1 / the largest swing, 1/rad
   LaneLimitAxis twist, swing;
-  // Of this sub-step.
+  // Values of this sub-step.
   Vec3 from_a, from_b;  // anchors from the centres of mass, world axes
   Vec3 error;           // anchor b minus anchor a
   Vec3 compliance, target_speed;  // of the three point rows, as ArticulationRows
@@ -56,7 +56,7 @@ struct LaneDrives {
   Vec3 target_speed;                                           // rad/s, in the joint's frame on a
   Quat target;                                                 // a from b; for hinges x is an angle
   float rate = 0.0f, mass_scale = 1.0f, impulse_scale = 0.0f;  // softness of the drive
-  // Of this sub-step.
+  // Values of this sub-step.
   Vec3 error, speed;  // of the drive: error from the target, and target velocity
   Sym3 mass;          // effective
 };
@@ -142,7 +142,7 @@ struct LaneArrays {
   BodyMotion* motion = nullptr;
   const BodyInertia* inertia = nullptr;
   const Quat* orientation = nullptr;
-  // Whether a stage loads the velocities of movable bodies from the records, and stores them there. Otherwise
+  // True if a stage loads the velocities of movable bodies from the records, and stores them there. Otherwise
   // they stay in the lanes, also without -0.
   bool loads = true, stores = true;
 };
@@ -164,7 +164,7 @@ struct LaneSettings {
   // Beyond this rotation in a sub-step the second-order bias fades.
   float max_bias_angle = kMaxBiasAngle;  // rad
   // Turns the energy limiter on; off if speeds stand for displacements.
-  bool keeps_energy = true;
+  bool limits_energy = true;
 };
 
 // The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body

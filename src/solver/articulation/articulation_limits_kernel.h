@@ -173,7 +173,7 @@ class LimitSolver {
     return live;
   }
 
-  // --------------------------------------------------------------------------------------------- what an impulse does
+  // --------------------------------------------------------------------------------------------- response
 
   GYRE_INLINE float* response_of(std::uint32_t a) const {
     return responses_ + 2 * std::size_t(a) * b_.plain.row_count * W;
@@ -498,7 +498,7 @@ class LimitSolver {
   // Applies the impulses and the answer of the equations to all of them.
   void apply() {
     for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) spins_[i] = nothing();
-    Mask<W> pushed = Mask<W>::splat(false);
+    Mask<W> applied = Mask<W>::splat(false);
     for (std::uint32_t a = 0; a < count(); ++a) {
       WideLimit<W>& limit = limits_[a];
       if (limit.active == 0) continue;
@@ -508,13 +508,14 @@ class LimitSolver {
       limit.axis->high_impulse = max(limit.axis->high_impulse + limit.high_x, Wide<W>(0.0f));
       const Mask<W> own = x != 0.0f;
       if (none(own)) continue;
-      pushed = pushed | own;
+      applied = applied | own;
       const LaneNode& node = *limit.node;
       if (b_.moves(node.a)) spins_[node.a] += x * limit.spin_a;
       if (b_.moves(node.b)) spins_[node.b] += x * limit.spin_b;
     }
-    if (none(pushed)) return;
-    for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) b_.bodies[i].angular += keep(pushed, spins_[i]);
+    if (none(applied)) return;
+    for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i)
+      b_.bodies[i].angular += keep(applied, spins_[i]);
     factor_bundle(b_);
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
       const LaneNode& node = b_.plain.nodes[n];
@@ -522,15 +523,15 @@ class LimitSolver {
                   b_.moves(node.b) ? spins_[node.b] : nothing());
     }
     solve_lanes<W>(b_.plain);
-    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) answer(n, pushed);
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) answer(n, applied);
   }
-  GYRE_INLINE void answer(std::uint32_t n, Mask<W> pushed) const {
+  GYRE_INLINE void answer(std::uint32_t n, Mask<W> applied) const {
     const LaneNode& node = b_.plain.nodes[n];
     WideJoint<W>& joint = b_.joints[n];
-    const Vec3W<W> p = keep(pushed, b_.rows3(node.row));
+    const Vec3W<W> p = keep(applied, b_.rows3(node.row));
     Vec3W<W> t = nothing();
     if (node.kind == JointKind::hinge) {
-      t = keep(pushed,
+      t = keep(applied,
                b_.row(node.row + 3) * joint.perpendicular_1 + b_.row(node.row + 4) * joint.perpendicular_2);
       joint.angular_impulse += t;
     }

@@ -241,7 +241,7 @@ void solve_lanes(const ArticulationBundle& bundle) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------- right sides of few rows
+// ---------------------------------------------------------------------------------------------- sparse right sides
 
 // The columns that elimination reaches from a sparse right side: a bit for each, by its index.
 using ReachedColumns = std::uint64_t*;

@@ -20,7 +20,7 @@ GYRE_INLINE Vec3W<W> clamp_length(Vec3W<W> v, std::type_identity_t<Wide<W>> max_
   return select(beyond, (max_length / size) * v, v);
 }
 
-// -------------------------------------------------------------------------------------------------------------- stops
+// -------------------------------------------------------------------------------------------------------------- limits
 
 template <int W>
 GYRE_INLINE void prepare_limit_axis(WideLimitAxis<W>& axis, Vec3W<W> about, const WideBody<W>& a,
@@ -108,7 +108,7 @@ GYRE_INLINE void prepare_lane_joint(const LaneNode& node, WideJoint<W>& joint, c
   if (node.has_swing) prepare_swing(joint, frame_a, x_b, a, b);
 }
 
-// ----------------------------------------------------------------------------------------------------------- inertias
+// ----------------------------------------------------------------------------------------------------------- geometric stiffness
 
 template <int W>
 GYRE_INLINE void add_geometric_stiffness_term(WideBody<W>& body, Vec3W<W> r, Vec3W<W> f) {

@@ -262,7 +262,7 @@ struct Between {
   bool forget = false;  // only impulses remain of the first half step
   // The stage between the half steps: none, that between half steps, or that at the end of a step.
   enum class Ends : std::uint8_t { no, passes, finishes } ends = Ends::no;
-  bool asks = true;  // the bias of the second half step is computed by itself too
+  bool computes_bias = true;  // the bias of the second half step is computed by itself too
 };
 
 inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKernels& kernels,
@@ -339,7 +339,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
       // end_half_step follows preparation, and computes the bias.
       const bool passed = part == 1 && between.ends == Between::Ends::passes;
       if (!passed) kernels.prepare(bundle, arrays, settings);
-      if (!passed || between.asks) kernels.compute_bias(bundle, arrays, settings);
+      if (!passed || between.computes_bias) kernels.compute_bias(bundle, arrays, settings);
       kernels.solve(bundle, arrays, settings);
       kernels.solve_after_contacts(bundle, arrays, settings);
     }

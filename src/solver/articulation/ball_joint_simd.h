@@ -22,12 +22,12 @@ struct LaneBall {
 
 // How a lane reads the inertia of its bodies: not at all; once, as it is constant; or each time, as it
 // rotates.
-constexpr std::int32_t kInertiaKnown = 0, kInertiaStays = 1, kInertiaRotates = 2;
+constexpr std::int32_t kInertiaKnown = 0, kInertiaConstant = 1, kInertiaRotates = 2;
 
 // Motion records of its bodies, or kNoBody; for writing kNoBody if the body is not movable.
 struct LaneBallBodies {
   std::int32_t read_a = kNoBody, read_b = kNoBody, write_a = kNoBody, write_b = kNoBody;
-  std::int32_t inertia = kInertiaStays;
+  std::int32_t inertia = kInertiaConstant;
 };
 
 struct BallArrays {

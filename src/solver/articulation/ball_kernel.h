@@ -38,31 +38,31 @@ struct BallBlock {
   const BallInertia<W>* inertia_b;
 
   BallInertia<W> own_inertia_a, own_inertia_b;
-  RecordList<W> pushed_a, pushed_b;  // immovable bodies are written to `nowhere`
+  RecordList<W> write_list_a, write_list_b;  // immovable bodies are written to `nowhere`
   alignas(64) float nowhere[kRecordFloats];
 };
 
 template <int W>
 GYRE_INLINE const RecordList<W>* locate_lanes(float* motion, const std::int32_t* read,
                                               const std::int32_t* write, float* nowhere,
-                                              RecordList<W>& record, RecordList<W>& pushed) {
+                                              RecordList<W>& record, RecordList<W>& write_list) {
   // Read-only records are never written.
   locate_records<W>(motion, read, const_cast<float*>(kNoRecord), record);
   if (all(WideInt<W>::load_unaligned(read) == WideInt<W>::load_unaligned(write)) &&
       none(WideInt<W>::load_unaligned(read) < WideInt<W>(0)))
     return &record;
-  locate_records<W>(motion, write, nowhere, pushed);
-  return &pushed;
+  locate_records<W>(motion, write, nowhere, write_list);
+  return &write_list;
 }
 template <int W>
 void locate_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
   float* const motion = &arrays.motion->linear_velocity.x;
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
-    block.written_a =
-        locate_lanes<W>(motion, block.read_a, block.write_a, block.nowhere, block.record_a, block.pushed_a);
-    block.written_b =
-        locate_lanes<W>(motion, block.read_b, block.write_b, block.nowhere, block.record_b, block.pushed_b);
+    block.written_a = locate_lanes<W>(motion, block.read_a, block.write_a, block.nowhere, block.record_a,
+                                      block.write_list_a);
+    block.written_b = locate_lanes<W>(motion, block.read_b, block.write_b, block.nowhere, block.record_b,
+                                      block.write_list_b);
   }
 }
 

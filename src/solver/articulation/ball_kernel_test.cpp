@@ -95,7 +95,7 @@ void solve_side_by_side(Pairs& pairs, int width) {
     finish_ball(kernels, memory, i / kernels.width, i % kernels.width, pairs.records[std::size_t(i)]);
 }
 
-TEST(BallKernel, LanesHaveTheBitsOfJointsAlone) {
+TEST(BallKernel, LanesHaveTheBitsOfSingleJoints) {
   Pairs alone;
   const Pairs untouched;
   solve_alone(alone);

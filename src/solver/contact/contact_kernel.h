@@ -26,7 +26,7 @@ constexpr float kSpringSpeed = 0.125f;
 // chest cannot return without passing it, and the neck would press it on the chest ever harder.
 constexpr float kDeepPenetrationSlops = 750.0f, kDeepPenetrationLeak = 2.0f;
 // Projected iterations over the points of a manifold with tensile points.
-constexpr int kPullIterations = 6;
+constexpr int kTensionIterations = 6;
 
 template <int W, bool kHasA>
 GYRE_INLINE void warm_start_block(ContactBlock<W>& block) {
@@ -144,7 +144,7 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
 // start from the accumulated impulses: the clamped answer of the block is too strong, and piles would shake.
 template <int W, int Count>
 GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& cold, const Wide<W>* residual,
-                                         const Wide<W>* accumulated, Mask<W> pulls, Wide<W>* next) {
+                                         const Wide<W>* accumulated, Mask<W> tensile, Wide<W>* next) {
   const Wide<W> zero(0.0f), one(1.0f);
   Wide<W> tried[Count], change[Count];
   GYRE_UNROLL
@@ -153,7 +153,7 @@ GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& cold, const 
     change[i] = tried[i] - accumulated[i];
   }
   GYRE_ROLLED
-  for (int iteration = 0; iteration < kPullIterations; ++iteration) {
+  for (int iteration = 0; iteration < kTensionIterations; ++iteration) {
     auto unchanged = one > zero;
     GYRE_UNROLL
     for (int i = 0; i < Count; ++i) {
@@ -166,10 +166,10 @@ GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& cold, const 
       change[i] = now - accumulated[i];
     }
     // If an iteration changes nothing in these lanes, the next would not either. Other lanes do not matter.
-    if (none(and_not(pulls, unchanged))) break;
+    if (none(and_not(tensile, unchanged))) break;
   }
   GYRE_UNROLL
-  for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
+  for (int i = 0; i < Count; ++i) next[i] = select(tensile, tried[i], next[i]);
 }
 
 // The normal rows of a manifold, solved together as a small complementarity problem: first as if all points
@@ -180,7 +180,7 @@ template <int W, bool kSprung, int Count, bool kHasA>
 GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
   const NormalMotion<W> displacements = normal_displacements<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
-  const Wide<W> lost = Wide<W>(-kDeepPenetrationSlops) * block.slop;
+  const Wide<W> deep_separation = Wide<W>(-kDeepPenetrationSlops) * block.slop;
   const Wide<W> leak(1.0f / (1.0f + kDeepPenetrationLeak * substep));
   Wide<W> residual[Count];     // speed that the row removes
   Wide<W> accumulated[Count];  // the accumulated impulse, minus the yield of the spring
@@ -202,7 +202,8 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
       accumulated[i] =
           block.impulses[i] - (block.compliance * near) * share * max(block.impulses[i] - point.mean_impulse, zero);
       if (block.jointed != 0) {
-        accumulated[i] = select(Mask<W>::of_bits(block.jointed) & (separation < lost), leak * accumulated[i], accumulated[i]);
+        accumulated[i] = select(Mask<W>::of_bits(block.jointed) & (separation < deep_separation),
+                                leak * accumulated[i], accumulated[i]);
       }
     } else {
       // A separated point may be released but never pulled: that would brake a body about to land.
@@ -215,17 +216,18 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
     if (block.has_uneven_points != 0) residual[i] = keep(Mask<W>::of_bits(block.rows[i]), residual[i]);
   }
   Wide<W> next[Count];
-  auto pulls = one < zero;
+  auto tensile = one < zero;
   GYRE_UNROLL
   for (int i = 0; i < Count; ++i) {
     Wide<W> change = block.inverse_k[packed(i, 0)] * residual[0];
     GYRE_UNROLL
     for (int j = 1; j < Count; ++j) change = change + block.inverse_k[packed(i, j)] * residual[j];
     const Wide<W> target = accumulated[i] - change;
-    pulls = pulls | (target < zero);
+    tensile = tensile | (target < zero);
     next[i] = max(target, zero);
   }
-  if (Count > 1 && any(pulls)) iterate_manifold_points<W, Count>(*block.cold, residual, accumulated, pulls, next);
+  if (Count > 1 && any(tensile))
+    iterate_manifold_points<W, Count>(*block.cold, residual, accumulated, tensile, next);
   Wide<W> total = next[0] - block.impulses[0];
   Vec3W<W> angular_sum = total * block.points[0].arm;
   block.impulses[0] = next[0];

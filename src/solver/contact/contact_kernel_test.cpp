@@ -67,16 +67,16 @@ TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
 
 // With automatic width, eight lanes on a processor that has sixteen use its registers; with a set width they
 // are those of any AVX2.
-TEST(ContactKernel, EightLanesUseTheRegistersOfSixteenWhereNobodyAsksForThem) {
-  const ContactKernels &best = select_contact_kernels(0), &asked = select_contact_kernels(8);
+TEST(ContactKernel, AutomaticEightLanesUseTheRegistersOfSixteen) {
+  const ContactKernels &best = select_contact_kernels(0), &chosen = select_contact_kernels(8);
   if (max_lanes() < 16) {
     EXPECT_EQ(&best, &select_contact_kernels(best.width));
     return;
   }
-  EXPECT_EQ(asked.width, 8);
+  EXPECT_EQ(chosen.width, 8);
   const ContactKernels& eight = best.width == 8 ? best : narrower_kernels(best);
   EXPECT_EQ(eight.width, 8);
-  EXPECT_NE(&eight, &asked);
+  EXPECT_NE(&eight, &chosen);
 }
 
 // A bone of 0.4 m on static ground. First its left end carries the load and friction, then its right end.

@@ -211,7 +211,7 @@ GYRE_INLINE Vec3W<W> relative_velocity(const PairMotion<W, kHasA>& pair, Vec3W<W
   if constexpr (kHasA) return velocity - (pair.linear_a + cross(pair.angular_a, from_a));
   return velocity;
 }
-// How fast B turns against A.
+// Angular velocity of B against A.
 template <int W, bool kHasA>
 GYRE_INLINE Vec3W<W> relative_spin(const PairMotion<W, kHasA>& pair) {
   if constexpr (kHasA) return pair.angular_b - pair.angular_a;

@@ -30,15 +30,15 @@ GYRE_INLINE PairMotion<W, kHasA> displacements(const ContactBlock<W>& block) {
 // Effect of a unit impulse at each point on the two bodies (on A only if there is one), and on the
 // separations of the points.
 template <int W>
-struct PushResponse {
+struct PushoutResponse {
   Wide<W> inverse_mass_a, inverse_mass_b;
   Vec3W<W> angular_a[kMaxManifoldPoints], angular_b[kMaxManifoldPoints];
   Wide<W> k[10];
 };
 
 template <int W, bool kHasA>
-GYRE_INLINE PushResponse<W> push_response(const ContactBlock<W>& block) {
-  PushResponse<W> response;
+GYRE_INLINE PushoutResponse<W> pushout_response(const ContactBlock<W>& block) {
+  PushoutResponse<W> response;
   response.inverse_mass_b = block.cold->mobility_b * block.inverse_mass_b;
   Wide<W> masses = response.inverse_mass_b;
   if constexpr (kHasA) {
@@ -100,11 +100,11 @@ GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
   PairMotion<W, kHasA> pair = displacements<W, kHasA>(block);
   Wide<W> pushouts[kMaxManifoldPoints];
   if (!find_pushouts<W>(block, pair, step, pushouts)) return;
-  const PushResponse<W> response = push_response<W, kHasA>(block);
+  const PushoutResponse<W> response = pushout_response<W, kHasA>(block);
   const int count = block.point_count;
-  Wide<W> pushes[kMaxManifoldPoints], inverse_diagonal[kMaxManifoldPoints];
+  Wide<W> impulses[kMaxManifoldPoints], inverse_diagonal[kMaxManifoldPoints];
   for (int i = 0; i < count; ++i) {
-    pushes[i] = zero;
+    impulses[i] = zero;
     const Wide<W> k = response.k[packed(i, i)];
     inverse_diagonal[i] = select((k > zero) & Mask<W>::of_bits(block.rows[i]),
                        Wide<W>(1.0f) / select(k > zero, k, Wide<W>(1.0f)), zero);
@@ -114,19 +114,19 @@ GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
     auto unchanged = zero == zero;
     for (int i = 0; i < count; ++i) {
       Wide<W> left = pushouts[i];
-      for (int j = 0; j < count; ++j) left = left - response.k[packed(i, j)] * pushes[j];
-      const Wide<W> now = max(pushes[i] + inverse_diagonal[i] * left, zero);
-      unchanged = unchanged & (now == pushes[i]);
-      pushes[i] = now;
+      for (int j = 0; j < count; ++j) left = left - response.k[packed(i, j)] * impulses[j];
+      const Wide<W> now = max(impulses[i] + inverse_diagonal[i] * left, zero);
+      unchanged = unchanged & (now == impulses[i]);
+      impulses[i] = now;
     }
     // If an iteration changes nothing, the next would not either.
     if (all(unchanged)) break;
   }
   Wide<W> total = zero;
   for (int i = 0; i < count; ++i) {
-    total = total + pushes[i];
-    if constexpr (kHasA) pair.angular_a = pair.angular_a - pushes[i] * response.angular_a[i];
-    pair.angular_b = pair.angular_b + pushes[i] * response.angular_b[i];
+    total = total + impulses[i];
+    if constexpr (kHasA) pair.angular_a = pair.angular_a - impulses[i] * response.angular_a[i];
+    pair.angular_b = pair.angular_b + impulses[i] * response.angular_b[i];
   }
   if constexpr (kHasA) pair.linear_a = pair.linear_a - (response.inverse_mass_a * total) * block.normal;
   pair.linear_b = pair.linear_b + (response.inverse_mass_b * total) * block.normal;

@@ -193,7 +193,7 @@ SwingLimit find_swing_limit(const JointDetail& detail, Quat frame_a, Quat frame_
 
 }  // namespace
 
-// ------------------------------------------------------------------------------------------------------------- placing
+// ------------------------------------------------------------------------------------------------------------- preparation
 
 Vec3 angle_axis(Quat frame_a, Quat frame_b, int angle) { return cardan_of(frame_a, frame_b).dual(angle); }
 

@@ -25,7 +25,7 @@ struct Crowd {
   std::vector<BodyMotion> motion;
   std::vector<BodyInertia> inertia;
   std::vector<Quat> orientations;
-  std::vector<Vec3> turns;
+  std::vector<Vec3> rotations;
   std::vector<std::max_align_t> memory;
   const MotionKernels* kernels = nullptr;
   int blocks = 0;
@@ -47,7 +47,7 @@ struct Crowd {
     world.inverse_mass = 1.0f;
     inertia.push_back(world);
     orientations.push_back(orientation);
-    turns.push_back({});
+    rotations.push_back({});
     return bodies.back();
   }
 
@@ -70,7 +70,7 @@ struct Crowd {
     kernels->integrate_positions(place(), 0, blocks, {motion.data(), inertia.data(), orientations.data()}, h, true);
   }
   void begin_projection() { kernels->begin_projection(place(), 0, blocks, motion.data()); }
-  void end_projection() { kernels->end_projection(place(), 0, blocks, motion.data(), turns.data()); }
+  void end_projection() { kernels->end_projection(place(), 0, blocks, motion.data(), rotations.data()); }
 };
 
 struct DQuat {
@@ -105,13 +105,13 @@ double composition_error(float angle) {
   return angle_between(exponential(crowd.motion[0].delta_rotation), exact);
 }
 
-TEST(MotionKernel, ComposesTurnsButForTermsOfTheFourthOrder) {
+TEST(MotionKernel, ComposesRotationsUpToTheFourthOrder) {
   const double coarse = composition_error(0.8f), fine = composition_error(0.4f);
   EXPECT_LT(fine, 0.4 * 0.4 * 0.4 * 0.4 / 24.0);
   EXPECT_NEAR(std::log2(coarse / fine), 4.0, 0.3);
 }
 
-TEST(MotionKernel, FreeBodyKeepsItsAngularMomentum) {
+TEST(MotionKernel, FreeBodyConservesAngularMomentum) {
   Random random;
   for (int round = 0; round < 50; ++round) {
     const Vec3 moments{random.between(1.0f, 2.0f), random.between(1.0f, 2.0f), random.between(0.1f, 1.0f)};
@@ -150,7 +150,7 @@ TEST(MotionKernel, SpeedsAreLimitedWithoutOverflow) {
   EXPECT_EQ(crowd.motion[1].linear_velocity, (Vec3{3, 4, 0}));
 }
 
-TEST(MotionKernel, GivesAgainWhatContactsGave) {
+TEST(MotionKernel, RepeatsTheEffectOfContacts) {
   Crowd crowd;
   crowd.add({1, 1, 1}, {}).velocity_gain = {0, -1, 0};
   crowd.prepare(1);
@@ -195,7 +195,7 @@ TEST(MotionKernel, ProjectionMovesWithoutTouchingVelocities) {
   EXPECT_EQ(crowd.motion[0].delta_position, (Vec3{0, 0.25f, 0}));
   EXPECT_EQ(crowd.motion[0].delta_rotation, (Vec3{0, 0, 0.125f}));
   EXPECT_EQ(crowd.motion[0].pushout, 0.5f);  // 0.25 m and 2 m times 0.125 rad
-  EXPECT_EQ(crowd.turns[0], (Vec3{0, 0, 0.125f}));
+  EXPECT_EQ(crowd.rotations[0], (Vec3{0, 0, 0.125f}));
 }
 
 // Bodies of every kind.
@@ -242,7 +242,7 @@ void expect_same_bits(const Crowd& a, const Crowd& b, int width) {
   EXPECT_EQ(std::memcmp(a.inertia.data(), b.inertia.data(), b.inertia.size() * sizeof(BodyInertia)), 0)
       << width;
   EXPECT_EQ(a.orientations, b.orientations) << width;
-  EXPECT_EQ(a.turns, b.turns) << width;
+  EXPECT_EQ(a.rotations, b.rotations) << width;
 }
 
 TEST(MotionKernel, EveryWidthHasTheBitsOfWidthOne) {
@@ -283,7 +283,7 @@ class Lanes {
 };
 
 // From contacts to contacts, with velocities in lanes or in records.
-Crowd pass_parts(int width, bool in_lanes) {
+Crowd run_half_steps(int width, bool in_lanes) {
   Random random;
   Crowd crowd = make_crowd(random);
   crowd.prepare(width);
@@ -314,7 +314,7 @@ TEST(MotionKernel, VelocitiesInLanesHaveTheBitsOfThoseInRecords) {
   if (select_contact_kernels(8).width < 8) GTEST_SKIP() << "this processor has fewer than eight lanes";
   for (const int asked : {8, 16}) {
     const int width = select_contact_kernels(asked).width;
-    expect_same_bits(pass_parts(width, true), pass_parts(width, false), width);
+    expect_same_bits(run_half_steps(width, true), run_half_steps(width, false), width);
   }
 }
 

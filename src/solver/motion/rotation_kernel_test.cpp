@@ -77,7 +77,7 @@ DQuat rotate_symmetric_top(DQuat start, DVec3 momentum, const Sym3& inertia, int
                     exponential_map((seconds * spin) * own));
 }
 
-void turn_plainly(Spinner& body, float seconds) {
+void rotate_plainly(Spinner& body, float seconds) {
   Vec3& spin = body.motion.angular_velocity;
   const Vec3 w = rotate_inverse(body.orientation, spin), own_momentum = body.inertia * w;
   const float angle = seconds * length(spin);
@@ -133,38 +133,39 @@ void expect_same(const Spinner& body, const Spinner& plain, int width) {
   EXPECT_EQ(body.motion.delta_rotation, plain.motion.delta_rotation) << "width " << width;
 }
 
-TEST(TurnKernel, TurnsManyBodiesAsEachAlone) {
+TEST(RotationKernel, RotatesManyBodiesAsSingleOnes) {
   Random random;
   for (int round = 0; round < 200; ++round) {
     const float seconds = round % 2 == 0 ? 1.0f / 60.0f : 1.0f / 480.0f;
     std::vector<Spinner> bodies;
     for (int i = 0; i <= round % kMaxRotations; ++i) bodies.push_back(make_spinner(random));
     std::vector<Spinner> plain = bodies;
-    for (Spinner& body : plain) turn_plainly(body, seconds);
+    for (Spinner& body : plain) rotate_plainly(body, seconds);
     for (const int width : {0, 1, 4, 8, 16}) {
       std::vector<Spinner> turned = bodies;
-      TorqueFreeRotation turns[kMaxRotations];
+      TorqueFreeRotation rotations[kMaxRotations];
       for (std::size_t i = 0; i < turned.size(); ++i)
-        turns[i] = {&turned[i].motion, &turned[i].orientation, &turned[i].inertia};
-      select_contact_kernels(width).rotation.rotate_torque_free(turns, int(turned.size()), seconds);
+        rotations[i] = {&turned[i].motion, &turned[i].orientation, &turned[i].inertia};
+      select_contact_kernels(width).rotation.rotate_torque_free(rotations, int(turned.size()), seconds);
       for (std::size_t i = 0; i < turned.size(); ++i) expect_same(turned[i], plain[i], width);
     }
   }
 }
 
-TEST(TurnKernel, TurnsByVectorsAsEachAlone) {
+TEST(RotationKernel, RotatesByVectorsAsSingleOnes) {
   Random random;
   for (int count = 0; count <= kMaxRotations; ++count) {
-    std::vector<ConstantRotation> turns;
+    std::vector<ConstantRotation> rotations;
     for (int i = 0; i < count; ++i) {
       const Spinner body = make_spinner(random);
-      turns.push_back({body.orientation, 0.1f * body.motion.angular_velocity});
+      rotations.push_back({body.orientation, 0.1f * body.motion.angular_velocity});
     }
     for (const int width : {0, 1, 4, 8, 16}) {
-      std::vector<ConstantRotation> turned = turns;
+      std::vector<ConstantRotation> turned = rotations;
       select_contact_kernels(width).rotation.rotate_at_constant_velocity(turned.data(), count);
-      for (std::size_t i = 0; i < turns.size(); ++i)
-        EXPECT_EQ(turned[i].orientation, integrate_rotation(turns[i].orientation, turns[i].rotation)) << width;
+      for (std::size_t i = 0; i < rotations.size(); ++i)
+        EXPECT_EQ(turned[i].orientation, integrate_rotation(rotations[i].orientation, rotations[i].rotation))
+            << width;
     }
   }
 }

@@ -64,11 +64,11 @@ struct ContactRow {
 };
 
 ContactRow make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness, float before) {
-  const Vec3 turn_a = cross(from_a, direction), turn_b = cross(from_b, direction);
-  return {{-double(direction.x), -double(direction.y), -double(direction.z), -double(turn_a.x),
-           -double(turn_a.y), -double(turn_a.z)},
-          {double(direction.x), double(direction.y), double(direction.z), double(turn_b.x), double(turn_b.y),
-           double(turn_b.z)},
+  const Vec3 angular_a = cross(from_a, direction), angular_b = cross(from_b, direction);
+  return {{-double(direction.x), -double(direction.y), -double(direction.z), -double(angular_a.x),
+           -double(angular_a.y), -double(angular_a.z)},
+          {double(direction.x), double(direction.y), double(direction.z), double(angular_b.x),
+           double(angular_b.y), double(angular_b.z)},
           stiffness,
           double(before)};
 }
@@ -293,11 +293,12 @@ class Solver {
     }
     const Vec3 from_b = impulse.friction_from_b;
     add(impulse.friction, from_b + (manifold.points[0].from_a - manifold.points[0].from_b), from_b, 1.0f);
-    const Vec3 turn = impulse.twist * manifold.normal + impulse.rolling;
-    const double turns[3] = {factor * double(turn.x), factor * double(turn.y), factor * double(turn.z)};
+    const Vec3 torsion = impulse.twist * manifold.normal + impulse.rolling;
+    const double torsions[3] = {factor * double(torsion.x), factor * double(torsion.y),
+                                factor * double(torsion.z)};
     for (int j = 0; j < 3; ++j) {
-      if (contact.node_a != kNoNode) rows_at(x, contact.node_a)[3 + j] -= turns[j];
-      if (contact.node_b != kNoNode) rows_at(x, contact.node_b)[3 + j] += turns[j];
+      if (contact.node_a != kNoNode) rows_at(x, contact.node_a)[3 + j] -= torsions[j];
+      if (contact.node_b != kNoNode) rows_at(x, contact.node_b)[3 + j] += torsions[j];
     }
   }
 
@@ -459,8 +460,8 @@ class Solver {
       const double twist = row_impulse(contact, rows.twist);
       const double limit = double(impulse.twist_per_normal) * load;
       const double slide = std::sqrt(u * u + v * v) / (double(c.static_friction) * load);
-      const double turn = limit > 0.0 ? twist / limit : 0.0;
-      const double use = std::sqrt(slide * slide + turn * turn);
+      const double twist_use = limit > 0.0 ? twist / limit : 0.0;
+      const double use = std::sqrt(slide * slide + twist_use * twist_use);
       const double share = use > 1.0 ? 1.0 / use : 1.0;
       impulse.friction = float(share * u) * rows.u + float(share * v) * rows.v;
       impulse.twist = float(share * twist);

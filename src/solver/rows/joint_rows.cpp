@@ -30,7 +30,7 @@ int equations_of(const JointRecord& joint, const JointConstraint& work) {
 
 // rad. Bodies that rotate further than this in a sub-step get less of the second-order bias. Articulations
 // fade it from kMaxBiasAngle on.
-constexpr double kMaxTurn = 0.15;
+constexpr double kMaxBiasRotation = 0.15;
 
 float bias_fade(const JointRecord& joint, const RowFrame& frame) {
   double fastest = 0.0;
@@ -38,7 +38,7 @@ float bias_fade(const JointRecord& joint, const RowFrame& frame) {
     if (body != kNoBody) fastest = max(fastest, length_squared(DVec3(frame.motion[body].angular_velocity)));
   }
   fastest *= square(frame.substep);
-  return fastest > square(kMaxTurn) ? float(square(kMaxTurn) / fastest) : 1.0f;
+  return fastest > square(kMaxBiasRotation) ? float(square(kMaxBiasRotation) / fastest) : 1.0f;
 }
 
 void add_equations(JointRecord& joint, JointConstraint& work, const RowFrame& frame, float rate,
