@@ -25,7 +25,7 @@ struct BundleSolve {
 using BundleKernel = void (*ArticulationKernels::*)(const ArticulationBundle&, const LaneArrays&,
                                                     const LaneSettings&);
 
-BundleSolve lay_out_bundles(const Articulations& linkages, const ContactKernels& kernels,
+BundleSolve lay_out_bundles(const Articulations& articulations, const ContactKernels& kernels,
                             const LaneArrays& arrays, const LaneSettings& settings, Arena& arena);
 // For bundles [begin, end).
 void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWorld& w,

@@ -265,16 +265,8 @@ struct Between {
   bool computes_bias = true;  // the bias of the second half step is computed by itself too
 };
 
-inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKernels& kernels,
-                               const Between& between) {
-  const ArticulationSolve solve = crowd.solve();
-  const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
-  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.compliance,
-                              add_geometric_stiffness};
-  const LaneStart start{.substep = kSubstep, .softness = kSettings.softness};
-  for (std::size_t i = 0; i < kJoints; ++i)
-    ASSERT_TRUE(fits_lane(crowd.records[i], crowd.detail_of(i), start, shape.nodes[i]));
-  Arena arena;
+// The bundle of one block of lanes.
+inline ArticulationBundle make_bundle(Shape& shape, const ArticulationKernels& kernels, Arena& arena) {
   const std::size_t lanes = std::size_t(kernels.width);
   ArticulationBundle bundle;
   bundle.kernels = &kernels;
@@ -309,6 +301,20 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
   bundle.room = arena.make<float>(lanes * shape.plan.widest).data();
   bundle.is_factored = arena.make<bool>(1).data();
   bundle.limits = arena.make<std::byte>(kernels.limit_room(bundle)).data();
+  return bundle;
+}
+
+inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKernels& kernels,
+                               const Between& between) {
+  const ArticulationSolve solve = crowd.solve();
+  const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
+  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.compliance,
+                              add_geometric_stiffness};
+  const LaneStart start{.substep = kSubstep, .softness = kSettings.softness};
+  for (std::size_t i = 0; i < kJoints; ++i)
+    ASSERT_TRUE(fits_lane(crowd.records[i], crowd.detail_of(i), start, shape.nodes[i]));
+  Arena arena;
+  const ArticulationBundle bundle = make_bundle(shape, kernels, arena);
   for (int first = 0; first < kCopies; first += kernels.width) {
     const int used = std::min(kernels.width, kCopies - first);
     clear_lanes(bundle);
