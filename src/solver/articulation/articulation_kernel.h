@@ -66,14 +66,14 @@ GYRE_INLINE void add_second_order_bias(const LaneNode& node, WideJoint<W>& joint
   const Vec3W<W> second_order_bias =
       per_substep * (rotated_displacement(b.rotation, joint.from_b) - rotated_displacement(a.rotation, joint.from_a)) -
       (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
-  const Mask<W> biases = share > 0.0f;
-  joint.target_speed = select(biases, joint.target_speed - share * second_order_bias, joint.target_speed);
+  const Mask<W> has_bias = share > 0.0f;
+  joint.target_speed = select(has_bias, joint.target_speed - share * second_order_bias, joint.target_speed);
   if (node.kind != JointKind::hinge) return;
   const Vec3W<W> angular = share * hinge_second_order_bias(joint, a, b, per_substep);
   joint.angular_target_1 =
-      select(biases, joint.angular_target_1 - dot(angular, joint.perpendicular_1), joint.angular_target_1);
+      select(has_bias, joint.angular_target_1 - dot(angular, joint.perpendicular_1), joint.angular_target_1);
   joint.angular_target_2 =
-      select(biases, joint.angular_target_2 - dot(angular, joint.perpendicular_2), joint.angular_target_2);
+      select(has_bias, joint.angular_target_2 - dot(angular, joint.perpendicular_2), joint.angular_target_2);
 }
 
 // Computes the bias of the rows, so that the end of the sub-step, not its beginning, meets the joints. (Not
