@@ -57,7 +57,8 @@ void report_begin(RigidWorld& w, const Contact& contact) {
 bool finite_state(const BodyMotion& motion, Quat orientation) {
   // What is not finite is no zero when taken from itself, nor is a sum with that.
   const Vec3 nothing = (motion.linear_velocity - motion.linear_velocity) +
-                       (motion.angular_velocity - motion.angular_velocity) + (motion.delta_position - motion.delta_position);
+                       (motion.angular_velocity - motion.angular_velocity) +
+                       (motion.delta_position - motion.delta_position);
   const float turn = (orientation.x - orientation.x) + (orientation.y - orientation.y) +
                      (orientation.z - orientation.z) + (orientation.w - orientation.w);
   return nothing.x + nothing.y + nothing.z + turn == 0.0f;

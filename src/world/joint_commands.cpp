@@ -345,7 +345,8 @@ void fill_detail(RigidWorld& w, const JointRecord& joint, JointDetail& detail, c
   if (def.kind == JointKind::universal || def.kind == JointKind::wheel) {
     // The axes are where they are, also if they do not meet at a right angle.
     const float sine = dot(rotate(frames.a, {1, 0, 0}), rotate(frames.b, {0, 0, 1}));
-    detail.axes[int(JointAxis::angular_y)].locked_position = atan2(sine, std::sqrt(max(0.0f, 1.0f - sine * sine)));
+    detail.axes[int(JointAxis::angular_y)].locked_position =
+        atan2(sine, std::sqrt(max(0.0f, 1.0f - sine * sine)));
   }
 }
 

@@ -31,8 +31,8 @@ std::uint32_t root_of(const Graph& graph, std::uint32_t index) {
   return index;
 }
 
-Graph make_graph(std::span<const JointEdge> all, std::size_t bodies, std::span<const std::uint32_t> body_indices,
-                 Arena& arena) {
+Graph make_graph(std::span<const JointEdge> all, std::size_t bodies,
+                 std::span<const std::uint32_t> body_indices, Arena& arena) {
   Graph graph;
   const std::span<std::uint32_t> joints = arena.make<std::uint32_t>(all.size());
   graph.first = arena.make<std::uint32_t>(bodies + 1);
@@ -76,8 +76,8 @@ struct Groups {
   std::span<std::uint32_t> ends;
   std::span<std::uint32_t> local;  // by index in graph.joints: position in its group
 };
-Groups group_joints(std::span<const JointEdge> all, std::span<const std::uint32_t> body_indices, const Graph& graph,
-                    Arena& arena) {
+Groups group_joints(std::span<const JointEdge> all, std::span<const std::uint32_t> body_indices,
+                    const Graph& graph, Arena& arena) {
   Groups groups{arena.make<std::uint32_t>(graph.joints.size()),
                 arena.make<std::uint32_t>(graph.joints.size()),
                 arena.make<std::uint32_t>(graph.joints.size())};
@@ -107,10 +107,11 @@ Groups group_joints(std::span<const JointEdge> all, std::span<const std::uint32_
 
 class ArticulationBuilder {
  public:
-  ArticulationBuilder(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> body_indices,
-                      std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,
-                      const LaneStart& start, const Graph& graph, std::span<const std::uint32_t> local,
-                      std::size_t max_topologies, DenseGraphCache& dense, Arena& arena)
+  ArticulationBuilder(const RigidWorld& w, const SolveBatch& batch,
+                      std::span<const std::uint32_t> body_indices, std::span<const JointEdge> joints,
+                      std::span<const std::uint8_t> pressed, const LaneStart& start, const Graph& graph,
+                      std::span<const std::uint32_t> local, std::size_t max_topologies,
+                      DenseGraphCache& dense, Arena& arena)
       : w_(w),
         batch_(batch),
         body_indices_(body_indices),
@@ -302,10 +303,12 @@ class ArticulationBuilder {
              a.has_drive == b.has_drive && a.has_friction == b.has_friction && a.has_servo == b.has_servo &&
              a.a == b.a && a.b == b.b;
     };
-    const std::size_t oldest = topology_count_ > kTopologiesCompared ? topology_count_ - kTopologiesCompared : 0;
+    const std::size_t oldest =
+        topology_count_ > kTopologiesCompared ? topology_count_ - kTopologiesCompared : 0;
     for (std::size_t i = topology_count_; i-- > oldest;) {
       const ArticulationTopology& other = topologies_[i];
-      if (other.moving_count != topology.moving_count || other.nodes.size() != topology.nodes.size()) continue;
+      if (other.moving_count != topology.moving_count || other.nodes.size() != topology.nodes.size())
+        continue;
       if (!std::equal(topology.nodes.begin(), topology.nodes.end(), other.nodes.begin(), same)) continue;
       articulation.topology = std::uint32_t(i);
       return true;
@@ -314,7 +317,7 @@ class ArticulationBuilder {
   }
   // Returns its index.
   std::uint32_t add_topology(ArticulationTopology& topology, const BlockPlan& plan,
-                          std::span<const ArticulationCoupling> couplings) {
+                             std::span<const ArticulationCoupling> couplings) {
     topology.plan = plan;
     for (std::size_t i = 0; i < topology.nodes.size(); ++i) {
       const BlockColumn& column = plan.columns[plan.place_of[i]];
@@ -327,7 +330,7 @@ class ArticulationBuilder {
       const ArticulationCoupling& c = couplings[i];
       const LaneNode& row = topology.nodes[c.row];
       topology.couplings[i] = {c.row,       c.column,       c.offset, c.row_has_b ? row.b : row.a,
-                            c.row_has_b, c.column_has_b, false};
+                               c.row_has_b, c.column_has_b, false};
     }
     mark_first(topology);
     if (topology.body_count <= topology.moving_count + 1) find_traversal(topology);
@@ -414,9 +417,9 @@ Articulations no_articulations(std::size_t joints, Arena& arena) {
 }
 
 Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch,
-                                 std::span<const std::uint32_t> body_indices, std::span<const JointEdge> joints,
-                                 std::span<const std::uint8_t> pressed, const LaneStart& start,
-                                 DenseGraphCache& dense, Arena& arena) {
+                                 std::span<const std::uint32_t> body_indices,
+                                 std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,
+                                 const LaneStart& start, DenseGraphCache& dense, Arena& arena) {
   if (joints.empty()) return {};
   const Graph graph = make_graph(joints, batch.bodies.size(), body_indices, arena);
   const Groups groups = group_joints(joints, body_indices, graph, arena);
@@ -427,8 +430,8 @@ Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch,
   const std::span<std::uint8_t> in_lanes = arena.make<std::uint8_t>(joints.size());
   for (std::uint8_t& flag : iterative) flag = 1;
   for (std::uint8_t& flag : in_lanes) flag = 0;
-  ArticulationBuilder builder(w, batch, body_indices, joints, pressed, start, graph, groups.local, group_count, dense,
-                            arena);
+  ArticulationBuilder builder(w, batch, body_indices, joints, pressed, start, graph, groups.local,
+                              group_count, dense, arena);
   std::size_t scalar_count = 0, grouped_count = 0;
   for (std::size_t group = 0; group < group_count; ++group) {
     const std::uint32_t begin = group == 0 ? 0 : groups.ends[group - 1];
@@ -446,7 +449,8 @@ Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch,
   }
   const bool is_dense = group_count > 0 && scalar_count == 0 && grouped_count == 0;
   if (is_dense && !dense.contains(joints)) dense.add(joints);
-  return {scalar.first(scalar_count), grouped.first(grouped_count), builder.topologies(), iterative, in_lanes};
+  return {scalar.first(scalar_count), grouped.first(grouped_count), builder.topologies(), iterative,
+          in_lanes};
 }
 
 void attach_drives(const Articulations& articulations, std::span<JointConstraint> work, Arena& arena) {
@@ -467,8 +471,9 @@ void attach_drives(const Articulations& articulations, std::span<JointConstraint
   }
 }
 
-std::span<std::span<double>> find_limits(const Articulations& articulations, std::span<const JointConstraint> work,
-                                         std::size_t workers, Arena& arena) {
+std::span<std::span<double>> find_limits(const Articulations& articulations,
+                                         std::span<const JointConstraint> work, std::size_t workers,
+                                         Arena& arena) {
   std::size_t room_size = 0;
   for (Articulation& articulation : articulations.scalar) {
     for (const ArticulationNode& node : articulation.nodes)

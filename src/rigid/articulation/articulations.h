@@ -38,7 +38,7 @@ struct GroupedArticulation {
 };
 
 struct Articulations {
-  std::span<Articulation> scalar;        // each solved by itself
+  std::span<Articulation> scalar;              // each solved by itself
   std::span<GroupedArticulation> grouped;      // solved side by side
   std::span<ArticulationTopology> topologies;  // of the grouped ones
   // By index in the batch's list of joints: 1 if it is in no articulation; 1 if it is in a grouped one.
@@ -69,9 +69,9 @@ class DenseGraphCache {
 // those of the batch. `pressed`: by body index, 1 for bodies with contacts; or empty. `start`: settings of
 // the lanes.
 Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch,
-                                 std::span<const std::uint32_t> body_indices, std::span<const JointEdge> joints,
-                                 std::span<const std::uint8_t> pressed, const LaneStart& start,
-                                 DenseGraphCache& dense, Arena& arena);
+                                 std::span<const std::uint32_t> body_indices,
+                                 std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,
+                                 const LaneStart& start, DenseGraphCache& dense, Arena& arena);
 // All joints are iterative.
 Articulations no_articulations(std::size_t joints, Arena& arena);
 
@@ -79,7 +79,8 @@ Articulations no_articulations(std::size_t joints, Arena& arena);
 void attach_drives(const Articulations& articulations, std::span<JointConstraint> work, Arena& arena);
 
 // Marks scalar articulations with limits. Returns scratch memory for their solves, by worker.
-std::span<std::span<double>> find_limits(const Articulations& articulations, std::span<const JointConstraint> work,
-                                         std::size_t workers, Arena& arena);
+std::span<std::span<double>> find_limits(const Articulations& articulations,
+                                         std::span<const JointConstraint> work, std::size_t workers,
+                                         Arena& arena);
 
 }  // namespace gyre

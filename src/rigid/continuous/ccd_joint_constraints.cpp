@@ -20,7 +20,7 @@ void strip_to_limits(JointDetail& detail) {
 }  // namespace
 
 ProjectionJoints copy_projection_joints(const RigidWorld& w, std::span<const std::uint32_t> slots,
-                                     Arena& arena) {
+                                        Arena& arena) {
   const std::size_t count = slots.size();
   const ProjectionJoints copies{arena.make<JointRecord>(count),
                                 {arena.make<JointConstraint>(count), arena.make<JointOffsets>(count)}};

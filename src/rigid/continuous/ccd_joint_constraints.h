@@ -15,6 +15,7 @@ struct ProjectionJoints {
 constexpr JointSettings kProjectionSettings{kProjectionStep, {1.0f / kProjectionStep, 1.0f, 0.0f}, false};
 
 // Copies the joints in these slots.
-ProjectionJoints copy_projection_joints(const RigidWorld& w, std::span<const std::uint32_t> slots, Arena& arena);
+ProjectionJoints copy_projection_joints(const RigidWorld& w, std::span<const std::uint32_t> slots,
+                                        Arena& arena);
 
 }  // namespace gyre

@@ -60,7 +60,8 @@ class GroupFinder {
   // Body by body, nearest first, each with all of its joints.
   ProjectionGroup find(std::uint32_t first) {
     const std::size_t max_joints = max(kMaxJoints, joints_of(w_.bodies, first).size());
-    ProjectionGroup group{arena_.make<std::uint32_t>(max_joints), arena_.make<ProjectionMember>(max_joints + 1), true};
+    ProjectionGroup group{arena_.make<std::uint32_t>(max_joints),
+                          arena_.make<ProjectionMember>(max_joints + 1), true};
     std::size_t joints = 0, members = 0;
     add_body(std::int32_t(first), group.members, members);
     for (std::size_t next = 0; next < members; ++next) {

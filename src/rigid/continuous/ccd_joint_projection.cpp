@@ -23,7 +23,7 @@ ProjectionBodies make_bodies(const RigidWorld& w, Arena& arena) {
 
 // Writes the new poses of the group.
 void store_poses(RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
-           Array<std::uint32_t>& moved) {
+                 Array<std::uint32_t>& moved) {
   for (const ProjectionMember& member : group.members) {
     if (!member.moves) continue;
     const std::uint32_t body = member.body;
@@ -34,7 +34,8 @@ void store_poses(RigidWorld& w, const ProjectionGroup& group, const ProjectionBo
     const Vec3 rotation = to_rotation_vector(orientation * conjugate(w.bodies.orientations[body]));
     if (is_fast(displacement, rotation, mass.reach, mass.size)) moved.push_back(body);
     motion.delta_position = bodies.motion[body].delta_position + Vec3{};
-    motion.delta_rotation = to_rotation_vector(orientation * conjugate(w.bodies.places[body].orientation)) + Vec3{};
+    motion.delta_rotation =
+        to_rotation_vector(orientation * conjugate(w.bodies.places[body].orientation)) + Vec3{};
     w.bodies.orientations[body] = orientation;
     w.bodies.inertia[body] = world_inertia(mass, w.bodies.flags[body], orientation);
   }

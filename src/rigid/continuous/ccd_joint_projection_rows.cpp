@@ -39,7 +39,8 @@ class RowProjection {
     };
     for (std::size_t i = 0; i < joints_.records.size(); ++i) {
       const JointRecord& joint = joints_.records[i];
-      rows += std::size_t(count_joint_rows(joint, joints_.constraints.work[i].detail, joints_.constraints.work[i]));
+      rows += std::size_t(
+          count_joint_rows(joint, joints_.constraints.work[i].detail, joints_.constraints.work[i]));
       const std::int32_t a = index_of(joint.body_a), b = index_of(joint.body_b);
       if (a != kNoRowBody && b != kNoRowBody && a != b)
         edges[edge_count++] = {std::uint32_t(a), std::uint32_t(b)};
@@ -122,7 +123,7 @@ class RowProjection {
 }  // namespace
 
 bool project_by_rows(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
-                    bool stop_at_impact, Arena& arena) {
+                     bool stop_at_impact, Arena& arena) {
   const ArenaScope scope(arena);
   RowProjection rows(w, group, bodies, arena);
   if (!rows.make_room(arena)) return false;

@@ -9,6 +9,6 @@ namespace gyre {
 
 // If there is nothing to solve, or too much, bodies stay. Returns whether they moved.
 bool project_by_rows(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
-                    bool stop_at_impact, Arena& arena);
+                     bool stop_at_impact, Arena& arena);
 
 }  // namespace gyre

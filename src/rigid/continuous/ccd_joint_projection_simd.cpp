@@ -43,7 +43,7 @@ class LaneProjection {
   }
 
   std::span<const std::uint8_t> project(bool stop_at_impact, const ContactKernels& kernels,
-                                       TaskSystem& tasks) {
+                                        TaskSystem& tasks) {
     list();
     if (batch_.joints.empty()) return is_projected_;
     const LaneStart start{.limits_only = true};
@@ -51,10 +51,14 @@ class LaneProjection {
     const Articulations articulations =
         find_articulations(w_, batch_, body_indices_, joint_edges_, {}, start, dense, arena_);
     const LaneArrays arrays{bodies_.motion.data(), bodies_.inertia.data(), bodies_.orientations.data()};
-    const LaneSettings settings{kProjectionStep, kProjectionSettings.softness.bias_rate,
-                                kProjectionCompliance,           add_geometric_stiffness,
-                                kMaxErrors,      0.0f,
-                                kMaxBiasAngleOfPath,        false};
+    const LaneSettings settings{kProjectionStep,
+                                kProjectionSettings.softness.bias_rate,
+                                kProjectionCompliance,
+                                add_geometric_stiffness,
+                                kMaxErrors,
+                                0.0f,
+                                kMaxBiasAngleOfPath,
+                                false};
     bundles_ = lay_out_bundles(articulations, kernels, arrays, settings, arena_);
     paths_ = arena_.make<ProjectionPath>(groups_.size());
     for (const GroupedArticulation& articulation : articulations.grouped) {
@@ -118,7 +122,8 @@ class LaneProjection {
       std::uint32_t solved = 0;
       for (std::size_t lane = 0; lane < bundle.articulations.size(); ++lane) {
         if ((active >> lane & 1u) == 0) continue;
-        const ProjectionPath::Next next = path_of(bundle, lane).next(find_lane_error(bundle.lanes, int(lane)));
+        const ProjectionPath::Next next =
+            path_of(bundle, lane).next(find_lane_error(bundle.lanes, int(lane)));
         if (next == ProjectionPath::Next::solve) solved |= 1u << lane;
         if (next == ProjectionPath::Next::done) active &= ~(1u << lane);
       }

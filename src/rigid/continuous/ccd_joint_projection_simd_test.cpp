@@ -141,7 +141,9 @@ TEST_F(ChainsAfterImpact, HaveTheSameBitsInAnyLane) {
   const ProjectionBodies alone = bodies_;
   project_batched(5);
   for (std::size_t i = 0; i < kLinks; ++i) {
-    EXPECT_EQ(std::memcmp(&alone.motion[i].delta_position, &bodies_.motion[i].delta_position, sizeof(Vec3)), 0) << i;
+    EXPECT_EQ(std::memcmp(&alone.motion[i].delta_position, &bodies_.motion[i].delta_position, sizeof(Vec3)),
+              0)
+        << i;
     EXPECT_EQ(std::memcmp(&alone.orientations[i], &bodies_.orientations[i], sizeof(Quat)), 0) << i;
   }
 }

@@ -54,14 +54,16 @@ void ProjectionPath::find_displacements() const {
     member.fixed = false;
     member.remaining_displacement = member.remaining_rotation = {};
     if (!member.is_in_motion) continue;
-    member.remaining_displacement = (is_simulated_body ? motion.delta_position : Vec3{}) - member.start_displacement;
+    member.remaining_displacement =
+        (is_simulated_body ? motion.delta_position : Vec3{}) - member.start_displacement;
     member.remaining_rotation = to_rotation_vector(end * conjugate(member.start_orientation));
   }
 }
 
 int ProjectionPath::count_segments() const {
   float largest = 0.0f;
-  for (const ProjectionMember& member : members_) largest = max(largest, length_squared(member.remaining_rotation));
+  for (const ProjectionMember& member : members_)
+    largest = max(largest, length_squared(member.remaining_rotation));
   return largest < kShortRotation * kShortRotation ? 1 : kMaxSegments;
 }
 
@@ -177,7 +179,8 @@ bool ProjectionPath::fix_displaced_bodies() const {
   bool any = false;
   for (ProjectionMember& member : members_) {
     if (member.halted == nullptr || !member.moves || member.fixed) continue;
-    const Vec3 displacement = bodies_.motion[member.body].delta_position - (member.start_displacement + share * member.remaining_displacement);
+    const Vec3 displacement = bodies_.motion[member.body].delta_position -
+                              (member.start_displacement + share * member.remaining_displacement);
     const Quat planned = from_rotation_vector(share * member.remaining_rotation) * member.start_orientation;
     const Vec3 rotation = to_rotation_vector(bodies_.orientations[member.body] * conjugate(planned));
     const BodyMass& mass = w_->bodies.masses[member.body];

@@ -89,7 +89,8 @@ class BodyImpulse {
 // A bound on the displacement of the farthest points of a body in the step relative to another body: that of
 // its centre, plus the effect of relative rotation. (A rotation differs from its first order by at most half
 // the angle squared.)
-float relative_displacement_bound(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame, std::uint32_t body) {
+float relative_displacement_bound(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame,
+                                  std::uint32_t body) {
   const Sweep own = sweep_of_body(w.bodies, body);
   const Vec3 apart = difference(w.bodies.places[body].center, w.bodies.places[seen_from].center);
   return length(own.moved - frame.moved - cross(frame.turned, apart)) +
@@ -128,7 +129,8 @@ class Overrun {
         const bool surface = !is_convex(shape.shape.kind) && is_convex(w_.shapes.colliders[found].shape.kind);
         if (surface && own.sensor != other.sensor) scratch_.gates.push_back({found, id.index});
         if (moves) {
-          if (relative_displacement_bound(w_, i, sweep, other.body) > kFastShare * w_.bodies.masses[other.body].size)
+          if (relative_displacement_bound(w_, i, sweep, other.body) >
+              kFastShare * w_.bodies.masses[other.body].size)
             add(other.body, false);
         } else if (own.sensor != other.sensor) {
           add(other.body, true);
@@ -196,15 +198,16 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
     const std::uint32_t i = w.bodies.awake[n];
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
-    return is_fast(motion.delta_position, motion.delta_rotation, mass.reach, mass.size) && is_movable(w.bodies.flags[i]) &&
-           !w.bodies.shapes[i].empty();
+    return is_fast(motion.delta_position, motion.delta_rotation, mass.reach, mass.size) &&
+           is_movable(w.bodies.flags[i]) && !w.bodies.shapes[i].empty();
   };
   for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), is_moving_fast).list) {
     const std::uint32_t i = w.bodies.awake[n];
     // A body with contacts must not be halted in the air: it keeps a part of its displacement, and the
     // contacts respond.
     const float min_fraction = w.bodies.flags[i].touched != 0 ? kMinProgress : 0.0f;
-    scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, min_fraction, joints_of(w.bodies, i).empty(), false});
+    scratch.fast.push_back(
+        {i, w.bodies.flags[i].continuous != 0, min_fraction, joints_of(w.bodies, i).empty(), false});
   }
   Overrun(w, scratch).add_all();
 }

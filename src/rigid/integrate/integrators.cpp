@@ -198,15 +198,14 @@ void integrate_velocity(BodyStore& bodies, std::uint32_t i, const Motions& motio
   BodyMotion& motion = bodies.motion[i];
   const Damping linear(forces.linear_damping, motions.substep),
       angular(forces.angular_damping, motions.substep);
-  const Vec3 acceleration =
-      forces.gravity_scale * motions.gravity + inertia.inverse_mass * forces.force;
-  const Vec3 v =
-      motion.linear_velocity + (linear.gain * acceleration - linear.loss * motion.linear_velocity);
+  const Vec3 acceleration = forces.gravity_scale * motions.gravity + inertia.inverse_mass * forces.force;
+  const Vec3 v = motion.linear_velocity + (linear.gain * acceleration - linear.loss * motion.linear_velocity);
   const Vec3 w = motion.angular_velocity +
                  (angular.gain * (inertia.inverse * forces.torque) - angular.loss * motion.angular_velocity);
   // Adding zero keeps -0 out of the state, so wide kernels may add zeros to lanes that nothing acts on.
   motion.linear_velocity = clamp_without_overflow(without_locked(v, flags.locked_linear), kMaxSpeed) + Vec3{};
-  motion.angular_velocity = clamp_without_overflow(without_locked(w, flags.locked_angular), kMaxSpin) + Vec3{};
+  motion.angular_velocity =
+      clamp_without_overflow(without_locked(w, flags.locked_angular), kMaxSpin) + Vec3{};
 }
 
 // All sub-steps of the translation of a body without torques: constants are computed once, and the constant
@@ -239,7 +238,8 @@ void integrate_translation(BodyStore& bodies, std::uint32_t i, const Motions& mo
   const bool is_bounded = largest(absolute(motion.angular_velocity)) <= 0.5f * kMaxSpin;
   for (int substep = 0; substep < (is_bounded ? 1 : motions.count); ++substep) {
     motion.angular_velocity =
-        clamp_without_overflow(without_locked(motion.angular_velocity, flags.locked_angular), kMaxSpin) + Vec3{};
+        clamp_without_overflow(without_locked(motion.angular_velocity, flags.locked_angular), kMaxSpin) +
+        Vec3{};
   }
 }
 
@@ -270,7 +270,8 @@ void integrate_free_body(BodyStore& bodies, std::uint32_t i, const Motions& moti
 
 }  // namespace
 
-MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool pose_read) {
+MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions,
+                          bool pose_read) {
   const BodyFlags& flags = bodies.flags[body];
   const BodyForces& forces = bodies.forces[body];
   const BodyMass& mass = bodies.masses[body];
@@ -282,8 +283,8 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
   if (flags.type != BodyType::dynamic) return moved;
   const Damping linear(forces.linear_damping, motions.substep),
       angular(forces.angular_damping, motions.substep);
-  moved.velocity_gain = linear.gain *
-               (forces.gravity_scale * motions.gravity + bodies.inertia[body].inverse_mass * forces.force);
+  moved.velocity_gain = linear.gain * (forces.gravity_scale * motions.gravity +
+                                       bodies.inertia[body].inverse_mass * forces.force);
   moved.linear_loss = linear.loss;
   moved.torque = angular.gain * forces.torque;
   moved.angular_loss = angular.loss;

@@ -40,7 +40,8 @@ inline bool needs_exact_rotation(const BodyStore& bodies, std::uint32_t body, fl
 }
 
 // The input of the motion kernels for a constrained body. `pose_read`: its pose is read in each sub-step.
-MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool pose_read);
+MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions,
+                          bool pose_read);
 
 // A whole step of free bodies, kinematic ones among them.
 void integrate_free_bodies(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,

@@ -11,8 +11,8 @@
 // poses become floats after the step.
 #pragma once
 
-#include "solver/motion/torque_free_rotation.h"
 #include "rigid/field/medium.h"
+#include "solver/motion/torque_free_rotation.h"
 
 #include <span>
 
@@ -33,7 +33,7 @@ struct SmoothBody {
   DVec3 acceleration;                                  // m/s^2: gravity, and forces of the user
   DVec3 torque;                                        // N m, of the user
   double linear_damping = 0.0, angular_damping = 0.0;  // 1/s
-  double bounding_radius = 0.0;                                  // m
+  double bounding_radius = 0.0;                        // m
   std::uint8_t locked_linear = 0, locked_angular = 0;
   std::span<const std::uint32_t> fields{};  // slots of the fields that act on it
   SmoothState start;                        // at the beginning of the step

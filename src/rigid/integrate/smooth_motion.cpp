@@ -76,7 +76,8 @@ void limit_speeds(const SmoothSystem& system, SchemeRoom& room) {
 }
 
 SpringEnd make_end(const RigidWorld& w, std::int32_t body, Vec3 local_anchor, DVec3 world_anchor,
-                   std::span<const std::uint32_t> index_in_system, std::span<const std::uint32_t> body_indices) {
+                   std::span<const std::uint32_t> index_in_system,
+                   std::span<const std::uint32_t> body_indices) {
   SpringEnd end;
   end.body = body;
   end.arm = DVec3(local_anchor);
@@ -95,8 +96,10 @@ SmoothSpring make_spring(const RigidWorld& w, std::uint32_t slot,
   spring.stiffness = double(joint.stiffness);
   spring.damping = double(joint.damping);
   spring.rest = double(joint.rest_length);
-  spring.a = make_end(w, joint.body_a, joint.local_anchor_a, joint.world_anchor_a, index_in_system, body_indices);
-  spring.b = make_end(w, joint.body_b, joint.local_anchor_b, joint.world_anchor_b, index_in_system, body_indices);
+  spring.a =
+      make_end(w, joint.body_a, joint.local_anchor_a, joint.world_anchor_a, index_in_system, body_indices);
+  spring.b =
+      make_end(w, joint.body_b, joint.local_anchor_b, joint.world_anchor_b, index_in_system, body_indices);
   return spring;
 }
 
@@ -147,7 +150,7 @@ double difference_of(const SmoothSystem& system, const SchemeRoom& a, const Sche
     const SmoothState &s = a.stage[i], &t = b.stage[i];
     const double linear = length(s.x - t.x) + seconds * length(s.v - t.v);
     const double angular = length(logarithm_map(s.q * conjugate(t.q))) +
-                        seconds * length(spin_of(system.bodies[i], s) - spin_of(system.bodies[i], t));
+                           seconds * length(spin_of(system.bodies[i], s) - spin_of(system.bodies[i], t));
     largest = max(largest, linear + system.bodies[i].bounding_radius * angular);
   }
   return largest;
@@ -196,8 +199,9 @@ struct Members {
   std::span<std::uint32_t> sizes;
 };
 
-Members group_bodies(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> body_indices,
-                    std::span<const std::uint32_t> springs, Arena& arena) {
+Members group_bodies(const RigidWorld& w, const SolveBatch& batch,
+                     std::span<const std::uint32_t> body_indices, std::span<const std::uint32_t> springs,
+                     Arena& arena) {
   const std::size_t count = batch.bodies.size();
   const DisjointSets roots(arena.make<std::uint32_t>(count));
   for (const std::uint32_t slot : springs) {
@@ -324,8 +328,9 @@ bool is_explicit_spring(const RigidWorld& w, std::uint32_t slot) {
   return detail->axes[int(JointAxis::linear_x)].friction == 0.0f;
 }
 
-SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> body_indices,
-                                int substeps, float h, Arena& arena) {
+SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch,
+                                std::span<const std::uint32_t> body_indices, int substeps, float h,
+                                Arena& arena) {
   SmoothMotion motion;
   motion.world = &w;
   motion.settings = w.motion_settings[0];

@@ -37,8 +37,9 @@ struct SmoothMotion {
 };
 
 // All free bodies of the batch, also kinematic ones with springs: these are marked as read in each sub-step.
-SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> body_indices,
-                                int substeps, float h, Arena& arena);
+SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch,
+                                std::span<const std::uint32_t> body_indices, int substeps, float h,
+                                Arena& arena);
 
 // Stages of the sub-step program, with a system as block and SmoothMotion as context.
 void move_smooth_stage(void* context, int begin, int end, int worker);  // once, before all sub-steps

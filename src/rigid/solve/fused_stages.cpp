@@ -57,7 +57,8 @@ class Run {
     if (run.bundles != 1) return {};
     const BundledArticulations& bundle = s_.bundles.bundles[std::size_t(first_)];
     const ArticulationKernels& kernels = *bundle.lanes.kernels;
-    const bool is_full = kernels.width == s_.kernels.width && int(bundle.articulations.size()) == kernels.width;
+    const bool is_full =
+        kernels.width == s_.kernels.width && int(bundle.articulations.size()) == kernels.width;
     if (!is_full || s_.kernels.motion.integrate_velocities_in_lanes == nullptr) return {};
     return {reinterpret_cast<float*>(bundle.lanes.bodies + kernels.velocities_at),
             kernels.body_bytes / sizeof(float), begin_};

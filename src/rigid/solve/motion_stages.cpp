@@ -51,8 +51,10 @@ void prepare_motion(const BatchContext& s, int begin, int end) {
 void predict_motion(const BatchContext& s, int begin, int end, bool warm, const LaneVelocities& lanes) {
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
     if (lanes.is_set())
-      return s.kernels.motion.integrate_velocities_in_lanes(s.motion_blocks, first, last, lanes, warm && watched, watched);
-    s.kernels.motion.integrate_velocities(s.motion_blocks, first, last, s.contact_bodies.motion, warm && watched, watched);
+      return s.kernels.motion.integrate_velocities_in_lanes(s.motion_blocks, first, last, lanes,
+                                                            warm && watched, watched);
+    s.kernels.motion.integrate_velocities(s.motion_blocks, first, last, s.contact_bodies.motion,
+                                          warm && watched, watched);
   });
 }
 void record_velocities(const BatchContext& s, int begin, int end, const LaneVelocities& lanes) {
@@ -65,7 +67,8 @@ void record_velocity_change(const BatchContext& s, int begin, int end, const Lan
   const int last = min(end, s.recorded_blocks);
   if (begin >= last) return;
   if (lanes.is_set())
-    return s.kernels.motion.record_velocity_change_in_lanes(s.motion_blocks, begin, last, s.contact_bodies.motion, lanes);
+    return s.kernels.motion.record_velocity_change_in_lanes(s.motion_blocks, begin, last,
+                                                            s.contact_bodies.motion, lanes);
   s.kernels.motion.record_velocity_change(s.motion_blocks, begin, last, s.contact_bodies.motion);
 }
 void advance_motion(const BatchContext& s, int begin, int end, bool noted, const LaneVelocities& lanes) {

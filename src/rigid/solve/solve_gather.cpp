@@ -140,8 +140,8 @@ class ContactGatherer {
     constraint.loaded = loads.any;
     constraint.can_roll = false;
     constraint.stiffness = manifold.age >= kRigidContactAge ? ContactStiffness::rigid
-                      : manifold.age > 0.0f            ? ContactStiffness::soft
-                                                       : ContactStiffness::fresh;
+                           : manifold.age > 0.0f            ? ContactStiffness::soft
+                                                            : ContactStiffness::fresh;
     if (loads.all) {
       constraint.fast = false;
       for (int k = 0; k < manifold.count; ++k) manifold.points[k].approach_speed = 0.0f;

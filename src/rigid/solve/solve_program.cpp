@@ -434,7 +434,8 @@ void add_after_contacts(ProgramWriter& program, BatchContext& solve, const HalfS
   program.add(articulation_stage<relax_articulation>, &solve, part.linkages);
   // Where no joint is swept in between, while their rows are still in the cache.
   if (!part.joints.empty())
-    program.add(last ? bundle_stage<&ArticulationKernels::end_step> : bundle_stage<&ArticulationKernels::end_half_step>,
+    program.add(last ? bundle_stage<&ArticulationKernels::end_step>
+                     : bundle_stage<&ArticulationKernels::end_half_step>,
                 &solve, part.bundles);
   else
     program.add(last ? bundle_stage<&ArticulationKernels::prepare, &ArticulationKernels::end_step>

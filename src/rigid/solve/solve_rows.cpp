@@ -225,7 +225,7 @@ void keep_impulses(const RowSolve& s, const IslandRows& island) {
   for (const std::uint32_t i : island.island.joints) {
     const auto [begin, count] = range();
     store_joint_impulses(solve.w.joints.records[solve.batch.joints[i]], solve.joint_work[i],
-                        island.room.rows.subspan(begin, count), island.room.kept.subspan(begin, count));
+                         island.room.rows.subspan(begin, count), island.room.kept.subspan(begin, count));
   }
   for (const std::uint32_t i : island.island.constraints) {
     const auto [begin, count] = range();

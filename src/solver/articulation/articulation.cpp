@@ -10,7 +10,6 @@ namespace gyre {
 
 namespace {
 
-
 void make_rows(ArticulationNode& node, const JointRecord& joint, const JointConstraint& work) {
   node.count = 0;
   list_equations(joint, work, [&](Vec3 direction, Vec3 angular_a, Vec3 angular_b) {
@@ -97,7 +96,7 @@ Rows4 times_rows(const Sym3& m, const RowVectors& arms, int first) {
 
 // Computes the spins of the rows, and the node's diagonal block K + compliance.
 void make_diagonal_block(ArticulationNode& node, const Articulation& articulation, const ArticulationSolve& s,
-                    double* block) {
+                         double* block) {
   constexpr ArticulationBody kImmovable{};
   const ArticulationBody& a = node.side_a < 0 ? kImmovable : articulation.bodies[std::size_t(node.side_a)];
   const ArticulationBody& b = node.side_b < 0 ? kImmovable : articulation.bodies[std::size_t(node.side_b)];
@@ -138,7 +137,8 @@ void add_coupling(const ArticulationCoupling& coupling, const ArticulationNode& 
     const Rows4 directions = load_rows(column.rows.direction, first), arms = load_rows(arms_of, first);
     for (int i = 0; i < row.count; ++i) {
       float k[kHalf];
-      (dot(splat_rows(scale * row.rows.direction.at(i)), directions) + dot(splat_rows(sign * spins.at(i)), arms))
+      (dot(splat_rows(scale * row.rows.direction.at(i)), directions) +
+       dot(splat_rows(sign * spins.at(i)), arms))
           .store_unaligned(k);
       for (int j = first; j < columns && j < first + kHalf; ++j)
         block[i * columns + j] += double(k[j - first]);
@@ -218,8 +218,8 @@ struct PredictedMotion {
   }
 };
 
-PredictedMotion predicted_motion(const Articulation& articulation, const ArticulationSolve& s, std::int32_t body,
-                 std::int32_t side) {
+PredictedMotion predicted_motion(const Articulation& articulation, const ArticulationSolve& s,
+                                 std::int32_t body, std::int32_t side) {
   if (body == kNoBody) return {};
   const BodyMotion& motion = s.bodies.motion[body];
   if (side >= 0)
@@ -233,8 +233,8 @@ struct SecondOrderBias {
   Vec3 linear, angular;
 };
 
-Vec3 angular_second_order_bias(const JointRecord& joint, const JointConstraint& work, const PredictedMotion& a,
-                               const PredictedMotion& b, float h) {
+Vec3 angular_second_order_bias(const JointRecord& joint, const JointConstraint& work,
+                               const PredictedMotion& a, const PredictedMotion& b, float h) {
   const Vec3 seen = b.angular - a.angular;
   if (joint.kind == JointKind::hinge) {
     const Vec3 error = work.angular_error;  // axis a x axis b
@@ -247,19 +247,22 @@ Vec3 angular_second_order_bias(const JointRecord& joint, const JointConstraint& 
   return (to_rotation_vector(later) - work.angular_error) / h - seen;
 }
 
-SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstraint& work, const PredictedMotion& a,
-                                     const PredictedMotion& b, float h) {
+SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstraint& work,
+                                     const PredictedMotion& a, const PredictedMotion& b, float h) {
   SecondOrderBias second_order_bias;
   const Vec3 along = work.free_offset;
   const Vec3 anchor_arm = work.from_a - work.error - along;  // to a's own anchor
   const Vec3 seen = b.linear + cross(b.angular, work.from_b) - a.linear - cross(a.angular, work.from_a);
-  const Vec3 apart = h * (b.linear - a.linear) + b.displacement_of(work.from_b) - a.displacement_of(work.from_a);
+  const Vec3 apart =
+      h * (b.linear - a.linear) + b.displacement_of(work.from_b) - a.displacement_of(work.from_a);
   switch (joint.kind) {
     case JointKind::slider: {
       // As seen from a's frame at the end.
       const Vec3 now = work.error + along;
-      const Vec3 later = now + h * (b.linear - a.linear) + b.displacement_of(work.from_b) - a.displacement_of(anchor_arm);
-      second_order_bias.linear = (later + PredictedMotion{{}, {}, conjugate(a.rotation)}.displacement_of(later) - now) / h - seen;
+      const Vec3 later =
+          now + h * (b.linear - a.linear) + b.displacement_of(work.from_b) - a.displacement_of(anchor_arm);
+      second_order_bias.linear =
+          (later + PredictedMotion{{}, {}, conjugate(a.rotation)}.displacement_of(later) - now) / h - seen;
       break;
     }
     case JointKind::distance: {
@@ -278,13 +281,14 @@ SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstr
 
 // The same for kinds that are a list of rows, from their errors at the end of the sub-step.
 void rows_second_order_bias(const JointRecord& joint, const JointConstraint& work,
-                            const ArticulationNode& node, const PredictedMotion& a, const PredictedMotion& b, float h,
-                            float (&biases)[kJointAxisCount]) {
+                            const ArticulationNode& node, const PredictedMotion& a, const PredictedMotion& b,
+                            float h, float (&biases)[kJointAxisCount]) {
   const Vec3 anchor_arm = work.from_a - work.error - work.free_offset;  // to a's own anchor
   const Vec3 now = work.error + work.free_offset;
   const Vec3 moved = h * (b.linear - a.linear);
-  const RowPose later{now + moved + b.displacement_of(work.from_b) - a.displacement_of(anchor_arm), now - work.from_b + anchor_arm + moved,
-                      a.rotation * work.frame_a, b.rotation * work.frame_b};
+  const RowPose later{now + moved + b.displacement_of(work.from_b) - a.displacement_of(anchor_arm),
+                      now - work.from_b + anchor_arm + moved, a.rotation * work.frame_a,
+                      b.rotation * work.frame_b};
   float errors[kJointAxisCount];
   measure_rows(joint, work, later, errors);
   for (int i = 0; i < node.count; ++i) {
@@ -295,7 +299,8 @@ void rows_second_order_bias(const JointRecord& joint, const JointConstraint& wor
 }
 
 // The square of the angular rate of a rod, also between bodies that do not rotate (rad/s).
-float rod_rate(const JointRecord& joint, const JointConstraint& work, const PredictedMotion& a, const PredictedMotion& b) {
+float rod_rate(const JointRecord& joint, const JointConstraint& work, const PredictedMotion& a,
+               const PredictedMotion& b) {
   if (joint.kind != JointKind::distance || !(work.position > 0.0f)) return 0.0f;
   const Vec3 speed = b.linear + cross(b.angular, work.from_b) - a.linear - cross(a.angular, work.from_a);
   return length_squared(cross(speed, work.axis)) / square(work.position);
@@ -319,7 +324,8 @@ void compute_bias(const Articulation& articulation, const ArticulationSolve& s, 
     const float fastest = square(h) * max(max(length_squared(a.angular), length_squared(b.angular)),
                                           rod_rate(joint, work, a, b));
     const float share = fastest > square(kMaxBiasAngle) ? square(kMaxBiasAngle) / fastest : 1.0f;
-    const float fast_share = fastest > square(kFastErrorAngle) ? 1.0f - square(kFastErrorAngle) / fastest : 0.0f;
+    const float fast_share =
+        fastest > square(kFastErrorAngle) ? 1.0f - square(kFastErrorAngle) / fastest : 0.0f;
     const float rate = s.settings.softness.bias_rate;
     const float error_rate = -rate - (1.0f / h - rate) * fast_share;
     SecondOrderBias second_order_bias;
@@ -407,8 +413,9 @@ void prepare_articulation(const Articulation& articulation, const ArticulationSo
   }
   stiffen_bodies(articulation, s);
   for (std::size_t n = 0; n < articulation.nodes.size(); ++n) {
-    make_diagonal_block(articulation.nodes[n], articulation, s,
-                   &articulation.values[articulation.plan.columns[articulation.plan.place_of[n]].diagonal]);
+    make_diagonal_block(
+        articulation.nodes[n], articulation, s,
+        &articulation.values[articulation.plan.columns[articulation.plan.place_of[n]].diagonal]);
   }
   for (const ArticulationCoupling& coupling : articulation.couplings) {
     add_coupling(coupling, articulation.nodes[coupling.row], articulation.nodes[coupling.column],
@@ -429,7 +436,8 @@ void warm_start_articulation(const Articulation& articulation, const Articulatio
     warm_start_joint_axes(joint, work, s.bodies);
     // The accumulated impulses, along the present rows.
     float accumulated[kMaxBlockRows];
-    for (int i = 0; i < node.count; ++i) accumulated[i] = accumulated_impulse(joint, work, equation_at(node.rows, i), i);
+    for (int i = 0; i < node.count; ++i)
+      accumulated[i] = accumulated_impulse(joint, work, equation_at(node.rows, i), i);
     clear_equation_impulses(joint, work);
     NodeBodies bodies(node, s.bodies);
     for (int i = 0; i < node.count; ++i) {

@@ -98,8 +98,8 @@ struct WideBundle {
 
 // Applies the impulse p at the joint and the angular impulse t to b, and their opposites to a.
 template <int W>
-GYRE_INLINE void apply_joint_impulse(const WideBundle<W>& bundle, const LaneNode& node, const WideJoint<W>& joint,
-                            Vec3W<W> p, Vec3W<W> t) {
+GYRE_INLINE void apply_joint_impulse(const WideBundle<W>& bundle, const LaneNode& node,
+                                     const WideJoint<W>& joint, Vec3W<W> p, Vec3W<W> t) {
   if (bundle.moves(node.a)) {
     WideBody<W>& a = bundle.bodies[node.a];
     a.linear -= a.inverse_mass * p;
@@ -165,7 +165,8 @@ GYRE_INLINE void load_poses(const WideBundle<W>& bundle, const LaneArrays& array
     Wide<W> c[8];
     gather_vec4<1, W, 4>(&arrays.orientation->x, body.record, kUnturned, 0, c);
     body.orientation = {c[0], c[1], c[2], c[3]};
-    gather_vec4<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros, kMotionDeltaPosition, c);
+    gather_vec4<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros,
+                                     kMotionDeltaPosition, c);
     body.delta_position = {c[0], c[1], c[2]};
     const Wide<W> zero(0.0f);
     body.geometric_stiffness = {zero, zero, zero, zero, zero, zero};

@@ -19,7 +19,9 @@ constexpr double kMinAxisShare = 2.0e-4;
 struct DriveScratch {
   ResponseColumns columns;
   std::span<double> matrix, impulses, speeds;
-  double delassus(std::size_t row, std::size_t pushed) const { return matrix[row * impulses.size() + pushed]; }
+  double delassus(std::size_t row, std::size_t pushed) const {
+    return matrix[row * impulses.size() + pushed];
+  }
 };
 
 DriveScratch scratch_of(const Articulation& articulation) {

@@ -12,7 +12,7 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 template <int W>
 GYRE_INLINE void prepare_hinge_drives(const WideJoint<W>& joint, WideDrives<W>& d, const WideBody<W>& a,
-                                    const WideBody<W>& b) {
+                                      const WideBody<W>& b) {
   const Wide<W> k = dot(joint.axis, a.own_inverse * joint.axis) + dot(joint.axis, b.own_inverse * joint.axis);
   d.mass.xx = keep(k > 0.0f, 1.0f / k);
   d.error.x = joint.position - d.target.x;
@@ -57,7 +57,8 @@ __attribute__((noinline)) void prepare_lane_servos(const WideBundle<W>& bundle) 
 // Applies an angular impulse to b, and its opposite to a, with inertias without geometric stiffness. (Not
 // inlined: it has many callers.)
 template <int W>
-__attribute__((noinline)) void apply_drive_impulse(const WideBundle<W>& bundle, const LaneNode& node, Vec3W<W> t) {
+__attribute__((noinline)) void apply_drive_impulse(const WideBundle<W>& bundle, const LaneNode& node,
+                                                   Vec3W<W> t) {
   if (bundle.moves(node.a)) bundle.bodies[node.a].angular -= bundle.bodies[node.a].own_inverse * t;
   if (bundle.moves(node.b)) bundle.bodies[node.b].angular += bundle.bodies[node.b].own_inverse * t;
 }
@@ -69,7 +70,7 @@ GYRE_INLINE Vec3W<W> relative_spin_of(const WideBundle<W>& bundle, const LaneNod
 
 template <int W>
 GYRE_INLINE void iterate_hinge_drives(const WideBundle<W>& bundle, const LaneNode& node, Vec3W<W> axis,
-                             WideDrives<W>& d) {
+                                      WideDrives<W>& d) {
   const auto change = [&](Wide<W>& accumulated, Wide<W> target, Wide<W> bound) {
     const Wide<W> now = min(max(target, Wide<W>(0.0f) - bound), bound);
     apply_drive_impulse(bundle, node, (now - accumulated) * axis);
@@ -78,7 +79,8 @@ GYRE_INLINE void iterate_hinge_drives(const WideBundle<W>& bundle, const LaneNod
   if (node.has_drive) {
     Wide<W>& accumulated = d.drive_impulse.x;
     const Wide<W> closing = dot(axis, relative_spin_of(bundle, node)) - d.speed.x + d.rate * d.error.x;
-    change(accumulated, accumulated - d.mass_scale * d.mass.xx * closing - d.impulse_scale * accumulated, d.max_drive);
+    change(accumulated, accumulated - d.mass_scale * d.mass.xx * closing - d.impulse_scale * accumulated,
+           d.max_drive);
   }
   if (node.has_friction) {
     Wide<W>& accumulated = d.friction_impulse.x;
@@ -104,10 +106,12 @@ __attribute__((noinline)) void iterate_drives(const WideBundle<W>& bundle) {
     if (node.has_drive) {
       Vec3W<W>& accumulated = d.drive_impulse;
       const Vec3W<W> closing = relative_spin_of(bundle, node) - d.speed + d.rate * d.error;
-      change(accumulated, accumulated - d.mass_scale * (d.mass * closing) - d.impulse_scale * accumulated, d.max_drive);
+      change(accumulated, accumulated - d.mass_scale * (d.mass * closing) - d.impulse_scale * accumulated,
+             d.max_drive);
     }
     if (node.has_friction)
-      change(d.friction_impulse, d.friction_impulse - d.mass * relative_spin_of(bundle, node), d.max_friction);
+      change(d.friction_impulse, d.friction_impulse - d.mass * relative_spin_of(bundle, node),
+             d.max_friction);
   }
 }
 
@@ -133,12 +137,13 @@ GYRE_INLINE void warm_start_driven(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     WideJoint<W>& joint = bundle.joints[n];
-    if (node.is_driven()) apply_drive_impulse(bundle, node, driven_impulse(node, joint, bundle.drives[node.drives]));
+    if (node.is_driven())
+      apply_drive_impulse(bundle, node, driven_impulse(node, joint, bundle.drives[node.drives]));
     const Wide<W> zero(0.0f);
     Vec3W<W> angular{zero, zero, zero};
     if (node.kind == JointKind::hinge) {  // along its present rows
       angular = dot(joint.angular_impulse, joint.perpendicular_1) * joint.perpendicular_1 +
-             dot(joint.angular_impulse, joint.perpendicular_2) * joint.perpendicular_2;
+                dot(joint.angular_impulse, joint.perpendicular_2) * joint.perpendicular_2;
       joint.angular_impulse = angular;
     }
     apply_joint_impulse(bundle, node, joint, joint.linear_impulse, angular);

@@ -135,7 +135,7 @@ GYRE_INLINE RigidMotion<W> rigid_motion(const WideBundle<W>& bundle, const Carri
 // Scales inner motion until `left` (J) remain, in these lanes. `rotates`: whether the rigid motion may.
 template <int W>
 GYRE_INLINE void scale_inner_motion(const WideBundle<W>& bundle, const RigidMotion<W>& rigid, bool rotates,
-                           Mask<W> lanes, Wide<W> energy, Wide<W> left) {
+                                    Mask<W> lanes, Wide<W> energy, Wide<W> left) {
   const Wide<W> inner = energy - rigid.energy, remaining = left - rigid.energy, zero(0.0f);
   const Wide<W> share = sqrt(keep((inner > zero) & (remaining > zero), remaining / inner));
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
@@ -169,7 +169,7 @@ GYRE_INLINE void clear_impulses(const WideBundle<W>& bundle, Mask<W> lanes) {
 // plus that of its curved path in a sub-step of `h`.
 template <int W>
 GYRE_INLINE Wide<W> energy_of_error_removal(const WideBundle<W>& bundle, const CarrierMotion<W>& carrier,
-                                     float rate, float h) {
+                                            float rate, float h) {
   Wide<W> sum(0.0f), carried(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
     const WideBody<W>& body = bundle.bodies[i];
@@ -209,7 +209,9 @@ class EnergyLimiter {
   }
   // Before bodies move: limits the gain to the existing energy, or to that of error removal at `rate` (1/s)
   // in a sub-step of `h`.
-  void limit_gain(float rate, float h) const { limit_gain(kMaxEnergyGainAhead, kMaxEnergyGainAhead, rate, h); }
+  void limit_gain(float rate, float h) const {
+    limit_gain(kMaxEnergyGainAhead, kMaxEnergyGainAhead, rate, h);
+  }
   // After the move: removes the energy that joints added, if it is more than a little. Returns the changed
   // lanes.
   Mask<W> remove_gain() const { return limit_gain(kMaxEnergyGain, 0.0f, 0.0f, 0.0f); }
@@ -230,7 +232,8 @@ class EnergyLimiter {
     }
     if (any(slowed)) {
       const bool rotates = carrier_.moves || bundle_.plain.moving_count == bundle_.plain.body_count;
-      scale_inner_motion(bundle_, rigid_in(extreme_ratio_lanes(bundle_)), rotates, slowed, energy, own + allowed);
+      scale_inner_motion(bundle_, rigid_in(extreme_ratio_lanes(bundle_)), rotates, slowed, energy,
+                         own + allowed);
       if (rate > 0.0f) clear_impulses(bundle_, slowed);
     }
     keep(limited_, select(slowed, allowed, energy_gain)).store(bundle_.plain.energy_gain);

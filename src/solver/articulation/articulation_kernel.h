@@ -3,9 +3,9 @@
 // of a ball joint are one vector here, and an impulse acts on a body as a force at its arm.
 #pragma once
 
+#include "solver/articulation/articulation_drives_kernel.h"
 #include "solver/articulation/articulation_energy_kernel.h"
 #include "solver/articulation/articulation_limits_kernel.h"
-#include "solver/articulation/articulation_drives_kernel.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -34,7 +34,8 @@ GYRE_INLINE Vec3W<W> hinge_second_order_bias(const WideJoint<W>& joint, const Wi
   const Vec3W<W> error = joint.angular_error;  // axis a x axis b
   const Vec3W<W> axis_b =
       cross(error, joint.axis) + sqrt(max(1.0f - length_squared(error), Wide<W>(0.0f))) * joint.axis;
-  const Vec3W<W> change_a = rotated_displacement(a.rotation, joint.axis), change_b = rotated_displacement(b.rotation, axis_b);
+  const Vec3W<W> change_a = rotated_displacement(a.rotation, joint.axis),
+                 change_b = rotated_displacement(b.rotation, axis_b);
   return per_substep * (cross(change_a, axis_b) + cross(joint.axis, change_b) + cross(change_a, change_b)) -
          (b.angular - a.angular);
 }
@@ -63,9 +64,9 @@ GYRE_INLINE Wide<W> remove_error(Wide<W> angle_squared, float rate, float per_su
 template <int W>
 GYRE_INLINE void add_second_order_bias(const LaneNode& node, WideJoint<W>& joint, const WideBody<W>& a,
                                        const WideBody<W>& b, Wide<W> share, float per_substep) {
-  const Vec3W<W> second_order_bias =
-      per_substep * (rotated_displacement(b.rotation, joint.from_b) - rotated_displacement(a.rotation, joint.from_a)) -
-      (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
+  const Vec3W<W> second_order_bias = per_substep * (rotated_displacement(b.rotation, joint.from_b) -
+                                                    rotated_displacement(a.rotation, joint.from_a)) -
+                                     (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
   const Mask<W> has_bias = share > 0.0f;
   joint.target_speed = select(has_bias, joint.target_speed - share * second_order_bias, joint.target_speed);
   if (node.kind != JointKind::hinge) return;
@@ -144,8 +145,10 @@ GYRE_INLINE Mask<W> set_missing(const WideBundle<W>& bundle) {
       second += joint.angular_target_2;
     }
     if constexpr (use == BiasUse::again) {
-      first += joint.angular_target_1 - joint.angular_compliance_1 * dot(joint.angular_impulse, joint.perpendicular_1);
-      second += joint.angular_target_2 - joint.angular_compliance_2 * dot(joint.angular_impulse, joint.perpendicular_2);
+      first += joint.angular_target_1 -
+               joint.angular_compliance_1 * dot(joint.angular_impulse, joint.perpendicular_1);
+      second += joint.angular_target_2 -
+                joint.angular_compliance_2 * dot(joint.angular_impulse, joint.perpendicular_2);
     }
     set(node.row + 3, first);
     set(node.row + 4, second);
@@ -329,7 +332,7 @@ GYRE_INLINE Mask<W> find_rebounding(const WideBundle<W>& bundle) {
     const auto check = [&](const WideLimitAxis<W>& axis) {
       const Wide<W> speed = dot(axis.about, spin);
       rebounding = rebounding | ((axis.low_impulse > 0.0f) & (speed > kMaxReboundSpeed)) |
-                 ((axis.high_impulse > 0.0f) & (speed < -kMaxReboundSpeed));
+                   ((axis.high_impulse > 0.0f) & (speed < -kMaxReboundSpeed));
     };
     if (node.has_twist) check(bundle.joints[n].twist);
     if (node.has_swing) check(bundle.joints[n].swing);

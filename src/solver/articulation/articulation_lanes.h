@@ -35,16 +35,17 @@ struct LaneJoint {
   Vec3 total_linear, total_angular;
   // For hinges and cones.
   Quat local_frame_a, local_frame_b;
-  float position = 0.0f;                           // rad: the twist
+  float position = 0.0f;                                 // rad: the twist
   float inverse_swing_y = 0.0f, inverse_swing_z = 0.0f;  // cones: 1 / the largest swing, 1/rad
   LaneLimitAxis twist, swing;
   // Values of this sub-step.
-  Vec3 from_a, from_b;  // anchors from the centres of mass, world axes
-  Vec3 error;           // anchor b minus anchor a
+  Vec3 from_a, from_b;            // anchors from the centres of mass, world axes
+  Vec3 error;                     // anchor b minus anchor a
   Vec3 compliance, target_speed;  // of the three point rows, as ArticulationRows
   // Hinges: a's axis, two perpendicular axes, the error, and compliance and bias of the two angular rows.
   Vec3 axis, perpendicular_1, perpendicular_2, angular_error;
-  float angular_compliance_1 = 0.0f, angular_compliance_2 = 0.0f, angular_target_1 = 0.0f, angular_target_2 = 0.0f;
+  float angular_compliance_1 = 0.0f, angular_compliance_2 = 0.0f, angular_target_1 = 0.0f,
+        angular_target_2 = 0.0f;
 };
 
 // The drive or motor and the dry friction of a joint, each with a bound. Vectors are in world axes; for
@@ -71,11 +72,11 @@ struct LaneServo {
   float rate = 0.0f;          // 1/s, at which it approaches its target position; 0: it has none
 };
 
-// Additional servos are iterated, as drives are: iterations over so many coupled rows end before they
-// converge.
+// Servos beyond this number are iterated, as drives are: iterations over so many coupled rows end before
+// they converge.
 constexpr std::size_t kMaxLaneServos = 32;
 
-// Articulations with more limits are solved in scalar form, in turns
+// Articulations with more limits than this are solved in scalar form, in turns
 // (solver/articulation/articulation_limits.h).
 constexpr std::size_t kMaxLaneLimits = 64;
 
@@ -130,7 +131,7 @@ struct ArticulationBundle {
   std::byte* servos = nullptr;
   float* values = nullptr;  // of the matrix
   float* vector = nullptr;
-  float* room = nullptr;        // of the widest column
+  float* room = nullptr;         // of the widest column
   float* energy_gain = nullptr;  // J, by lane: gain of this sub-step; then 1 in lanes with an energy limiter
   float* has_extreme_mass_ratio = nullptr;  // 1 in lanes with a link so light that the energy limiter is
                                             // always on
@@ -156,7 +157,7 @@ struct LaneSettings {
   // Adds `share` of the positive part of the geometric stiffness to an inertia and inverts it (six floats
   // each, as Sym3).
   void (*add_geometric_stiffness)(const float* geometric_stiffness, const float* inertia, float share,
-                float* inverse) = nullptr;
+                                  float* inverse) = nullptr;
   // Bounds of the errors that the first of two solves removes.
   ErrorBounds first_errors = kErrorsBeforeContacts;
   // Share of the gyroscopic torque in the rotation of a sub-step; 0 if speeds stand for displacements.
@@ -176,12 +177,14 @@ struct ArticulationKernels {
   std::size_t (*limit_room)(const ArticulationBundle& bundle);  // bytes
   void (*begin)(const ArticulationBundle& bundle);              // before the first preparation in a step
   void (*prepare)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*compute_bias)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*compute_bias)(const ArticulationBundle& bundle, const LaneArrays& arrays,
+                       const LaneSettings& settings);
   void (*solve)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve_after_contacts)(const ArticulationBundle& bundle, const LaneArrays& arrays,
-                      const LaneSettings& settings);
+                               const LaneSettings& settings);
   // After each move but the last: sums impulses, and computes the bias of the next half step.
-  void (*end_half_step)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*end_half_step)(const ArticulationBundle& bundle, const LaneArrays& arrays,
+                        const LaneSettings& settings);
   // After the last move: removes all speed along the rows and into limits, and sums impulses.
   void (*end_step)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
 };

@@ -166,7 +166,8 @@ class LimitSolver {
     const WideLimitAxis<W>& axis = servo.axis;
     limit.speed = dot(axis.about, b_.bodies[limit.node->b].angular - b_.bodies[limit.node->a].angular);
     const Wide<W> off = limit.speed - limit.low_bias, zero(0.0f), impulse = axis.low_impulse;
-    const Mask<W> is_rotatable = axis.mass > zero, more = impulse<servo.max_impulse, less = impulse> zero - servo.max_impulse;
+    const Mask<W> is_rotatable = axis.mass > zero,
+                  more = impulse<servo.max_impulse, less = impulse> zero - servo.max_impulse;
     const Mask<W> misses = is_rotatable & (((off < zero) & more) | ((off > zero) & less));
     const Mask<W> live = first ? misses : and_not(misses, limit.low_on);
     limit.low_on = limit.low_on | misses | (is_rotatable & (impulse != zero));
@@ -207,7 +208,8 @@ class LimitSolver {
     };
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
       const QuatW<W> now = pose_of(n), then = poses_[n];
-      unchanged = unchanged & (now.x * then.x + now.y * then.y + now.z * then.z + now.w * then.w > kMinCosine);
+      unchanged =
+          unchanged & (now.x * then.x + now.y * then.y + now.z * then.z + now.w * then.w > kMinCosine);
     }
     if (!any(~unchanged)) return unchanged;
     const Wide<W> none(0.0f);
@@ -310,7 +312,8 @@ class LimitSolver {
       alone = dot(limits_[b].axis->about, spin_of(limits_[a], node.b) - spin_of(limits_[a], node.a));
     const Wide<W> entry_value =
         alone - dot_reached<W>(b_.plain, reached_of(a), scaled_of(a), reached_of(b), response_of(b));
-    const Wide<W> bounded = a == b ? keep(entry_value > kMinInverseMassShare * alone, entry_value) : entry_value;
+    const Wide<W> bounded =
+        a == b ? keep(entry_value > kMinInverseMassShare * alone, entry_value) : entry_value;
     entry(a, b) = entry(b, a) = select(Mask<W>::of_bits(lanes), bounded, entry(a, b));
   }
 
@@ -394,7 +397,8 @@ class LimitSolver {
         const bool is_high = (end & 1u) != 0;
         const float speed = lane_of(limit.speed, lane);
         const float bias = lane_of(is_high ? limit.high_bias : limit.low_bias, lane);
-        const float min_impulse = -lane_of(is_high ? limit.axis->high_impulse : limit.axis->low_impulse, lane);
+        const float min_impulse =
+            -lane_of(is_high ? limit.axis->high_impulse : limit.axis->low_impulse, lane);
         set_lane(slots_[i].excess, lane, (is_high ? -speed : speed) - bias);
         set_lane(slots_[i].min_impulse, lane, min_impulse);
         set_lane(slots_[i].room, lane, min_impulse);
@@ -405,8 +409,10 @@ class LimitSolver {
   // The impulse of a motor has either sign and a bound, and the motor is compliant.
   static void bound_servo(LimitSlot<W>& slot, const WideServo<W>& servo, const Wide<W>& diagonal,
                           std::uint32_t lane) {
-    const float impulse = lane_of(servo.axis.low_impulse, lane), max_impulse = lane_of(servo.max_impulse, lane);
-    set_lane(slot.excess, lane, lane_of(slot.excess, lane) + kMotorCompliance * lane_of(diagonal, lane) * impulse);
+    const float impulse = lane_of(servo.axis.low_impulse, lane),
+                max_impulse = lane_of(servo.max_impulse, lane);
+    set_lane(slot.excess, lane,
+             lane_of(slot.excess, lane) + kMotorCompliance * lane_of(diagonal, lane) * impulse);
     set_lane(slot.min_impulse, lane, -max_impulse - impulse);
     set_lane(slot.max_impulse, lane, max_impulse - impulse);
   }

@@ -11,7 +11,6 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-
 template <int W>
 GYRE_INLINE Vec3W<W> clamp_length(Vec3W<W> v, std::type_identity_t<Wide<W>> max_length) {
   const Wide<W> size = length(v);
@@ -24,7 +23,7 @@ GYRE_INLINE Vec3W<W> clamp_length(Vec3W<W> v, std::type_identity_t<Wide<W>> max_
 
 template <int W>
 GYRE_INLINE void prepare_limit_axis(WideLimitAxis<W>& axis, Vec3W<W> about, const WideBody<W>& a,
-                            const WideBody<W>& b) {
+                                    const WideBody<W>& b) {
   axis.about = about;
   const Wide<W> k = dot(about, a.own_inverse * about) + dot(about, b.own_inverse * about);
   axis.mass = keep(k > 0.0f, 1.0f / k);
@@ -49,8 +48,8 @@ GYRE_INLINE Wide<W> twist_reference(const LaneNode& node, const WideJoint<W>& jo
 // The swing of a cone: its distance to the limit, and the axis about which the limit is nearest, as
 // find_swing_limit() of solver/joint/joint_kinds.cpp.
 template <int W>
-GYRE_INLINE void prepare_swing(WideJoint<W>& joint, const Mat3W<W>& frame_a, Vec3W<W> x_b, const WideBody<W>& a,
-                             const WideBody<W>& b) {
+GYRE_INLINE void prepare_swing(WideJoint<W>& joint, const Mat3W<W>& frame_a, Vec3W<W> x_b,
+                               const WideBody<W>& a, const WideBody<W>& b) {
   const Vec3W<W> across_both = cross(frame_a.x, x_b);
   const Wide<W> sine = length(across_both);
   const Wide<W> angle = atan2(sine, dot(frame_a.x, x_b));
@@ -78,7 +77,7 @@ GYRE_INLINE void prepare_swing(WideJoint<W>& joint, const Mat3W<W>& frame_a, Vec
 
 template <int W>
 GYRE_INLINE void prepare_lane_joint(const LaneNode& node, WideJoint<W>& joint, const WideBody<W>& a,
-                                  const WideBody<W>& b) {
+                                    const WideBody<W>& b) {
   joint.from_a = rotate(a.orientation, joint.local_a);
   joint.from_b = rotate(b.orientation, joint.local_b);
   joint.error = joint.offset + (b.delta_position - a.delta_position) + joint.from_b - joint.from_a;
@@ -129,8 +128,8 @@ GYRE_INLINE void stiffen_body(WideBody<W>& body, const LaneSettings& s) {
   const Wide<W> trace =
       i.xx * p.xx + i.yy * p.yy + i.zz * p.zz + 2.0f * (i.xy * p.xy + i.xz * p.xz + i.yz * p.yz);
   const Wide<W> unresolved = (0.5f * s.substep * s.substep) * trace;
-  const Mask<W> stiffened =
-      (unresolved > kGeometricStiffnessThreshold) & (WideInt<W>::load_unaligned(body.pressed) == WideInt<W>(0));
+  const Mask<W> stiffened = (unresolved > kGeometricStiffnessThreshold) &
+                            (WideInt<W>::load_unaligned(body.pressed) == WideInt<W>(0));
   if (!any(stiffened)) return;
   const Wide<W> stiffnesses[6] = {p.xx, p.yy, p.zz, p.xy, p.xz, p.yz};
   const Wide<W> inertias[6] = {body.inertia.xx, body.inertia.yy, body.inertia.zz,
@@ -254,7 +253,8 @@ void prepare_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, c
   }
   for (std::uint32_t i = 0; i < plain.moving_count; ++i) stiffen_body(bundle.bodies[i], s);
   if (plain.has_fill) clear_values<W>(plain);
-  for (std::uint32_t n = 0; n < plain.node_count; ++n) make_diagonal_block(bundle, plain.nodes[n], s.compliance);
+  for (std::uint32_t n = 0; n < plain.node_count; ++n)
+    make_diagonal_block(bundle, plain.nodes[n], s.compliance);
   *plain.is_factored = false;
 }
 

@@ -20,7 +20,8 @@ struct RowResponse {
     return side == side_a ? a : side == side_b ? b : Speeds{};
   }
 };
-RowResponse response_of_row(const Articulation& articulation, const ArticulationSolve& solve, const ResponseRow& row) {
+RowResponse response_of_row(const Articulation& articulation, const ArticulationSolve& solve,
+                            const ResponseRow& row) {
   const ArticulationNode& node = articulation.nodes[row.node];
   RowResponse response{node.side_a, node.side_b, {}, {}};
   if (node.side_a >= 0)
@@ -43,7 +44,8 @@ bool share_body(const ArticulationNode& node, const ArticulationNode& other) {
 
 // Sets a node's part of a right side: the violation of its rows by these velocities.
 void set_missing(const ArticulationNode& node, const Speeds& a, const Speeds& b, double* x) {
-  const RowVectors &direction = node.rows.direction, &angular_a = node.rows.angular_a, &angular_b = node.rows.angular_b;
+  const RowVectors &direction = node.rows.direction, &angular_a = node.rows.angular_a,
+                   &angular_b = node.rows.angular_b;
   const DVec3 u = a.linear - b.linear;
   for (int i = 0; i < node.count; ++i)
     x[i] = double(direction.x[i]) * u.x + double(direction.y[i]) * u.y + double(direction.z[i]) * u.z +
@@ -67,8 +69,9 @@ void add_answers(const ArticulationNode& node, const double* x, float inverse_ma
 }
 
 double speed_of(const ResponseRow& row, const Speeds& a, const Speeds& b) {
-  return double(row.sign) * (dot(DVec3(row.row->linear_b), b.linear) + dot(DVec3(row.row->angular_b), b.angular) -
-                             dot(DVec3(row.row->linear_a), a.linear) - dot(DVec3(row.row->angular_a), a.angular));
+  return double(row.sign) *
+         (dot(DVec3(row.row->linear_b), b.linear) + dot(DVec3(row.row->angular_b), b.angular) -
+          dot(DVec3(row.row->linear_a), a.linear) - dot(DVec3(row.row->angular_a), a.angular));
 }
 
 double dot_rows(std::span<const double> a, std::span<const double> b) {
@@ -150,8 +153,8 @@ void compute_delassus(const Articulation& articulation, const ArticulationSolve&
 }
 
 void apply_row_impulses(const Articulation& articulation, const ArticulationSolve& solve,
-               std::span<const ResponseRow> rows, std::span<const double> impulses,
-               std::span<double> speeds) {
+                        std::span<const ResponseRow> rows, std::span<const double> impulses,
+                        std::span<double> speeds) {
   BodySpeeds changes(speeds);
   for (double& one : speeds) one = 0.0;
   for (std::size_t c = 0; c < rows.size(); ++c) {
@@ -179,8 +182,8 @@ void apply_row_impulses(const Articulation& articulation, const ArticulationSolv
     changes.set(node.side_b, b);
     for (int i = 0; i < node.count; ++i)
       add_impulse(solve.records[node.record], solve.work[node.work],
-                   {node.rows.direction.at(i), node.rows.angular_a.at(i), node.rows.angular_b.at(i)}, i,
-                   float(x[i]) + 0.0f);
+                  {node.rows.direction.at(i), node.rows.angular_a.at(i), node.rows.angular_b.at(i)}, i,
+                  float(x[i]) + 0.0f);
   }
   // Adding zero keeps -0 out of the state.
   for (std::size_t side = 0; side < articulation.bodies.size(); ++side) {

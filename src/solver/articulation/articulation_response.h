@@ -49,7 +49,8 @@ void compute_delassus(const Articulation& articulation, const ArticulationSolve&
 // Applies impulses along rows with the answer of the equations, to the velocities of bodies and the impulses
 // of joints. `speeds` is room for six numbers a body.
 void apply_row_impulses(const Articulation& articulation, const ArticulationSolve& solve,
-               std::span<const ResponseRow> rows, std::span<const double> impulses, std::span<double> speeds);
+                        std::span<const ResponseRow> rows, std::span<const double> impulses,
+                        std::span<double> speeds);
 
 // The speed along an axis.
 float axis_speed(const ArticulationNode& node, const AxisRow& row, const JointBodies& bodies);

@@ -60,7 +60,8 @@ void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, c
   set_bodies(kernels, blocks, block, lane,
              {joint.body_a, joint.body_b, writes(joint.body_a), writes(joint.body_b),
               inertia_rotates ? kInertiaRotates : kInertiaConstant});
-  std::byte* const first = static_cast<std::byte*>(blocks) + block_offset(kernels, block) + kernels.first_float;
+  std::byte* const first =
+      static_cast<std::byte*>(blocks) + block_offset(kernels, block) + kernels.first_float;
   float* const to = reinterpret_cast<float*>(first) + lane;
   const auto put = [&](std::size_t i, Vec3 v) {
     const std::size_t width = std::size_t(kernels.width);

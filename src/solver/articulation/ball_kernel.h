@@ -2,8 +2,8 @@
 // width.
 #pragma once
 
-#include "solver/articulation/ball_joint_simd.h"
 #include "solver/articulation/articulation_block.h"
+#include "solver/articulation/ball_joint_simd.h"
 
 #include <cstring>
 

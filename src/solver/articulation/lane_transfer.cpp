@@ -147,7 +147,7 @@ void begin_servo(const Lane& lane, const JointAxisRecord& axis, const LaneStart&
   const float impulse = clamp(start.warm_scale * axis.motor_impulse, -max_impulse, max_impulse);
   LaneWriter(lane, 0) << axis.motor_position << 0.0f << impulse << 0.0f << 0.0f;
   LaneWriter(lane, kServoMaxImpulse) << max_impulse << axis.motor_velocity
-                               << (axis.has_motor_target ? start.softness.bias_rate : 0.0f);
+                                     << (axis.has_motor_target ? start.softness.bias_rate : 0.0f);
 }
 
 // If a hinge has a detail, the results of its axis are stored there too.
@@ -254,7 +254,8 @@ float find_lane_error(const ArticulationBundle& bundle, int lane) {
     add(from.vector(kError));
     if (node.kind == JointKind::hinge) add(from.vector(kAngularError));
     if (node.has_twist)
-      largest_error = max(largest_error, max(-from.number(kTwist + kLowGap), -from.number(kTwist + kHighGap)));
+      largest_error =
+          max(largest_error, max(-from.number(kTwist + kLowGap), -from.number(kTwist + kHighGap)));
     if (node.has_swing) largest_error = max(largest_error, -from.number(kSwing + kHighGap));
   }
   return largest_error;

@@ -2,8 +2,8 @@
 // (solver/articulation/articulation_lanes.h), and decides which joints fit in lanes.
 #pragma once
 
-#include "solver/joint/joint.h"
 #include "solver/articulation/articulation_lanes.h"
+#include "solver/joint/joint.h"
 
 namespace gyre {
 

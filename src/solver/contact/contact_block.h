@@ -6,8 +6,8 @@
 #pragma once
 
 #include "geometry/manifold/manifold.h"
-#include "solver/articulation/ball_joint_simd.h"
 #include "solver/articulation/articulation_lanes.h"
+#include "solver/articulation/ball_joint_simd.h"
 #include "solver/core/body_motion.h"
 #include "solver/motion/motion_block.h"
 #include "solver/motion/rotation_block.h"

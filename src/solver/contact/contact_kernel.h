@@ -39,7 +39,7 @@ GYRE_INLINE void warm_start_block(ContactBlock<W>& block) {
   }
   apply_normal_impulse<W>(block, pair, total, angular_sum);
   apply_impulse<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2,
-               block.friction_from_a, block.friction_from_b, block.twist * block.normal);
+                   block.friction_from_a, block.friction_from_b, block.twist * block.normal);
   if (block.has_rolling != 0) apply_angular_impulse<W>(block, pair, block.cold->rolling);
   store_pair<W>(block, pair);
 }
@@ -88,19 +88,24 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   // Use of the limit: 1 is on the ellipsoid. Without load there is no friction.
   const auto was_sliding = Mask<W>::of_bits(block.slides);
   const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
-  const Wide<W> inverse_limit = select(was_sliding, block.inverse_dynamic_friction, block.inverse_friction) * per_load;
-  const Wide<W> inverse_twist_limit = select(was_sliding, block.inverse_dynamic_twist, block.inverse_static_twist) * per_load;
-  const Wide<W> use = (f1 * f1 + f2 * f2) * (inverse_limit * inverse_limit) + (f3 * f3) * (inverse_twist_limit * inverse_twist_limit);
+  const Wide<W> inverse_limit =
+      select(was_sliding, block.inverse_dynamic_friction, block.inverse_friction) * per_load;
+  const Wide<W> inverse_twist_limit =
+      select(was_sliding, block.inverse_dynamic_twist, block.inverse_static_twist) * per_load;
+  const Wide<W> use = (f1 * f1 + f2 * f2) * (inverse_limit * inverse_limit) +
+                      (f3 * f3) * (inverse_twist_limit * inverse_twist_limit);
   const auto sticks = (use <= one) | ~loaded;
 
   if (!all(sticks)) {
     // Sliding: a step along the slip, equal in every direction, then clamped to the ellipsoid.
     const Wide<W> g1 = block.friction_1 - block.cold->slide_mass * v1;
     const Wide<W> g2 = block.friction_2 - block.cold->slide_mass * v2;
-    const Wide<W> g3 = block.twist - block.cold->slide_mass * (block.cold->twist_radius * block.cold->twist_radius) * v3;
+    const Wide<W> g3 =
+        block.twist - block.cold->slide_mass * (block.cold->twist_radius * block.cold->twist_radius) * v3;
     const Wide<W> inverse_slide_friction = block.inverse_dynamic_friction * per_load;
     const Wide<W> inverse_slide_twist = block.inverse_dynamic_twist * per_load;
-    const Wide<W> use_of_limit = (g1 * g1 + g2 * g2) * (inverse_slide_friction * inverse_slide_friction) + (g3 * g3) * (inverse_slide_twist * inverse_slide_twist);
+    const Wide<W> use_of_limit = (g1 * g1 + g2 * g2) * (inverse_slide_friction * inverse_slide_friction) +
+                                 (g3 * g3) * (inverse_slide_twist * inverse_slide_twist);
     const Wide<W> scale = select(use_of_limit > one, one / sqrt(use_of_limit), one);
     f1 = select(sticks, f1, g1 * scale);
     f2 = select(sticks, f2, g2 * scale);
@@ -118,7 +123,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   block.friction_2 = f2;
   block.twist = f3;
   apply_impulse<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a,
-               block.friction_from_b, d3 * block.normal);
+                   block.friction_from_b, d3 * block.normal);
 }
 
 // Rolling friction: a torque against relative rotation, at most rolling_friction times the load.
@@ -135,7 +140,8 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
   // A lane without rolling friction must get the bits of a block without it, even where `target` overflows.
   const auto has_rolling = block.cold->rolling_friction > zero;
   const Vec3W<W> bounded = scale * target;
-  const Vec3W<W> next{select(has_rolling, bounded.x, zero), select(has_rolling, bounded.y, zero), select(has_rolling, bounded.z, zero)};
+  const Vec3W<W> next{select(has_rolling, bounded.x, zero), select(has_rolling, bounded.y, zero),
+                      select(has_rolling, bounded.z, zero)};
   apply_angular_impulse<W>(block, pair, next - block.cold->rolling);
   block.cold->rolling = next;
 }
@@ -179,7 +185,8 @@ GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& cold, const 
 template <int W, bool kSprung, int Count, bool kHasA>
 GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
-  const NormalMotion<W> displacements = normal_displacements<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
+  const NormalMotion<W> displacements = normal_displacements<W, kHasA>(block),
+                        speeds = normal_speeds<W>(block, pair);
   const Wide<W> deep_separation = Wide<W>(-kDeepPenetrationSlops) * block.slop;
   const Wide<W> leak(1.0f / (1.0f + kDeepPenetrationLeak * substep));
   Wide<W> residual[Count];     // speed that the row removes
@@ -196,11 +203,12 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
       const auto is_capped = bias < fastest;
       residual[i] = speed + select(apart, separation * rate + block.slop * block.rate, max(bias, fastest));
       // Where the speed is capped, the yield shrinks by the same share: the spring still carries its load.
-      const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, bias, one), one) : one;
+      const Wide<W> share =
+          any(is_capped) ? select(is_capped, fastest / select(is_capped, bias, one), one) : one;
       // The yield of a point fades while it separates.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
-      accumulated[i] =
-          block.impulses[i] - (block.compliance * near) * share * max(block.impulses[i] - point.mean_impulse, zero);
+      accumulated[i] = block.impulses[i] -
+                       (block.compliance * near) * share * max(block.impulses[i] - point.mean_impulse, zero);
       if (block.jointed != 0) {
         accumulated[i] = select(Mask<W>::of_bits(block.jointed) & (separation < deep_separation),
                                 leak * accumulated[i], accumulated[i]);
@@ -346,7 +354,8 @@ struct SavedImpulses {
 template <int W, bool kHasA>
 GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
   const bool begins = (block.has_fresh | block.has_rolling) != 0;
-  PairMotion<W, kHasA> pair = begins ? reduce_pair<kHasA>(begin_pair<W>(block, substep)) : load_pair<W, kHasA>(block);
+  PairMotion<W, kHasA> pair =
+      begins ? reduce_pair<kHasA>(begin_pair<W>(block, substep)) : load_pair<W, kHasA>(block);
   const bool still = !begins && is_still<W>(pair) && is_undisplaced<W, kHasA>(block);
   if (!still || block.is_settled == 0) {
     SavedImpulses<W> saved;

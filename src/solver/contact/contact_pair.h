@@ -59,7 +59,8 @@ struct alignas(64) ContactBlock {
                                 // the next
   // Lanes as bits: with a jointed body; with a body A, B; with a movable body A, B; with friction at its
   // limit; with a row for a point.
-  std::uint16_t jointed = 0, has_a = 0, has_b = 0, movable_a = 0, movable_b = 0, slides = 0, rows[kMaxManifoldPoints] = {};
+  std::uint16_t jointed = 0, has_a = 0, has_b = 0, movable_a = 0, movable_b = 0, slides = 0,
+                rows[kMaxManifoldPoints] = {};
   Vec3W<W> normal, tangent_1, tangent_2;
   // Friction at the centre of pressure.
   Vec3W<W> friction_from_a, friction_from_b;
@@ -121,15 +122,17 @@ GYRE_INLINE void store_velocities(float* const (&records)[W], Vec3W<W> linear, V
 template <int W, bool kHasA>
 GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
   if constexpr (kHasA)
-    store_velocities<W>(block.movable_a == all_lanes(W) ? block.read_a : block.cold->write_a, pair.linear_a, pair.angular_a);
-  store_velocities<W>(block.movable_b == all_lanes(W) ? block.read_b : block.cold->write_b, pair.linear_b, pair.angular_b);
+    store_velocities<W>(block.movable_a == all_lanes(W) ? block.read_a : block.cold->write_a, pair.linear_a,
+                        pair.angular_a);
+  store_velocities<W>(block.movable_b == all_lanes(W) ? block.read_b : block.cold->write_b, pair.linear_b,
+                      pair.angular_b);
 }
 
 // Applies the impulse `p` to B at `from_b` (and -p to A at `from_a`), and the angular impulse `t` to B (and
 // -t to A).
 template <int W, bool kHasA>
 GYRE_INLINE void apply_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p,
-                           Vec3W<W> from_a, Vec3W<W> from_b, Vec3W<W> t) {
+                               Vec3W<W> from_a, Vec3W<W> from_b, Vec3W<W> t) {
   if constexpr (kHasA) {
     pair.linear_a = pair.linear_a - block.inverse_mass_a * p;
     pair.angular_a = pair.angular_a - block.inverse_inertia_a * (cross(from_a, p) + t);
@@ -140,7 +143,8 @@ GYRE_INLINE void apply_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA
 
 // Applies an impulse `p` along the normal; `moment` is the sum of impulses times the arms of their points.
 template <int W, bool kHasA>
-GYRE_INLINE void apply_normal_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Wide<W> p, Vec3W<W> moment) {
+GYRE_INLINE void apply_normal_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Wide<W> p,
+                                      Vec3W<W> moment) {
   if constexpr (kHasA) {
     pair.linear_a = pair.linear_a - (block.inverse_mass_a * p) * block.normal;
     pair.angular_a = pair.angular_a - block.inverse_inertia_a * (moment + p * block.arm_shift_a);
@@ -159,11 +163,15 @@ struct NormalMotion {
 };
 // For two bodies, and for one on the static world.
 template <int W>
-GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> displacement, Vec3W<W> rotation_a, Vec3W<W> rotation_b) {
-  return {dot(displacement, block.normal) + (dot(rotation_b, block.arm_shift_b) - dot(rotation_a, block.arm_shift_a)), rotation_b - rotation_a};
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> displacement,
+                                          Vec3W<W> rotation_a, Vec3W<W> rotation_b) {
+  return {dot(displacement, block.normal) +
+              (dot(rotation_b, block.arm_shift_b) - dot(rotation_a, block.arm_shift_a)),
+          rotation_b - rotation_a};
 }
 template <int W>
-GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> displacement, Vec3W<W> rotation_b) {
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> displacement,
+                                          Vec3W<W> rotation_b) {
   return {dot(displacement, block.normal) + dot(rotation_b, block.arm_shift_b), rotation_b};
 }
 template <int W, bool kHasA>

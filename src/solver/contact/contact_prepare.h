@@ -39,10 +39,12 @@ static_assert(offsetof(ContactPointState, normal_impulse) == 4 * kPointImpulse &
 static_assert(offsetof(ContactPointState, total_impulse) == 4 * kPointImpulse + 4 && offsetof(ContactPointState, held) == 4 * kPointImpulse + 8);
 static_assert(offsetof(BodyInertia, inverse_mass) == 4 * kInertiaMass + 8);
 static_assert(offsetof(ContactConstraint, static_friction) == 4 * kConstraintFriction);
-static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize && offsetof(ContactConstraint, pushout_speed) == 4 * kConstraintSize + 4);
+static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize &&
+              offsetof(ContactConstraint, pushout_speed) == 4 * kConstraintSize + 4);
 static_assert(offsetof(ContactConstraint, surface_velocity) == 4 * kConstraintVelocity);
 // Bytes in the last float of a group.
-static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 && offsetof(ContactConstraint, has_joint) == 4 * kConstraintKinds + 13);
+static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 &&
+              offsetof(ContactConstraint, has_joint) == 4 * kConstraintKinds + 13);
 
 // The constraints and manifolds of a block's lanes. Lanes without a contact, and missing points, read zeros
 // and are not written.
@@ -301,7 +303,8 @@ GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& 
   const Sym3W<W>& a = block.inverse_inertia_a;
   const Sym3W<W>& b = block.inverse_inertia_b;
   const Wide<W> angular_trace = (a.xx + a.yy + a.zz) + (b.xx + b.yy + b.zz);
-  block.cold->rolling_mass = keep(angular_trace > zero, one / select(angular_trace > zero, angular_trace, one));
+  block.cold->rolling_mass =
+      keep(angular_trace > zero, one / select(angular_trace > zero, angular_trace, one));
 }
 
 template <int W>
@@ -338,7 +341,8 @@ GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t 
 
 // Finds the records to which velocities of movable bodies are written.
 template <int W>
-GYRE_INLINE void find_write_records(std::uint32_t pushes, float* const (&read)[W], float* nowhere, float* (&write)[W]) {
+GYRE_INLINE void find_write_records(std::uint32_t pushes, float* const (&read)[W], float* nowhere,
+                                    float* (&write)[W]) {
   for (int lane = 0; lane < W; ++lane)
     write[lane] = (pushes >> lane & 1u) != 0 ? read[lane] : nowhere;
 }
@@ -351,10 +355,10 @@ GYRE_INLINE void prepare_bodies(ContactBlock<W>& block, const LaneRecords<W>& re
   block.has_a = find_side<W>(records, &ContactConstraint::body_a, bodies, block.read_a, block.inverse_mass_a, a);
   block.has_b = find_side<W>(records, &ContactConstraint::body_b, bodies, block.read_b, block.inverse_mass_b, b);
   // Any impulse moves or rotates a body by a diagonal element.
-  block.movable_a =
-      block.has_a & lane_bits<W>((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
-  block.movable_b =
-      block.has_b & lane_bits<W>((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
+  block.movable_a = block.has_a & lane_bits<W>((block.inverse_mass_a > zero) | (a.xx != zero) |
+                                               (a.yy != zero) | (a.zz != zero));
+  block.movable_b = block.has_b & lane_bits<W>((block.inverse_mass_b > zero) | (b.xx != zero) |
+                                               (b.yy != zero) | (b.zz != zero));
   find_write_records<W>(block.movable_a, block.read_a, block.cold->nowhere, block.cold->write_a);
   find_write_records<W>(block.movable_b, block.read_b, block.cold->nowhere, block.cold->write_b);
 }

@@ -51,7 +51,8 @@ GYRE_INLINE PushoutResponse<W> pushout_response(const ContactBlock<W>& block) {
         block.cold->mobility_b * (block.inverse_inertia_b * (point.arm + block.arm_shift_b));
     Wide<W> shifted = dot(block.arm_shift_b, angular);
     if constexpr (kHasA) {
-      response.angular_a[i] = block.cold->mobility_a * (block.inverse_inertia_a * (point.arm + block.arm_shift_a));
+      response.angular_a[i] =
+          block.cold->mobility_a * (block.inverse_inertia_a * (point.arm + block.arm_shift_a));
       angular = response.angular_a[i] + angular;
       shifted = dot(block.arm_shift_a, response.angular_a[i]) + shifted;
     }
@@ -63,7 +64,8 @@ GYRE_INLINE PushoutResponse<W> pushout_response(const ContactBlock<W>& block) {
 
 // Displacement of the points in the step so far, with the present pushout.
 template <int W, bool kHasA>
-GYRE_INLINE NormalMotion<W> displacements_so_far(const ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
+GYRE_INLINE NormalMotion<W> displacements_so_far(const ContactBlock<W>& block,
+                                                 const PairMotion<W, kHasA>& pair) {
   const BodyDisplacement<W> b(block.read_b);
   const Vec3W<W> rotation_b = b.delta_rotation + pair.angular_b;
   if constexpr (kHasA) {
@@ -85,11 +87,13 @@ GYRE_INLINE bool find_pushouts(const ContactBlock<W>& block, const PairMotion<W,
   auto overlaps = zero < zero;
   for (int i = 0; i < block.point_count; ++i) {
     const PointBlock<W>& point = block.points[i];
-    const Wide<W> over = zero - (point.separation + displacements.at(point) + Wide<W>(float(kPushoutSlopFactor)) * block.slop);
+    const Wide<W> over =
+        zero - (point.separation + displacements.at(point) + Wide<W>(float(kPushoutSlopFactor)) * block.slop);
     const auto exists = Mask<W>::of_bits(block.rows[i]);
     const auto deep = (over > zero) & exists;
     overlaps = overlaps | deep;
-    pushouts[i] = select(exists, select(deep, min(Wide<W>(float(kPushoutShare)) * over, max_pushout), over), zero);
+    pushouts[i] =
+        select(exists, select(deep, min(Wide<W>(float(kPushoutShare)) * over, max_pushout), over), zero);
   }
   return any(overlaps);
 }
@@ -107,7 +111,7 @@ GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
     impulses[i] = zero;
     const Wide<W> k = response.k[packed(i, i)];
     inverse_diagonal[i] = select((k > zero) & Mask<W>::of_bits(block.rows[i]),
-                       Wide<W>(1.0f) / select(k > zero, k, Wide<W>(1.0f)), zero);
+                                 Wide<W>(1.0f) / select(k > zero, k, Wide<W>(1.0f)), zero);
   }
   GYRE_ROLLED
   for (int iteration = 0; iteration < kProjectionIterations; ++iteration) {

@@ -103,7 +103,8 @@ bool apply_point_restitution(ImpactPoint& point, const ImpactContact& contact, c
   const float closing = -dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
   if (!(closing > settings.threshold)) return false;
   // Below the surface (a contact that was found too late) the way up counts like the way down.
-  const float separation = point.separation + dot(bodies.displacement(point.from_a, point.from_b), contact.normal);
+  const float separation =
+      point.separation + dot(bodies.displacement(point.from_a, point.from_b), contact.normal);
   if (closing * settings.substep < separation) return false;
   const float start = closing - point.force_speed;  // u: before the forces of this sub-step
   const float half_force_speed = 0.5f * point.force_speed;

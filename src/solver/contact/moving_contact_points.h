@@ -105,7 +105,7 @@ struct LoadShares {
 // Shares with which the accumulated friction was applied; at the beginning of a step those of the load.
 template <int W>
 GYRE_INLINE void previous_shares(const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& now,
-                               Wide<W> (&before)[kMaxManifoldPoints]) {
+                                 Wide<W> (&before)[kMaxManifoldPoints]) {
   Wide<W> recorded[kMaxManifoldPoints], sum(0.0f);
   gather_columns<4, W>(lanes.arms, kArmsShares, recorded);
   for (int k = 0; k < lanes.point_count; ++k) sum = sum + recorded[k];
@@ -166,7 +166,7 @@ GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
 // Writes the moving lanes back into the block.
 template <int W>
 GYRE_INLINE void write_back(ContactBlock<W>& block, const ContactBlock<W>& updated,
-                          const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& load) {
+                            const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& load) {
   const auto moving = Mask<W>::of_bits(lanes.bits);
   const auto put = [](Mask<W> where, auto& to, const auto& from) { to = select(where, from, to); };
   const auto put_vector = [](Mask<W> where, Vec3W<W>& to, const Vec3W<W>& from) { to = select<W>(where, from, to); };

@@ -13,8 +13,8 @@ struct alignas(64) BodyMotion {
   Vec3 angular_velocity;  // rad/s, world frame
   float inverse_mass = 0.0f;  // 1/kg; 0 for fixed and kinematic bodies
   float pushout = 0.0f;       // m: the largest pushout of a point of the body in this step
-  Vec3 delta_position;   // m, of the centre of mass since the step began
-  Vec3 delta_rotation;   // rad, rotation vector since the step began: the sum over the sub-steps
+  Vec3 delta_position;        // m, of the centre of mass since the step began
+  Vec3 delta_rotation;        // rad, rotation vector since the step began: the sum over the sub-steps
   float spare_1 = 0.0f;
   float spare_2 = 0.0f;
 };

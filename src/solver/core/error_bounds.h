@@ -7,7 +7,7 @@ namespace gyre {
 // Larger errors of a joint count as these.
 struct ErrorBounds {
   float point;  // m
-  float rotation;   // rad
+  float rotation;  // rad
 };
 
 // The bounds keep bodies calm that are joined, or released, far from where the joint wants them.

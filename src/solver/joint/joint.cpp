@@ -111,9 +111,9 @@ void warm_start_axes(const JointConstraint& work, JointPair& pair, bool rods) {
 bool has_axes(const JointConstraint& work) { return !work.axes.empty() || work.drive != nullptr; }
 
 void solve_angular_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair,
-                     const JointSettings& settings, bool soft) {
-  const Vec3 change = row_change(work.angular_mass, pair.relative_spin(), work.angular_error, joint.angular_impulse,
-                                 settings.softness, soft);
+                        const JointSettings& settings, bool soft) {
+  const Vec3 change = row_change(work.angular_mass, pair.relative_spin(), work.angular_error,
+                                 joint.angular_impulse, settings.softness, soft);
   pair.apply_angular_impulse(change);
   joint.angular_impulse += change;
 }
@@ -204,15 +204,27 @@ void prepare_kind(JointRecord& joint, JointConstraint& work, const JointPair& pa
       break;
     case JointKind::hinge: prepare_hinge(joint, pair, work, settings); break;
     case JointKind::slider: prepare_slider(joint, pair, work, settings); break;
-    case JointKind::fixed: prepare_fixed(pair, work, settings.iterative); break;
+    case JointKind::fixed:
+      prepare_fixed(pair, work, settings.iterative);
+      break;
     case JointKind::distance: prepare_distance(joint, pair, work, settings); break;
     case JointKind::universal:
     case JointKind::six_dof:
-    case JointKind::wheel: prepare_six_axes(joint, work, pair, settings); break;
-    case JointKind::gear: prepare_gear(joint, work); break;
-    case JointKind::rack_and_pinion: prepare_rack(joint, work, pair, offsets); break;
-    case JointKind::pulley: prepare_pulley(joint, work, pair, offsets, settings); break;
-    case JointKind::path: prepare_path(joint, work, pair, settings); break;
+    case JointKind::wheel:
+      prepare_six_axes(joint, work, pair, settings);
+      break;
+    case JointKind::gear:
+      prepare_gear(joint, work);
+      break;
+    case JointKind::rack_and_pinion:
+      prepare_rack(joint, work, pair, offsets);
+      break;
+    case JointKind::pulley:
+      prepare_pulley(joint, work, pair, offsets, settings);
+      break;
+    case JointKind::path:
+      prepare_path(joint, work, pair, settings);
+      break;
     case JointKind::mouse:
     case JointKind::motor: break;
   }

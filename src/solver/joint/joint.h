@@ -48,7 +48,7 @@ struct JointRows {
 
 // Pose drive and friction against all rotation in a sub-step.
 struct DriveConstraint {
-  Vec3 linear_error, angular_error;  // world
+  Vec3 linear_error, angular_error;               // world
   Vec3 target_velocity, target_angular_velocity;  // targets
   Vec3 from_a;                                    // to b's anchor
   Mat3 linear_mass, angular_mass;

@@ -8,7 +8,9 @@ namespace gyre {
 namespace {
 
 // Share of a constant force that arrives as speed in a sub-step h with 2 d h = decay.
-double constant_force_share(double decay) { return decay > 1.0e-6 ? (1.0 - exp(-decay)) / decay : 1.0 - 0.5 * decay; }
+double constant_force_share(double decay) {
+  return decay > 1.0e-6 ? (1.0 - exp(-decay)) / decay : 1.0 - 0.5 * decay;
+}
 
 // Coefficients of a spring row for one sub-step.
 //
@@ -39,7 +41,8 @@ SpringStep make_spring(const JointAxisRecord& axis, float effective_mass, float 
   const double back = 1.0 + e2 - 2.0 * e1 * c;  // of the displacement over h
   const double phase_squared = square(omega * h);
   spring.retained = float(e2);
-  spring.load_share = float(phase_squared > 1.0e-8 ? back / phase_squared : constant_force_share(2.0 * decay * h));
+  spring.load_share =
+      float(phase_squared > 1.0e-8 ? back / phase_squared : constant_force_share(2.0 * decay * h));
   spring.return_rate = float(back / h);
   return spring;
 }
@@ -54,7 +57,8 @@ float spring_change(const AxisConstraint& x, float speed) {
            s.impulse_scale * axis.spring_impulse;
   }
   const float without = speed - axis.spring_impulse / x.mass;
-  const float target_speed = x.spring.retained * x.speed_before + x.spring.load_share * (without - x.speed_before) -
+  const float target_speed = x.spring.retained * x.speed_before +
+                             x.spring.load_share * (without - x.speed_before) -
                              x.spring.return_rate * displacement;
   return x.mass * (target_speed - without) - axis.spring_impulse;
 }
@@ -80,13 +84,13 @@ float friction_change(const AxisConstraint& x, float speed, float substep) {
 
 // The change of a limit's impulse. A soft limit acts once it is reached, and only in soft solves.
 float limit_change(const AxisConstraint& x, float speed, float gap, float impulse,
-                 const JointSettings& settings, bool soft) {
+                   const JointSettings& settings, bool soft) {
   if (x.axis.limit_frequency <= 0.0f)
     return limit_impulse_change(x.mass, speed, gap, impulse, settings, soft);
   if (!soft) return 0.0f;
   if (gap > 0.0f) return -impulse;
-  const float change =
-      -x.mass * x.limit_softness.mass_scale * (speed + x.limit_softness.bias_rate * gap) - x.limit_softness.impulse_scale * impulse;
+  const float change = -x.mass * x.limit_softness.mass_scale * (speed + x.limit_softness.bias_rate * gap) -
+                       x.limit_softness.impulse_scale * impulse;
   return max(impulse + change, 0.0f) - impulse;
 }
 
@@ -100,8 +104,8 @@ float rod_change(const AxisConstraint& x, float speed, const JointSettings& sett
 }  // namespace
 
 float axis_speed(const AxisRow& row, const JointPair& pair) {
-  return dot(row.linear_b, pair.linear_b) + dot(row.angular_b, pair.angular_b) - dot(row.linear_a, pair.linear_a) -
-         dot(row.angular_a, pair.angular_a);
+  return dot(row.linear_b, pair.linear_b) + dot(row.angular_b, pair.angular_b) -
+         dot(row.linear_a, pair.linear_a) - dot(row.angular_a, pair.angular_a);
 }
 
 void apply_axis_impulse(const AxisRow& row, float impulse, JointPair& pair) {
@@ -142,7 +146,8 @@ namespace {
 
 // Calls apply(impulse) for each change, and measure() for the speed along the row.
 template <class Measure, class Apply>
-void solve_axis_by(AxisConstraint& x, const JointSettings& settings, bool soft, Measure&& measure, Apply&& apply) {
+void solve_axis_by(AxisConstraint& x, const JointSettings& settings, bool soft, Measure&& measure,
+                   Apply&& apply) {
   if (!(x.mass > 0.0f)) return;
   JointAxisRecord& axis = x.axis;
   const float second_order_bias = soft ? x.second_order_bias : 0.0f;

@@ -36,7 +36,9 @@ class JointPair {
   float inverse_mass_b() const { return inertia_b_->inverse_mass; }
   const Sym3& inverse_inertia_a() const { return inertia_a_->inverse; }
   const Sym3& inverse_inertia_b() const { return inertia_b_->inverse; }
-  Vec3 relative_displacement() const { return (b_ != nullptr ? b_->delta_position : Vec3{}) - (a_ != nullptr ? a_->delta_position : Vec3{}); }
+  Vec3 relative_displacement() const {
+    return (b_ != nullptr ? b_->delta_position : Vec3{}) - (a_ != nullptr ? a_->delta_position : Vec3{});
+  }
 
   Vec3 displacement_a() const { return a_ != nullptr ? a_->delta_position : Vec3{}; }
   Vec3 displacement_b() const { return b_ != nullptr ? b_->delta_position : Vec3{}; }
@@ -148,8 +150,7 @@ inline float limit_impulse_change(float mass, float speed, float gap, float impu
     target = impulse - mass * (speed + gap / settings.substep);
   } else if (is_soft) {
     const Softness& soft = settings.softness;
-    target =
-        impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * impulse;
+    target = impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * impulse;
   } else {
     target = impulse - mass * speed;
   }

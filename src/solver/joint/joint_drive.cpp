@@ -7,7 +7,8 @@ namespace gyre {
 namespace {
 
 // The change of an impulse that brings `speed` to its target, within a ball of radius `max_impulse`.
-Vec3 drive_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, const Softness& s, float max_impulse) {
+Vec3 drive_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, const Softness& s,
+                  float max_impulse) {
   const Vec3 target_impulse =
       impulse - s.mass_scale * (mass * (speed + s.bias_rate * error)) - s.impulse_scale * impulse;
   return clamp_length(target_impulse, max_impulse) - impulse;
@@ -48,14 +49,15 @@ void solve_drive(const JointConstraint& work, JointPair& pair, const JointSettin
   const DriveConstraint& d = *work.drive;
   const float h = settings.substep;
   if (detail.drive.max_torque > 0.0f) {
-    const Vec3 change = drive_change(d.angular_mass, pair.relative_spin() - d.target_angular_velocity, d.angular_error,
-                                     detail.drive_torque_impulse, d.softness, detail.drive.max_torque * h);
+    const Vec3 change =
+        drive_change(d.angular_mass, pair.relative_spin() - d.target_angular_velocity, d.angular_error,
+                     detail.drive_torque_impulse, d.softness, detail.drive.max_torque * h);
     pair.apply_angular_impulse(change);
     detail.drive_torque_impulse += change;
   }
   if (detail.friction > 0.0f) {
-    const Vec3 change =
-        drive_change(d.angular_mass, pair.relative_spin(), {}, detail.friction_impulse, {}, detail.friction * h);
+    const Vec3 change = drive_change(d.angular_mass, pair.relative_spin(), {}, detail.friction_impulse, {},
+                                     detail.friction * h);
     pair.apply_angular_impulse(change);
     detail.friction_impulse += change;
   }

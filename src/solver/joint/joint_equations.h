@@ -60,14 +60,15 @@ inline void make_equations(JointEquations& node, const JointRecord& joint, const
 inline bool is_angular(const JointEquation& row) { return row.direction == Vec3{}; }
 
 // Conversion between the accumulated impulses of the joint and those of its equations.
-inline float accumulated_impulse(const JointRecord& joint, const JointConstraint& work, const JointEquation& row,
-                          int i) {
+inline float accumulated_impulse(const JointRecord& joint, const JointConstraint& work,
+                                 const JointEquation& row, int i) {
   if (work.rows != nullptr) return work.detail->row_impulses[i];
   if (joint.kind == JointKind::distance) return work.axes[0].axis.low_impulse;
-  return is_angular(row) ? dot(joint.angular_impulse, row.angular_a) : dot(joint.linear_impulse, row.direction);
+  return is_angular(row) ? dot(joint.angular_impulse, row.angular_a)
+                         : dot(joint.linear_impulse, row.direction);
 }
 inline void add_impulse(JointRecord& joint, const JointConstraint& work, const JointEquation& row, int i,
-                         float impulse) {
+                        float impulse) {
   if (work.rows != nullptr) {
     work.detail->row_impulses[i] += impulse;
   } else if (joint.kind == JointKind::distance) {

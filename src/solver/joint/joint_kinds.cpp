@@ -77,7 +77,7 @@ Vec3 locked_rotation_error(const JointDetail& detail, const Cardan& c, const Vec
 // Adds rows for the locked angles, normal to the free axes. They are an orthonormal basis that rotates with
 // the bodies.
 void add_locked_rotation_rows(const JointDetail& detail, const JointConstraint& work, const Cardan& c,
-                      JointRows& rows) {
+                              JointRows& rows) {
   int free_axes[3], free_count = 0;
   for (int i = 0; i < 3; ++i) {
     if (!is_locked(detail, 3 + i)) free_axes[free_count++] = i;
@@ -100,7 +100,7 @@ void add_locked_rotation_rows(const JointDetail& detail, const JointConstraint& 
 }
 
 void prepare_axis_row(AxisConstraint& x, const AxisRow& row, float position, const JointPair& pair,
-                     const JointSettings& settings) {
+                      const JointSettings& settings) {
   x.row = row;
   x.axis.position = position;
   prepare_axis(x, pair, settings);
@@ -212,7 +212,7 @@ void adjust_axes(const JointRecord& joint, std::span<AxisConstraint> axes) {
 }
 
 void prepare_six_axes(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                    const JointSettings& settings) {
+                      const JointSettings& settings) {
   JointDetail& detail = *work.detail;
   const Mat3 frame = to_matrix(work.frame_a);
   const Vec3 linear[3] = {frame.x, frame.y, frame.z};
@@ -239,7 +239,7 @@ void prepare_six_axes(JointRecord& joint, JointConstraint& work, const JointPair
     const int i = int(x.index);
     const Vec3 dual = i >= 3 ? c.dual(i - 3) : Vec3{};
     prepare_axis_row(x, i < 3 ? point_axis(work, linear[i]) : AxisRow{{}, {}, dual, dual},
-                    detail.axes[i].position, pair, settings);
+                     detail.axes[i].position, pair, settings);
   }
   work.position = joint.position = detail.axes[int(main_axis(joint.kind))].position;
 }
@@ -247,7 +247,8 @@ void prepare_six_axes(JointRecord& joint, JointConstraint& work, const JointPair
 void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair,
                   const JointSettings& settings) {
   const Quat twist = conjugate(work.frame_a) * work.frame_b;
-  work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), twist_reference(joint, work.detail));
+  work.position = joint.position =
+      unwrapped(2.0f * atan2(twist.x, twist.w), twist_reference(joint, work.detail));
   if (work.detail == nullptr) return;
   work.detail->axes[3].position = joint.position;
   for (AxisConstraint& x : work.axes) {
@@ -269,15 +270,17 @@ void prepare_gear(JointRecord& joint, JointConstraint& work) {
   row.error = gear_error(detail, work.frame_a, work.frame_b);
   row.angular_a = -rotate(work.frame_a, {1, 0, 0});
   row.angular_b = detail.ratio * rotate(work.frame_b, {1, 0, 0});
-  detail.axes[3].position = float(rotation_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
-  detail.axes[4].position = float(rotation_about_x(detail.reference_b, work.frame_b, detail.axes[4].position));
+  detail.axes[3].position =
+      float(rotation_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
+  detail.axes[4].position =
+      float(rotation_about_x(detail.reference_b, work.frame_b, detail.axes[4].position));
   work.position = joint.position = detail.axes[3].position;
   work.rows->count = 0;
   add_row(*work.rows, row);
 }
 
 void prepare_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                const JointOffsets& offsets) {
+                  const JointOffsets& offsets) {
   JointDetail& detail = *work.detail;
   const Vec3 center_offset = offsets.offset + pair.relative_displacement();
   work.from_a += work.error;  // to b's anchor
@@ -289,14 +292,15 @@ void prepare_rack(JointRecord& joint, JointConstraint& work, const JointPair& pa
   row.direction = along;
   row.angular_a = detail.ratio * about;
   row.angular_b = cross(rim - center_offset, along);
-  detail.axes[3].position = float(rotation_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
+  detail.axes[3].position =
+      float(rotation_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
   work.position = joint.position = detail.axes[3].position;
   work.rows->count = 0;
   add_row(*work.rows, row);
 }
 
 void prepare_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                  const JointOffsets& offsets, const JointSettings& settings) {
+                    const JointOffsets& offsets, const JointSettings& settings) {
   const float ratio = work.detail->ratio;
   const Vec3 a = pair.displacement_a() + work.from_a - offsets.ground_a,
              b = pair.displacement_b() + work.from_b - offsets.ground_b;
@@ -307,7 +311,8 @@ void prepare_pulley(JointRecord& joint, JointConstraint& work, const JointPair& 
   work.position = joint.position = length_a + ratio * length_b;
   work.detail->axes[0].position = work.position;
   for (AxisConstraint& x : work.axes) {
-    const AxisRow row{-direction_a, ratio * direction_b, cross(work.from_a, -direction_a), cross(work.from_b, ratio * direction_b)};
+    const AxisRow row{-direction_a, ratio * direction_b, cross(work.from_a, -direction_a),
+                      cross(work.from_b, ratio * direction_b)};
     prepare_axis_row(x, row, work.position, pair, settings);
   }
 }
@@ -319,7 +324,8 @@ void update_pulley_bias(JointConstraint& work, const JointPair& pair, float h) {
     const Vec3 speed = velocity + cross(spin, arm);
     const Vec3 across = speed - dot(speed, direction) * direction;
     return 0.5f * h *
-           (dot(cross(spin, cross(spin, arm)), direction) + (size > 0.0f ? length_squared(across) / size : 0.0f));
+           (dot(cross(spin, cross(spin, arm)), direction) +
+            (size > 0.0f ? length_squared(across) / size : 0.0f));
   };
   for (AxisConstraint& x : work.axes) {
     x.second_order_bias =
@@ -329,7 +335,7 @@ void update_pulley_bias(JointConstraint& work, const JointPair& pair, float h) {
 }
 
 void prepare_path(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                const JointSettings& settings) {
+                  const JointSettings& settings) {
   JointDetail& detail = *work.detail;
   const Vec3 anchor_offset = work.error;
   const Vec3 local = rotate_inverse(work.frame_a, anchor_offset);
@@ -386,7 +392,8 @@ void measure_rows(const JointRecord& joint, const JointConstraint& work, const R
       errors[1] = dot(off, f.axes.z);
       if (rows.count == 2) return;
       const Vec3 rotation = path_rotation_error(detail, pose, f);
-      errors[2] = dot(rotation, f.axes.x), errors[3] = dot(rotation, f.axes.y), errors[4] = dot(rotation, f.axes.z);
+      errors[2] = dot(rotation, f.axes.x), errors[3] = dot(rotation, f.axes.y),
+      errors[4] = dot(rotation, f.axes.z);
       return;
     }
     default:
@@ -396,7 +403,8 @@ void measure_rows(const JointRecord& joint, const JointConstraint& work, const R
   const Vec3 linear[3] = {frame.x, frame.y, frame.z};
   int n = 0;
   for (int i = 0; i < 3; ++i) {
-    if (is_locked(detail, i)) errors[n++] = dot(pose.anchor_offset, linear[i]) - detail.axes[i].locked_position;
+    if (is_locked(detail, i))
+      errors[n++] = dot(pose.anchor_offset, linear[i]) - detail.axes[i].locked_position;
   }
   // Errors along the axes of the present rows, so that they match the linear rows.
   const Cardan now = cardan_of(work.frame_a, work.frame_b), later = cardan_of(pose.frame_a, pose.frame_b);
@@ -409,7 +417,8 @@ void prepare_rows(JointRows& rows, const JointPair& pair) {
   const int n = rows.count;
   for (int i = 0; i < n; ++i) {
     const JointRow& row = rows.rows[i];
-    const Vec3 spin_a = pair.inverse_inertia_a() * row.angular_a, spin_b = pair.inverse_inertia_b() * row.angular_b;
+    const Vec3 spin_a = pair.inverse_inertia_a() * row.angular_a,
+               spin_b = pair.inverse_inertia_b() * row.angular_b;
     for (int j = 0; j <= i; ++j) {
       const JointRow& other = rows.rows[j];
       rows.factors[i * n + j] = double(inverse_mass * dot(row.direction, other.direction) +

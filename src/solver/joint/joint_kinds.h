@@ -9,8 +9,8 @@ namespace gyre {
 
 // The relative pose of two bodies, as a joint measures it.
 struct RowPose {
-  Vec3 anchor_offset;             // b's anchor minus a's
-  Vec3 center_offset;           // b's centre of mass minus a's
+  Vec3 anchor_offset;     // b's anchor minus a's
+  Vec3 center_offset;     // b's centre of mass minus a's
   Quat frame_a, frame_b;  // world_from_joint
 };
 
@@ -23,15 +23,16 @@ Vec3 twist_axis(Quat frame_a, Quat frame_b);
 void adjust_axes(const JointRecord& joint, std::span<AxisConstraint> axes);
 
 void prepare_six_axes(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                    const JointSettings& settings);
+                      const JointSettings& settings);
 void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair,
                   const JointSettings& settings);
 void prepare_gear(JointRecord& joint, JointConstraint& work);
-void prepare_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& offsets);
+void prepare_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                  const JointOffsets& offsets);
 void prepare_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                  const JointOffsets& offsets, const JointSettings& settings);
+                    const JointOffsets& offsets, const JointSettings& settings);
 void prepare_path(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                const JointSettings& settings);
+                  const JointSettings& settings);
 void update_pulley_bias(JointConstraint& work, const JointPair& pair, float substep);
 
 // The errors that the rows would have at another pose nearby.

@@ -61,8 +61,7 @@ float length_of(const PathCurve& path, int number, float to) {
   constexpr float kNodes[5] = {0.046910077f, 0.23076534f, 0.5f, 0.76923466f, 0.95308992f};
   constexpr float kWeights[5] = {0.11846344f, 0.23931433f, 0.28444445f, 0.23931433f, 0.11846344f};
   float sum = 0.0f;
-  for (int i = 0; i < 5; ++i)
-    sum += kWeights[i] * length(sample_piece(path, {number, to * kNodes[i]}).first);
+  for (int i = 0; i < 5; ++i) sum += kWeights[i] * length(sample_piece(path, {number, to * kNodes[i]}).first);
   return to * sum;
 }
 

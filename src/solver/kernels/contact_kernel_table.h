@@ -1,8 +1,8 @@
 // The table of all kernels of one CPU target; each kernel file exports one.
 #pragma once
 
-#include "solver/articulation/ball_kernel.h"
 #include "solver/articulation/articulation_kernel.h"
+#include "solver/articulation/ball_kernel.h"
 #include "solver/contact/contact_prepare.h"
 #include "solver/contact/contact_project.h"
 #include "solver/contact/moving_contact_points.h"

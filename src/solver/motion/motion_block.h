@@ -31,12 +31,12 @@ struct MovedBody {
   float angular_loss = 0.0f;
   Sym3 inertia;  // body frame
   Sym3 inverse_inertia;
-  Quat orientation;                    // at the beginning of the step
-  float bounding_radius = 0.0f;        // m, farthest point from the centre of mass
-  std::uint8_t locked = 0;             // locked world axes: bits 0 to 2
+  Quat orientation;              // at the beginning of the step
+  float bounding_radius = 0.0f;  // m, farthest point from the centre of mass
+  std::uint8_t locked = 0;       // locked world axes: bits 0 to 2
   bool isotropic = false;    // equal principal moments: no gyroscopic torque
   bool needs_exact_rotation = false;  // the kernels do not rotate it
-  bool pose_read = false;        // its orientation and inertia are written in each sub-step
+  bool pose_read = false;             // its orientation and inertia are written in each sub-step
 };
 
 // The columns that the kernels read and write, indexed by body.
@@ -65,7 +65,8 @@ struct MotionKernels {
                   const BodyInertia* inertia);
   // Integrates velocities by forces and damping; with `warm` adds the contact impulses of the last sub-step.
   // With `recorded`, the change of velocity from here on counts as the effect of contacts.
-  void (*integrate_velocities)(void* blocks, int begin, int end, BodyMotion* motion, bool warm, bool recorded);
+  void (*integrate_velocities)(void* blocks, int begin, int end, BodyMotion* motion, bool warm,
+                               bool recorded);
   // Only the second half of integrate_velocities.
   void (*warm_start)(void* blocks, int begin, int end, BodyMotion* motion);
   // Records velocities: their change from here on counts as the effect of contacts.
@@ -74,7 +75,8 @@ struct MotionKernels {
   // `integrate_positions` does this itself unless another stage runs in between.
   void (*record_velocity_change)(void* blocks, int begin, int end, const BodyMotion* motion);
   // Displacement, rotation and gyroscopic torque over a sub-step.
-  void (*integrate_positions)(void* blocks, int begin, int end, MotionArrays arrays, float substep, bool recorded);
+  void (*integrate_positions)(void* blocks, int begin, int end, MotionArrays arrays, float substep,
+                              bool recorded);
   // Saves velocities and clears them: pushout works on displacements in their place.
   void (*begin_projection)(void* blocks, int begin, int end, BodyMotion* motion);
   // Applies these displacements and restores the velocities. Rotations go to `rotations` too (one for each
@@ -83,14 +85,14 @@ struct MotionKernels {
 
   // The same with velocities in lanes; record_velocity_change_in_lanes reads records and writes lanes. Null
   // for kernels with few lanes, which gain little by this.
-  void (*integrate_velocities_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes, bool warm,
-                           bool recorded);
+  void (*integrate_velocities_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes,
+                                        bool warm, bool recorded);
   void (*record_velocities_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes);
   void (*record_velocity_change_in_lanes)(void* blocks, int begin, int end, const BodyMotion* motion,
-                        const LaneVelocities& lanes);
+                                          const LaneVelocities& lanes);
   // The effect of contacts has been recorded before.
-  void (*integrate_positions_in_lanes)(void* blocks, int begin, int end, MotionArrays arrays, const LaneVelocities& lanes,
-                           float substep);
+  void (*integrate_positions_in_lanes)(void* blocks, int begin, int end, MotionArrays arrays,
+                                       const LaneVelocities& lanes, float substep);
 };
 
 }  // namespace gyre

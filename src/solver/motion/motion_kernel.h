@@ -92,7 +92,8 @@ struct InLanes {
     const float* const from = lanes.of(n);
     GYRE_UNROLL
     for (int i = 0; i < 6; ++i) m.record[i] = Wide<W>::load(from + i * W);
-    if constexpr (Columns > kMotionDeltaPosition) gather8<W>(&motion->delta_position.x, block.body, m.record + kMotionDeltaPosition);
+    if constexpr (Columns > kMotionDeltaPosition)
+      gather8<W>(&motion->delta_position.x, block.body, m.record + kMotionDeltaPosition);
     return m;
   }
   template <int Columns>
@@ -101,7 +102,8 @@ struct InLanes {
     GYRE_UNROLL
     for (int i = 0; i < 6; ++i) m.record[i].store(to + i * W);
     if constexpr (Columns > kMotionDeltaPosition)
-      scatter<Columns - kMotionDeltaPosition, W>(&motion->delta_position.x, block.body, m.record + kMotionDeltaPosition);
+      scatter<Columns - kMotionDeltaPosition, W>(&motion->delta_position.x, block.body,
+                                                 m.record + kMotionDeltaPosition);
   }
 };
 
@@ -215,7 +217,8 @@ GYRE_INLINE void add_gain(MotionBlock<W>& block, const MotionW<W>& m) {
 }
 
 template <int W, class Where>
-GYRE_INLINE void integrate_velocities_of(void* memory, int begin, int end, const Where& where, bool warm, bool recorded) {
+GYRE_INLINE void integrate_velocities_of(void* memory, int begin, int end, const Where& where, bool warm,
+                                         bool recorded) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
@@ -248,7 +251,8 @@ void integrate_velocities(void* memory, int begin, int end, BodyMotion* motion, 
   integrate_velocities_of<W>(memory, begin, end, InRecords<W>{motion}, warm, recorded);
 }
 template <int W>
-void integrate_velocities_in_lanes(void* memory, int begin, int end, const LaneVelocities& lanes, bool warm, bool recorded) {
+void integrate_velocities_in_lanes(void* memory, int begin, int end, const LaneVelocities& lanes, bool warm,
+                                   bool recorded) {
   integrate_velocities_of<W>(memory, begin, end, InLanes<W>{lanes}, warm, recorded);
 }
 
@@ -276,7 +280,8 @@ void record_velocities_in_lanes(void* memory, int begin, int end, const LaneVelo
 
 // Calls `then` with the number of a block and the values of its records.
 template <int W, class Then>
-GYRE_INLINE void record_change_of(void* memory, int begin, int end, const BodyMotion* motion, const Then& then) {
+GYRE_INLINE void record_change_of(void* memory, int begin, int end, const BodyMotion* motion,
+                                  const Then& then) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   for (int n = begin; n < end; ++n) {
     MotionBlock<W>& block = blocks[n];
@@ -291,7 +296,8 @@ void record_velocity_change(void* memory, int begin, int end, const BodyMotion* 
   record_change_of<W>(memory, begin, end, motion, [](int, const MotionW<W>&) {});
 }
 template <int W>
-void record_velocity_change_in_lanes(void* memory, int begin, int end, const BodyMotion* motion, const LaneVelocities& lanes) {
+void record_velocity_change_in_lanes(void* memory, int begin, int end, const BodyMotion* motion,
+                                     const LaneVelocities& lanes) {
   const auto* blocks = static_cast<const MotionBlock<W>*>(memory);
   record_change_of<W>(memory, begin, end, motion, [&](int n, const MotionW<W>& m) {
     InLanes<W>{lanes}.template store<6>(blocks[n], n, m);
@@ -335,7 +341,8 @@ GYRE_INLINE void rotate_block(MotionBlock<W>& block, MotionW<W>& m, MotionArrays
     const Vec3W<W> middle = w + (0.5f * h) * (block.world_inverse_inertia * torque);
     rotation = select<W>(gyroscopic, h * middle, rotation);
   }
-  const Vec3W<W> delta_rotation = select<W>(block.rotates > zero, compose_rotations<W>(rotation, m.delta_rotation()), m.delta_rotation());
+  const Vec3W<W> delta_rotation =
+      select<W>(block.rotates > zero, compose_rotations<W>(rotation, m.delta_rotation()), m.delta_rotation());
   m.set_delta_rotation(delta_rotation);
   if (block.any_gyroscopic == 0 && block.pose_read == 0) return;
   const QuatW<W> q = integrate_rotation<W>(block.start, delta_rotation);
@@ -344,8 +351,8 @@ GYRE_INLINE void rotate_block(MotionBlock<W>& block, MotionW<W>& m, MotionArrays
     const Sym3W<W> next = rotate_inertia<W>(r, block.inertia);
     const Sym3W<W> next_inverse = rotate_inertia<W>(r, block.inverse_inertia);
     const Sym3W<W> inertia_loss{block.world_inertia.xx - next.xx, block.world_inertia.yy - next.yy,
-                        block.world_inertia.zz - next.zz, block.world_inertia.xy - next.xy,
-                        block.world_inertia.xz - next.xz, block.world_inertia.yz - next.yz};
+                                block.world_inertia.zz - next.zz, block.world_inertia.xy - next.xy,
+                                block.world_inertia.xz - next.xz, block.world_inertia.yz - next.yz};
     const Vec3W<W> change = next_inverse * (inertia_loss * w);
     m.set_angular(select<W>(gyroscopic, w + change, w));
     block.world_inertia = next;
@@ -365,13 +372,14 @@ template <int W>
 GYRE_INLINE bool is_at_rest(const MotionW<W>& m) {
   WideInt<W> bits(0);
   for (int i = kMotionLinear; i < kMotionLinear + 6; ++i) bits = bits | bit_pattern(m.record[i]);
-  for (int i = kMotionDeltaPosition; i < kMotionDeltaPosition + 6; ++i) bits = bits | bit_pattern(m.record[i]);
+  for (int i = kMotionDeltaPosition; i < kMotionDeltaPosition + 6; ++i)
+    bits = bits | bit_pattern(m.record[i]);
   return none(bits != WideInt<W>(0));
 }
 
 template <int W, class Where>
-GYRE_INLINE void integrate_positions_of(void* memory, int begin, int end, MotionArrays arrays, const Where& where,
-                                float substep, bool recorded) {
+GYRE_INLINE void integrate_positions_of(void* memory, int begin, int end, MotionArrays arrays,
+                                        const Where& where, float substep, bool recorded) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
@@ -391,12 +399,13 @@ GYRE_INLINE void integrate_positions_of(void* memory, int begin, int end, Motion
   }
 }
 template <int W>
-void integrate_positions(void* memory, int begin, int end, MotionArrays arrays, float substep, bool recorded) {
+void integrate_positions(void* memory, int begin, int end, MotionArrays arrays, float substep,
+                         bool recorded) {
   integrate_positions_of<W>(memory, begin, end, arrays, InRecords<W>{arrays.motion}, substep, recorded);
 }
 template <int W>
-void integrate_positions_in_lanes(void* memory, int begin, int end, MotionArrays arrays, const LaneVelocities& lanes,
-                      float substep) {
+void integrate_positions_in_lanes(void* memory, int begin, int end, MotionArrays arrays,
+                                  const LaneVelocities& lanes, float substep) {
   integrate_positions_of<W>(memory, begin, end, arrays, InLanes<W>{lanes, arrays.motion}, substep, false);
 }
 
@@ -422,13 +431,15 @@ void end_projection(void* memory, int begin, int end, BodyMotion* motion, Vec3* 
     const Vec3W<W> rotation = m.angular();
     if (block.any_locked != 0) displacement = along_free_axes<W>(block, displacement);
     m.set_delta_position(m.delta_position() + displacement);
-    m.set_delta_rotation(select<W>(block.rotates > zero, compose_rotations<W>(rotation, m.delta_rotation()), m.delta_rotation()));
+    m.set_delta_rotation(select<W>(block.rotates > zero, compose_rotations<W>(rotation, m.delta_rotation()),
+                                   m.delta_rotation()));
     m.set_linear(block.recorded_linear);
     m.set_angular(block.recorded_angular);
     m.record[kMotionPushout] = length(displacement) + block.bounding_radius * length(rotation);
     store_motion<14, W>(block, motion, m);
     for (int lane = 0; lane < W; ++lane) {
-      if (block.body[lane] != kNoBody) rotations[n * W + lane] = {rotation.x[lane], rotation.y[lane], rotation.z[lane]};
+      if (block.body[lane] != kNoBody)
+        rotations[n * W + lane] = {rotation.x[lane], rotation.y[lane], rotation.z[lane]};
     }
   }
 }

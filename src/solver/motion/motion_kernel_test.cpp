@@ -63,11 +63,14 @@ struct Crowd {
     std::size_t room = memory.size() * sizeof(std::max_align_t);
     return std::align(64, 1, at, room);
   }
-  void integrate_velocities(bool warm) { kernels->integrate_velocities(place(), 0, blocks, motion.data(), warm, true); }
+  void integrate_velocities(bool warm) {
+    kernels->integrate_velocities(place(), 0, blocks, motion.data(), warm, true);
+  }
   void record_velocity_change() { kernels->record_velocity_change(place(), 0, blocks, motion.data()); }
   void warm_start() { kernels->warm_start(place(), 0, blocks, motion.data()); }
   void integrate_positions(float h) {
-    kernels->integrate_positions(place(), 0, blocks, {motion.data(), inertia.data(), orientations.data()}, h, true);
+    kernels->integrate_positions(place(), 0, blocks, {motion.data(), inertia.data(), orientations.data()}, h,
+                                 true);
   }
   void begin_projection() { kernels->begin_projection(place(), 0, blocks, motion.data()); }
   void end_projection() { kernels->end_projection(place(), 0, blocks, motion.data(), rotations.data()); }
@@ -129,7 +132,8 @@ TEST(MotionKernel, FreeBodyConservesAngularMomentum) {
     EXPECT_LT(length(now - momentum), 3e-6f * length(momentum)) << "round " << round;
     // It rotated, and its rotation vector matches its orientation.
     const Quat pose_read = crowd.orientations[0];
-    const DQuat turned = product(exponential(crowd.motion[0].delta_rotation), {start.x, start.y, start.z, start.w});
+    const DQuat turned =
+        product(exponential(crowd.motion[0].delta_rotation), {start.x, start.y, start.z, start.w});
     EXPECT_LT(angle_between(turned, {pose_read.x, pose_read.y, pose_read.z, pose_read.w}), 1e-6);
     EXPECT_GT(length(crowd.motion[0].angular_velocity - spin), 1e-4f * length(spin));
   }
@@ -295,10 +299,13 @@ Crowd run_half_steps(int width, bool in_lanes) {
     const float h = 1.0f / 240.0f;
     for (BodyMotion& m : crowd.motion) m.linear_velocity = m.linear_velocity + random.vector(0.1f);
     if (in_lanes) {
-      kernels.record_velocity_change_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion, lanes.velocities());
+      kernels.record_velocity_change_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion,
+                                              lanes.velocities());
       kernels.integrate_positions_in_lanes(crowd.place(), 0, crowd.blocks, arrays, lanes.velocities(), h);
-      kernels.integrate_velocities_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities(), true, part % 2 == 0);
-      if (part % 2 != 0) kernels.record_velocities_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities());
+      kernels.integrate_velocities_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities(), true,
+                                            part % 2 == 0);
+      if (part % 2 != 0)
+        kernels.record_velocities_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities());
       lanes.store();
     } else {
       kernels.record_velocity_change(crowd.place(), 0, crowd.blocks, arrays.motion);

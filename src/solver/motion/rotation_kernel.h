@@ -43,7 +43,7 @@ static_assert(offsetof(Sym3, xz) == 4 * sizeof(float) && sizeof(Quat) == 4 * siz
 // Gathers the first bodies of a list of `count`.
 template <int W>
 __attribute__((noinline)) void gather_rotations(const TorqueFreeRotation* rotations, const std::uint8_t* list,
-                                            int count, RotationColumns<W>& columns) {
+                                                int count, RotationColumns<W>& columns) {
   columns.count = count < W ? count : W;
   const float *orientation[W], *motion[W], *inertia[W];
   for (int lane = 0; lane < W; ++lane) {
@@ -68,7 +68,8 @@ template <int W>
 GYRE_INLINE void scatter_rotations(const RotationColumns<W>& columns) {
   const QuatW<W>& q = columns.orientation;
   const Vec3W<W>&w = columns.spin, &delta_rotation = columns.delta_rotation;
-  const Wide<W> out[] = {q.x, q.y, q.z, q.w, w.x, w.y, w.z, delta_rotation.x, delta_rotation.y, delta_rotation.z};
+  const Wide<W> out[] = {
+      q.x, q.y, q.z, q.w, w.x, w.y, w.z, delta_rotation.x, delta_rotation.y, delta_rotation.z};
   scatter_columns<4, W>(columns.orientations, 0, out);
   scatter_columns<3, W>(columns.motions, kMotionAngular, out + 4);
   scatter_columns<3, W>(columns.motions, kMotionDeltaRotation, out + 7);
@@ -101,7 +102,8 @@ GYRE_INLINE WideInt<W> find_rotation_modes(const RotationColumns<W>& columns, fl
       (angle < kNoAngle) |
       (length_squared(torque) <= kParallel * kParallel * length_squared(momentum) * length_squared(w));
   const auto number = [](RotationMode mode) { return WideInt<W>(std::int32_t(mode)); };
-  WideInt<W> mode = select(angle < kTinyAngle, number(RotationMode::midpoint), number(RotationMode::runge_kutta));
+  WideInt<W> mode =
+      select(angle < kTinyAngle, number(RotationMode::midpoint), number(RotationMode::runge_kutta));
   mode = select(SymmetryMasks<W>(columns.inertia).any, number(RotationMode::symmetric_top), mode);
   return select(steady, number(RotationMode::constant_velocity), mode);
 }
@@ -111,8 +113,8 @@ template <int H>
 struct RotationHalf {
   DQuatW<H> orientation;  // in and out
   DVec3W<H> spin;         // in and out, rad/s
-  DVec3W<H> delta_rotation;       // out, rad
-  WideDouble<H> angle;            // rough angle of the rotation
+  DVec3W<H> delta_rotation;  // out, rad
+  WideDouble<H> angle;       // rough angle of the rotation
   TensorW<H> inertia;
   SymmetricTopW<H> top;
 };

@@ -20,10 +20,10 @@ Tensor inverse(const Tensor& m) {
 }
 
 DQuat rotate_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds,
-                       double angle) {
+                         double angle) {
   const DQuatW<1> q = rotate_in_steps(DQuatW<1>{start.x, start.y, start.z, start.w},
-                                    DVec3W<1>{momentum.x, momentum.y, momentum.z}, lane_of(inverse_inertia),
-                                    WideDouble<1>(seconds), WideDouble<1>(angle));
+                                      DVec3W<1>{momentum.x, momentum.y, momentum.z}, lane_of(inverse_inertia),
+                                      WideDouble<1>(seconds), WideDouble<1>(angle));
   return {q.x.v, q.y.v, q.z.v, q.w.v};
 }
 

@@ -21,6 +21,6 @@ constexpr DVec3 times(const Tensor& m, DVec3 v) {
 // The orientation after `seconds` at constant angular momentum (world frame, kg m^2/s); `angle`: rough angle
 // of the rotation, rad.
 DQuat rotate_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds,
-                       double angle);
+                         double angle);
 
 }  // namespace gyre

@@ -72,7 +72,7 @@ GYRE_INLINE DQuatW<H> runge_kutta_4(DQuatW<H> q, DVec3W<H> momentum, const Tenso
 // of each rotation, rad.
 template <int H>
 GYRE_INLINE DQuatW<H> rotate_in_steps(DQuatW<H> q, DVec3W<H> momentum, const TensorW<H>& inverse_inertia,
-                                    WideDouble<H> seconds, WideDouble<H> angle) {
+                                      WideDouble<H> seconds, WideDouble<H> angle) {
   const WideDouble<H> steps = 1.0 + whole_part(min(angle / kInnerAngle, kMaxInnerSteps));
   const WideDouble<H> h = seconds / steps;
   WideDouble<H> done(0.0);
@@ -94,7 +94,7 @@ struct SymmetricTopW {
 // it: exact for any time.
 template <int H>
 GYRE_INLINE DQuatW<H> rotate_symmetric_top(DQuatW<H> start, DVec3W<H> momentum, const SymmetricTopW<H>& top,
-                               WideDouble<H> seconds) {
+                                           WideDouble<H> seconds) {
   const WideDouble<H> spin =
       dot(rotate_inverse(start, momentum), top.axis) * (1.0 / top.along - 1.0 / top.across);
   return normalized(exponential_map((seconds / top.across) * momentum) * start *
@@ -104,7 +104,7 @@ GYRE_INLINE DQuatW<H> rotate_symmetric_top(DQuatW<H> start, DVec3W<H> momentum, 
 // A rotation so small that the velocity of its middle suffices. Velocity and momentum are in the body frame.
 template <int H>
 GYRE_INLINE DQuatW<H> rotate_by_midpoint(DQuatW<H> start, DVec3W<H> velocity, DVec3W<H> momentum,
-                                    const TensorW<H>& inverse_inertia, WideDouble<H> seconds) {
+                                         const TensorW<H>& inverse_inertia, WideDouble<H> seconds) {
   const DVec3W<H> middle = velocity + 0.5 * seconds * times(inverse_inertia, cross(momentum, velocity));
   return normalized(start * exponential_map(seconds * middle));
 }

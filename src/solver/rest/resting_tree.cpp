@@ -66,7 +66,8 @@ Vec3 arm_of(const TreeNode& node, const ContactConstraint& constraint, int k) {
 }
 
 // The wrench (force and torque impulse about the contact's first anchor) of the contact's impulses on B.
-void current_wrench(const ContactImpulse& impulse, const ContactConstraint& constraint, Vec3 origin, Vec3& force, Vec3& torque) {
+void current_wrench(const ContactImpulse& impulse, const ContactConstraint& constraint, Vec3 origin,
+                    Vec3& force, Vec3& torque) {
   const Manifold& manifold = *constraint.manifold;
   force = impulse.friction;
   torque = cross(impulse.friction_from_b - origin, impulse.friction) + impulse.twist * manifold.normal + impulse.rolling;
@@ -79,7 +80,8 @@ void current_wrench(const ContactImpulse& impulse, const ContactConstraint& cons
 
 // Finds impulses of points, friction and twist with this wrench on B about `origin`; false if the contact
 // cannot carry it.
-bool solve_wrench(const ContactConstraint& constraint, Vec3 origin, Vec3 force, Vec3 torque, ContactImpulse& impulse) {
+bool solve_wrench(const ContactConstraint& constraint, Vec3 origin, Vec3 force, Vec3 torque,
+                  ContactImpulse& impulse) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal;
   const float load = dot(force, n);
@@ -152,12 +154,14 @@ bool is_at_rest(const RestingTree& tree, const TreeSolve& s) {
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     const TreeNode& node = s.nodes[i];
     const BodyMotion& motion = s.motion[node.body];
-    if (largest(absolute(motion.linear_velocity)) > node.rest_speed || largest(absolute(motion.angular_velocity)) > node.rest_spin) {
+    if (largest(absolute(motion.linear_velocity)) > node.rest_speed ||
+        largest(absolute(motion.angular_velocity)) > node.rest_spin) {
       return false;
     }
     const ContactConstraint& constraint = s.constraints[node.constraint];
     for (int k = 0; k < constraint.manifold->count; ++k) {
-      if (absolute(constraint.manifold->points[k].separation) > kMaxRestSeparation * constraint.size) return false;
+      if (absolute(constraint.manifold->points[k].separation) > kMaxRestSeparation * constraint.size)
+        return false;
     }
   }
   return true;

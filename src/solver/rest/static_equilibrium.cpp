@@ -82,7 +82,8 @@ struct ContactRows {
 };
 
 // Friction and twist rows with the present tangential stiffness.
-void prepare_friction_rows(const ContactConstraint& constraint, const StructureScratch& work, ContactRows& rows) {
+void prepare_friction_rows(const ContactConstraint& constraint, const StructureScratch& work,
+                           ContactRows& rows) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal, from_b = work.impulse.friction_from_b;
   const Vec3 from_a = from_b + (manifold.points[0].from_a - manifold.points[0].from_b);
@@ -406,7 +407,8 @@ class Solver {
     }
     // Newton's method ends as soon as it meets the right piece; outside the bracket it bisects.
     double t = high;
-    for (int cut = 0; cut < kMaxBisections && low < high && absolute(here.value) > kRoundingSlope * start; ++cut) {
+    for (int cut = 0; cut < kMaxBisections && low < high && absolute(here.value) > kRoundingSlope * start;
+         ++cut) {
       (here.value < 0.0 ? low : high) = t;
       const double next = t - here.value / here.growth;
       t = next > low && next < high ? next : 0.5 * (low + high);

@@ -54,11 +54,11 @@ struct RestingStructure {
   std::span<const StructureNode> nodes;
   std::span<StructureContact> contacts;
   std::span<StructureScratch> work;
-  bool is_settling = false;    // it still moved at the beginning of the step
-  bool was_rigid = false;      // it was solved in the last step
-  bool is_new = false;         // its contacts had no load in the last step
-  bool has_scratch = false;     // `work` is that of this step
-  bool is_solved = false;       // in the first solve of the step
+  bool is_settling = false;  // it still moved at the beginning of the step
+  bool was_rigid = false;    // it was solved in the last step
+  bool is_new = false;       // its contacts had no load in the last step
+  bool has_scratch = false;  // `work` is that of this step
+  bool is_solved = false;    // in the first solve of the step
 };
 
 struct StructureSolve {

@@ -52,7 +52,7 @@ int count_contact_rows(const ContactConstraint& constraint);
 void add_contact_rows(const ContactConstraint& constraint, const RowFrame& frame, float warm, RowList& list);
 // `rows`: those of this contact.
 void store_contact_impulses(const ContactConstraint& constraint, const FrictionSet& set,
-                           std::span<const Row> rows);
+                            std::span<const Row> rows);
 // Adds normal rows in displacements: the pushout of the penetration in a step. Returns true if anything
 // penetrates.
 bool add_overlap_rows(const ContactConstraint& constraint, const RowFrame& frame, float step, RowList& list);
@@ -62,7 +62,7 @@ int count_joint_rows(const JointRecord& joint, const JointDetail* detail, const 
 void add_joint_rows(JointRecord& joint, JointConstraint& work, const JointSettings& settings,
                     const RowFrame& frame, RowList& list);
 void store_joint_impulses(JointRecord& joint, JointConstraint& work, std::span<const Row> rows,
-                         std::span<float* const> stored);
+                          std::span<float* const> stored);
 // Adds the equations without bias, so that pushout does not open joints.
 void add_joint_equations(JointRecord& joint, JointConstraint& work, const RowFrame& frame, RowList& list);
 

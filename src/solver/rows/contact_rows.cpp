@@ -38,8 +38,9 @@ const BodyMotion& motion_of(std::int32_t body, const RowFrame& frame) {
 
 double current_separation(const ContactConstraint& c, const ContactPointState& point, const RowFrame& frame) {
   const BodyMotion &a = motion_of(c.body_a, frame), &b = motion_of(c.body_b, frame);
-  const DVec3 displacement = DVec3(b.delta_position) - DVec3(a.delta_position) + cross(DVec3(b.delta_rotation), DVec3(point.from_b)) -
-                    cross(DVec3(a.delta_rotation), DVec3(point.from_a));
+  const DVec3 displacement = DVec3(b.delta_position) - DVec3(a.delta_position) +
+                             cross(DVec3(b.delta_rotation), DVec3(point.from_b)) -
+                             cross(DVec3(a.delta_rotation), DVec3(point.from_a));
   return double(point.separation) + dot(displacement, DVec3(c.manifold->normal));
 }
 
@@ -122,7 +123,8 @@ void store_contact_impulses(const ContactConstraint& c, const FrictionSet& set, 
     friction += x * axes.tangent_1 + y * axes.tangent_2;
     // At the limit, up to rounding.
     const double radius = kNearlyAll * rows[2 * k].limits.friction * normal;
-    slides = slides && (normal == 0.0 || nearest_friction(set, radius, x, y).region != FrictionRegion::inside);
+    slides =
+        slides && (normal == 0.0 || nearest_friction(set, radius, x, y).region != FrictionRegion::inside);
   }
   std::size_t next = tangents + points;
   manifold.friction_impulse = to_float(friction) + Vec3{};

@@ -87,8 +87,8 @@ double find_row_residual(std::span<const Row> rows, std::span<const RowBody> bod
                          const FrictionSet& friction) {
   double largest = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    largest =
-        max(largest, row_residual(
+    largest = max(largest,
+                  row_residual(
                       int(i), rows[i].limits, friction, [&](int j) { return rows[std::size_t(j)].impulse; },
                       [&](int j) { return row_w(rows[std::size_t(j)], bodies); },
                       [&](int j) { return rows[std::size_t(j)].diagonal; }));

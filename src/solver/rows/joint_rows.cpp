@@ -58,8 +58,8 @@ void add_equations(JointRecord& joint, JointConstraint& work, const RowFrame& fr
       const float second_order_bias = joint.kind == JointKind::distance
                                           ? work.axes[0].second_order_bias
                                           : dot(from.direction, work.second_order_bias);
-      row.target_speed =
-          -double(rate * error_of(joint, work, from, i)) - (has_bias ? double(share * second_order_bias) : 0.0);
+      row.target_speed = -double(rate * error_of(joint, work, from, i)) -
+                         (has_bias ? double(share * second_order_bias) : 0.0);
       row.impulse = double(accumulated_impulse(joint, work, from, i));
     }
     end_row(row, joint.body_a, joint.body_b, frame, !in_motion);
@@ -121,8 +121,9 @@ class AxisRows {
     set_axis(row, x_.row, 1.0f);
     end_row(row, joint_.body_a, joint_.body_b, frame_);
     const double speed = row_speed(row, frame_.bodies) - row.target_speed, before = double(x_.speed_before);
-    const double target = double(x_.spring.retained) * before + double(x_.spring.load_share) * (speed - before) -
-                         double(x_.spring.return_rate) * double(displacement);
+    const double target = double(x_.spring.retained) * before +
+                          double(x_.spring.load_share) * (speed - before) -
+                          double(x_.spring.return_rate) * double(displacement);
     axis.spring_impulse = float(double(x_.mass) * (target - speed));
     apply_row_impulse(row, double(axis.spring_impulse), frame_.bodies);
   }
@@ -144,8 +145,9 @@ class AxisRows {
     }
     Row& row = begin(impulse, sign);
     row.limits.low = 0.0;
-    const double rate = gap > 0.0f ? 1.0 / frame_.substep
-                                   : double(is_soft ? x_.limit_softness.bias_rate : settings_.softness.bias_rate);
+    const double rate = gap > 0.0f
+                            ? 1.0 / frame_.substep
+                            : double(is_soft ? x_.limit_softness.bias_rate : settings_.softness.bias_rate);
     row.target_speed -= rate * double(gap);
     if (is_soft) return end_soft_row(row, joint_, x_.limit_softness, frame_);
     end_row(row, joint_.body_a, joint_.body_b, frame_);
@@ -175,18 +177,19 @@ void add_drive_rows(const JointRecord& joint, const JointConstraint& work, const
     row.target_speed = double(target_speed);
     end_soft_row(row, joint, soft, frame);
   };
-  const auto add_three = [&](Vec3& impulse, bool is_angular, float force, Vec3 target_speed, const Softness& soft) {
+  const auto add_three = [&](Vec3& impulse, bool is_angular, float force, Vec3 target_speed,
+                             const Softness& soft) {
     if (!(force > 0.0f)) return;
     add(impulse.x, kWorldAxes[0], is_angular, force, target_speed.x, soft);
     add(impulse.y, kWorldAxes[1], is_angular, force, target_speed.y, soft);
     add(impulse.z, kWorldAxes[2], is_angular, force, target_speed.z, soft);
   };
   const float rate = d.softness.bias_rate;
-  add_three(detail.drive_torque_impulse, true, detail.drive.max_torque, d.target_angular_velocity - rate * d.angular_error,
-            d.softness);
+  add_three(detail.drive_torque_impulse, true, detail.drive.max_torque,
+            d.target_angular_velocity - rate * d.angular_error, d.softness);
   add_three(detail.friction_impulse, true, detail.friction, {}, {});
-  add_three(detail.drive_force_impulse, false, detail.drive.max_force, d.target_velocity - rate * d.linear_error,
-            d.softness);
+  add_three(detail.drive_force_impulse, false, detail.drive.max_force,
+            d.target_velocity - rate * d.linear_error, d.softness);
 }
 
 }  // namespace
@@ -209,7 +212,7 @@ void add_joint_equations(JointRecord& joint, JointConstraint& work, const RowFra
 }
 
 void store_joint_impulses(JointRecord& joint, JointConstraint& work, std::span<const Row> rows,
-                         std::span<float* const> stored) {
+                          std::span<float* const> stored) {
   if (equations_of(joint, work) > 0) {
     JointEquations node;
     make_equations(node, joint, work);

@@ -90,8 +90,8 @@ class Dictionary {
 
 }  // namespace
 
-LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double tie_break, int max_pivots,
-                        std::span<double> z, NumberRoom& room) {
+LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double tie_break,
+                        int max_pivots, std::span<double> z, NumberRoom& room) {
   const std::size_t n = q.size();
   for (double& value : z) value = 0.0;
   LemkeResult result{LemkeEnd::solved, 0};

@@ -25,7 +25,7 @@ constexpr std::size_t lemke_room(std::size_t size) { return size * (size + 1) + 
 
 // `m`: q.size() squared numbers, row after row. `tie_break`: largest change of q, as a share of the largest
 // q.
-LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double tie_break, int max_pivots,
-                        std::span<double> z, NumberRoom& room);
+LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double tie_break,
+                        int max_pivots, std::span<double> z, NumberRoom& room);
 
 }  // namespace gyre

@@ -50,8 +50,8 @@ inline void fix_speed(MapEquations& e, int i, const MapPoint& at) {
   e.right[i] = -at.w[i] / at.rate;
 }
 // The same along a direction, as equation i of a cone.
-inline void fix_impulse_along(MapEquations& e, int i, const double (&direction)[2], const MapPoint& at, double value,
-                       double per_load) {
+inline void fix_impulse_along(MapEquations& e, int i, const double (&direction)[2], const MapPoint& at,
+                              double value, double per_load) {
   e.own[i][0] = direction[0], e.own[i][1] = direction[1];
   e.load[i] = -per_load;
   e.right[i] = value - (direction[0] * at.x[0] + direction[1] * at.x[1]);

@@ -81,11 +81,13 @@ void run_dantzig(const DenseProblem& p, const FrictionSet& polygon, double toler
   const std::size_t count = count_segments(p.limits, polygon);
   SegmentList segments(count, room);
   for (int i = 0; i < p.size; ++i)
-    for_each_segment(p.limits[std::size_t(i)], i, polygon, [&](const Segment& segment) { segments.add(segment); });
+    for_each_segment(p.limits[std::size_t(i)], i, polygon,
+                     [&](const Segment& segment) { segments.add(segment); });
   const std::span<double> a = room.take(count * count), q = room.take(count);
   for (std::size_t i = 0; i < count; ++i) {
     q[i] = segment_q(p, segments.at(i));
-    for (std::size_t j = 0; j < count; ++j) a[i * count + j] = segment_coupling(p, segments.at(i), segments.at(j));
+    for (std::size_t j = 0; j < count; ++j)
+      a[i * count + j] = segment_coupling(p, segments.at(i), segments.at(j));
   }
   Dantzig dantzig(a, q, kRegularization, room);
   const std::span<double> best = room.take(std::size_t(p.size));
@@ -303,7 +305,8 @@ std::size_t direct_room(const DirectSize& size, const FrictionSet& set, DirectMe
   std::size_t numbers = newton_room(n);
   if (method == DirectMethod::dantzig) {
     const std::size_t segments = n + size.cones * (sides / 2);
-    numbers = max(numbers, 3 * segments + segments * segments + segments + Dantzig::room_for(segments) + n + newton_room(n));
+    numbers = max(numbers, 3 * segments + segments * segments + segments + Dantzig::room_for(segments) + n +
+                               newton_room(n));
   }
   if (method == DirectMethod::lemke) {
     // Rows with a limit on either side have at most three variables.
