@@ -127,7 +127,7 @@ TreeCorrection correction_of(const ContactConstraint& constraint, const BodyMoti
     const ContactPointState& point = manifold.points[k];
     Vec3 displacement;
     if (b != nullptr) displacement += b->delta_position + cross(b->delta_rotation, point.from_b);
-    if (a != nullptr) displacement += a->delta_position + cross(a->delta_rotation, point.from_a);
+    if (a != nullptr) displacement -= a->delta_position + cross(a->delta_rotation, point.from_a);
     separations[k] = point.separation + dot(displacement, n);
     mean += separations[k] / float(count);
     c.middle += (1.0f / float(count)) * point.from_b;
