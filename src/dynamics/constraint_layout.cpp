@@ -109,7 +109,7 @@ void make_contact_blocks(BatchContext& batch, Arena& arena) {
   if (!contacts.rolling.contacts.empty()) mark_rolling_lanes(contacts, blocks, arena);
   const ContactKernels& kernels = contacts.kernels.contacts;
   contacts.blocks = arena.make<std::byte>(std::size_t(blocks) * kernels.block_bytes).data();
-  contacts.cold_blocks = arena.make<std::byte>(std::size_t(blocks) * kernels.aside_bytes).data();
+  contacts.cold_blocks = arena.make<std::byte>(std::size_t(blocks) * kernels.cold_bytes).data();
 }
 
 namespace {

@@ -19,8 +19,8 @@ LaneVelocities find_lanes(const FusedRuns& line, const ArticulationRun& run) {
   const SolverKernels& all = line.motion->kernels;
   const BundledArticulations& bundle = line.joints->bundles.bundles[std::size_t(run.first_bundle)];
   const ArticulationKernels& kernels = *bundle.lanes.kernels;
-  const bool is_full = kernels.width == all.width && int(bundle.linkages.size()) == kernels.width;
-  if (!is_full || all.motion.predict_in_lanes == nullptr) return {};
+  const bool is_full = kernels.width == all.width && int(bundle.articulations.size()) == kernels.width;
+  if (!is_full || all.motion.integrate_velocities_in_lanes == nullptr) return {};
   return {reinterpret_cast<float*>(bundle.lanes.bodies + kernels.velocities_at),
           kernels.body_bytes / sizeof(float), run.first_block};
 }
@@ -36,7 +36,7 @@ GYRE_COLD RunLayout::RunLayout(const BundleSolve& bundles, std::size_t bodies, i
     if (filled == 0) add({int(i), 0, count_blocks(), 0});
     ArticulationRun& run = runs_[used_ - 1];
     ++run.bundles;
-    filled += bundle.lanes.moving_count * bundle.linkages.size();
+    filled += bundle.lanes.moving_count * bundle.articulations.size();
     run.blocks = gyre::count_blocks(int(filled), width);
     if (filled >= kMinBodies) filled = 0;
   }
@@ -57,10 +57,10 @@ GYRE_COLD void list_run_bodies(const BundleSolve& bundles, const ArticulationRun
   for (int i = run.first_bundle; i < run.first_bundle + run.bundles; ++i) {
     const BundledArticulations& bundle = bundles.bundles[std::size_t(i)];
     const ArticulationBundle& shape = bundle.lanes;
-    const std::size_t lanes = bundle.linkages.size();
+    const std::size_t lanes = bundle.articulations.size();
     for (std::uint32_t n = 0; n < shape.node_count; ++n) {
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const ArticulationJoint& joint = bundle.linkages[lane]->joints[n];
+        const ArticulationJoint& joint = bundle.articulations[lane]->joints[n];
         const auto list = [&](std::uint32_t place, std::int32_t body) {
           if (place < shape.moving_count) bodies[first + place * lanes + lane] = body;
         };

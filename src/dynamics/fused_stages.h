@@ -74,7 +74,7 @@ class FusedRun {
   void add_first_contact_change() const;
 
  private:
-  bool is_apart() const { return !lanes_.is_given(); }
+  bool is_apart() const { return !lanes_.is_set(); }
   void for_bundles(BundleKernel kernel, bool loads = true, bool stores = true) const;
   void solve(bool loads) const;
 

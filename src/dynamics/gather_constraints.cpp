@@ -123,13 +123,13 @@ class ContactGatherer {
     constraint.rolling_friction = contact.surface.rolling_friction;
     constraint.spinning_friction = contact.surface.spinning_friction;
     constraint.size = contact.size;
-    constraint.push_speed = ends.push_speed;
+    constraint.pushout_speed = ends.push_speed;
     constraint.surface_velocity = {};
     constraint.restitution = contact.surface.restitution;
     constraint.body_a = ends.body_a;
     constraint.body_b = ends.body_b;
     constraint.rigid = false;
-    constraint.linked = ends.linked;
+    constraint.has_joint = ends.linked;
   }
   // The rest of the members.
   bool add_manifold(const Contact& contact, Manifold& manifold, ContactConstraint& constraint) const {
@@ -137,10 +137,10 @@ class ContactGatherer {
     constraint.manifold = &manifold;
     constraint.point_count = std::int16_t(manifold.count);
     constraint.loaded = loads.any;
-    constraint.may_roll = false;
-    constraint.hold = manifold.load_age >= kRigidContactAge ? ContactStiffness::held
-                      : manifold.load_age > 0.0f            ? ContactStiffness::sprung
-                                                            : ContactStiffness::none;
+    constraint.can_roll = false;
+    constraint.stiffness = manifold.load_age >= kRigidContactAge ? ContactStiffness::rigid
+                      : manifold.load_age > 0.0f            ? ContactStiffness::soft
+                                                            : ContactStiffness::fresh;
     if (loads.all) {
       constraint.fast = false;
       for (int k = 0; k < manifold.count; ++k) manifold.points[k].approach_speed = 0.0f;
@@ -149,7 +149,7 @@ class ContactGatherer {
     }
     if (manifold.count == 0) return false;
     if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
-    if (contact.recycled == 0) constraint.may_roll = may_roll(w_, contact, constraint);
+    if (contact.recycled == 0) constraint.can_roll = may_roll(w_, contact, constraint);
     constraint.spinning_friction +=
         manifold.count == 1 ? contact_patch_spin_friction(w_, contact, constraint) : 0.0f;
     return true;
@@ -263,7 +263,7 @@ void gather_swept_joints(BatchContext& batch) {
     return body == kNoBody ? ColoringPair::kNone : joints.local_index[std::size_t(body)];
   };
   for (std::uint32_t i = 0; i < most; ++i) {
-    if (joints.linkages.swept[i] == 0) continue;
+    if (joints.linkages.iterative[i] == 0) continue;
     if (batch.motion.is_smooth && is_explicit_spring(batch.w, joints.batch.joints[i])) continue;
     const JointEdge& joint = joints.edges[i];
     s.swept[count] = i;

@@ -23,7 +23,7 @@ ProgramBuilder::ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena
       trees_(int(batch.contacts.forest.trees.size())),
       structures_(batch.contacts.structures.empty() ? 0 : 1),
       joint_slices_(batch.joints.groups.empty() ? 0 : kJointSlices),
-      articulations_(int(batch.joints.linkages.linkages.size())),
+      articulations_(int(batch.joints.linkages.scalar.size())),
       simd_articulations_(int(batch.joints.bundles.bundles.size())),
       joint_islands_(int(batch.joints.islands.size())),
       stiffened_(batch.joints.stiffened.empty() ? 0 : 1),

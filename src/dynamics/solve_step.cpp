@@ -100,7 +100,7 @@ std::span<const std::uint8_t> find_bodies_in_contact(const BatchContext& batch, 
 void begin_joints(BatchContext& batch, Arena& arena) {
   JointSolve& s = batch.joints;
   DenseGraphCache& nets = s.lists.dense_graphs;
-  s.all_iterative = !s.edges.empty() && nets.holds(s.edges);
+  s.all_iterative = !s.edges.empty() && nets.contains(s.edges);
   s.linkages = s.all_iterative
                    ? no_articulations(s.edges.size(), arena)
                    : find_articulations(s.w, s.batch, s.local_index, s.edges,
@@ -110,11 +110,11 @@ void begin_joints(BatchContext& batch, Arena& arena) {
 void prepare_articulations(JointSolve& s, std::size_t workers, Arena& arena) {
   s.articulation_solve = {.records = s.w.joints.records,
                           .work = s.works.work,
-                          .places = s.works.places,
+                          .offsets = s.works.places,
                           .bodies = s.bodies,
                           .settings = s.settings,
                           .compliance = kArticulationCompliance};
-  s.articulation_solve.settings.swept = false;
+  s.articulation_solve.settings.iterative = false;
   attach_drives(s.linkages, s.works.work, arena);
   s.limit_rooms = find_limits(s.linkages, s.works.work, workers, arena);
   s.bundles = lay_out_bundles(
@@ -314,9 +314,9 @@ void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       const std::uint32_t body = w.bodies.awake[i];
       w.bodies.flags[body].touched = 0;
-      w.bodies.motion[body].moved = {};
-      w.bodies.motion[body].turned = {};
-      w.bodies.motion[body].pushed = 0.0f;
+      w.bodies.motion[body].delta_position = {};
+      w.bodies.motion[body].delta_rotation = {};
+      w.bodies.motion[body].pushout = 0.0f;
     }
   });
   w.field_rest.clear();

@@ -57,7 +57,8 @@ void report_begin(RigidWorld& w, const Contact& contact) {
 bool finite_state(const BodyMotion& motion, Quat orientation) {
   // What is not finite is no zero when taken from itself, nor is a sum with that.
   const Vec3 nothing = (motion.linear_velocity - motion.linear_velocity) +
-                       (motion.angular_velocity - motion.angular_velocity) + (motion.moved - motion.moved);
+                       (motion.angular_velocity - motion.angular_velocity) +
+                       (motion.delta_position - motion.delta_position);
   const float turn = (orientation.x - orientation.x) + (orientation.y - orientation.y) +
                      (orientation.z - orientation.z) + (orientation.w - orientation.w);
   return nothing.x + nothing.y + nothing.z + turn == 0.0f;
@@ -127,8 +128,8 @@ void freeze(RigidWorld& w, std::uint32_t body) {
     invalidate_cache(contact);
   });
   for (const std::uint32_t slot : joints_of(w.bodies, body)) {
-    forget_impulses(w.joints.records[slot]);
-    if (JointDetail* const detail = detail_of(w.joints, slot)) forget_impulses(*detail);
+    clear_impulses(w.joints.records[slot]);
+    if (JointDetail* const detail = detail_of(w.joints, slot)) clear_impulses(*detail);
   }
 }
 
@@ -266,7 +267,7 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
   for_blocks(tasks, int(awake.size()), kBodiesPerBlock, [&](int begin, int, int) {
     const std::span<const std::uint32_t> block = block_at(std::size_t(begin));
     for (const std::uint32_t i : block) {
-      bodies.places[i].center += bodies.motion[i].moved;
+      bodies.places[i].center += bodies.motion[i].delta_position;
       bodies.places[i].orientation = bodies.orientations[i];
       if (last) {
         bodies.forces[i].force = {};

@@ -257,7 +257,7 @@ CommandResult execute(WorldState& s, const SetType& c) {
   activate_constraints_of(w, body);
   w.bodies.flags[body].frozen = 0;
   w.bodies.sleep[body] = {};
-  if (c.type == BodyType::fixed) stop(w.bodies.motion[body]);
+  if (c.type == BodyType::fixed) clear_motion(w.bodies.motion[body]);
   w.bodies.awake_stale = true;
   refresh_mass(w, body);
   for (const ShapeId id : w.bodies.shapes[body]) refresh_proxy(w, id.index);

@@ -266,9 +266,9 @@ void add_path(RigidWorld& w, JointDetail& detail, const FlatJoint& def, const Jo
   for (const Vec3& p : def.path) w.joints.path_points.push_back({rotate(a_from_world, p), 0.0f, {}});
   finish_path(w.joints.path_points.view().subspan(detail.path_first), def.path_closed);
   const PathCurve curve{path_of(w.joints, detail), def.path_closed};
-  detail.path_place = nearest_on_path(curve, Vec3{});
-  detail.start = path_length(curve, detail.path_place);
-  detail.reference_a = path_frame(curve, detail.path_place);
+  detail.path_parameter = nearest_on_path(curve, Vec3{});
+  detail.start = path_length(curve, detail.path_parameter);
+  detail.reference_a = path_frame(curve, detail.path_parameter);
   // Where nothing else is said, an open curve ends where it ends.
   JointAxisRecord& way = detail.axes[int(JointAxis::linear_x)];
   if (def.path_closed || def.limits) return;
@@ -346,7 +346,8 @@ void fill_detail(RigidWorld& w, const JointRecord& joint, JointDetail& detail, c
   if (def.kind == JointKind::universal || def.kind == JointKind::wheel) {
     // The axes are where they are, also if they do not meet at a right angle.
     const float sine = dot(rotate(frames.a, {1, 0, 0}), rotate(frames.b, {0, 0, 1}));
-    detail.axes[int(JointAxis::angular_y)].hold = atan2(sine, std::sqrt(max(0.0f, 1.0f - sine * sine)));
+    detail.axes[int(JointAxis::angular_y)].locked_position =
+        atan2(sine, std::sqrt(max(0.0f, 1.0f - sine * sine)));
   }
 }
 
@@ -446,7 +447,7 @@ void set_joint_axis(RigidWorld& w, std::uint32_t slot, JointAxis axis, const Joi
       joint.kind == JointKind::six_dof || (joint.kind == JointKind::wheel && axis == JointAxis::angular_x);
   const bool was_locked = to.motion == AxisMotion::locked;
   set_axis_of(to, may_lock ? def : freed(def));
-  if (to.motion == AxisMotion::locked && !was_locked) to.hold = to.position;
+  if (to.motion == AxisMotion::locked && !was_locked) to.locked_position = to.position;
   // Stops begin a step with what they bore in the last: those that are no more bear nothing when they come back.
   const bool is_limited = to.motion == AxisMotion::limited;
   if (!is_limited) to.low_impulse = to.high_impulse = 0.0f;
@@ -495,7 +496,7 @@ void set_joint_enabled(RigidWorld& w, std::uint32_t slot, bool enabled) {
   if (detail.disabled == !enabled) return;
   detail.disabled = !enabled;
   const float position = w.joints.records[slot].position;
-  forget_impulses(w.joints.records[slot]);
+  clear_impulses(w.joints.records[slot]);
   w.joints.records[slot].position = position;
   wake_joint_bodies(w, w.joints.records[slot]);
 }

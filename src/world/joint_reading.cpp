@@ -27,11 +27,11 @@ JointMotion state_of(const RigidWorld& w, const JointRecord& joint) {
   s.a = motion(joint.body_a), s.b = motion(joint.body_b);
   s.frame_a = orientation(joint.body_a) * joint.local_frame_a;
   s.frame_b = orientation(joint.body_b) * joint.local_frame_b;
-  const Vec3 arm_b = rotate(orientation(joint.body_b), joint.local_anchor_b);
-  const Vec3 arm_a =
+  const Vec3 angular_b = rotate(orientation(joint.body_b), joint.local_anchor_b);
+  const Vec3 angular_a =
       rotate(orientation(joint.body_a), joint.local_anchor_a) + difference(anchors.b, anchors.a);
-  s.speed = s.b.linear_velocity + cross(s.b.angular_velocity, arm_b) - s.a.linear_velocity -
-            cross(s.a.angular_velocity, arm_a);
+  s.speed = s.b.linear_velocity + cross(s.b.angular_velocity, angular_b) - s.a.linear_velocity -
+            cross(s.a.angular_velocity, angular_a);
   s.turning = s.b.angular_velocity - s.a.angular_velocity;
   return s;
 }
@@ -45,7 +45,7 @@ float line_speed(const RigidWorld& w, const JointRecord& joint, const JointDetai
     }
     case JointKind::path: {
       const PathCurve curve{path_of(w.joints, *detail), detail->path_closed};
-      return dot(s.speed, rotate(s.frame_a, normalized(sample_path(curve, detail->path_place).first)));
+      return dot(s.speed, rotate(s.frame_a, normalized(sample_path(curve, detail->path_parameter).first)));
     }
     case JointKind::pulley: {
       const JointAnchors anchors = joint_anchors(w, joint);

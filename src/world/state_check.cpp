@@ -134,8 +134,9 @@ const char* fault_in_detail(const JointStore& joints, std::uint32_t slot) {
   if ((kind == JointKind::path) != (detail->path_count > 0)) return "a joint with a curve that is not bound to one";
   if (kind == JointKind::path && detail->path_count < (detail->path_closed ? 3u : 2u)) return "a curve of too few points";
   const PoseDrive& drive = detail->drive;
-  for (const float value : {detail->ratio, detail->start, detail->path_place, detail->swing_y, detail->swing_z, detail->friction,
-                            drive.frequency, drive.damping_ratio, drive.max_force, drive.max_torque}) {
+  for (const float value :
+       {detail->ratio, detail->start, detail->path_parameter, detail->swing_y, detail->swing_z,
+        detail->friction, drive.frequency, drive.damping_ratio, drive.max_force, drive.max_torque}) {
     if (!is_finite(value)) return "a joint's detail that is not finite";
   }
   if (!is_finite(drive.position) || !is_finite(drive.orientation) || !is_finite(drive.linear_velocity) ||

@@ -145,7 +145,7 @@ template <Is<JointAxisRecord> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.motion), f(r.has_motor_target), f(r.limits.low), f(r.limits.high), f(r.limit_frequency), f(r.limit_damping);
   f(r.motor_velocity), f(r.motor_position), f(r.motor_force), f(r.motor_frequency), f(r.motor_damping);
-  f(r.stiffness), f(r.damping), f(r.rest_position), f(r.friction), f(r.hold);
+  f(r.stiffness), f(r.damping), f(r.rest_position), f(r.friction), f(r.locked_position);
   f(r.low_impulse), f(r.high_impulse), f(r.motor_impulse), f(r.spring_impulse), f(r.friction_impulse);
   f(r.position), f(r.total);
 }
@@ -164,7 +164,7 @@ void for_each_field(T& r, F&& f) {
   f(r.friction), for_each_field(r.friction_impulse, f), f(r.swing_y), f(r.swing_z), f(r.ratio);
   for_each_field(r.reference_a, f), for_each_field(r.reference_b, f), f(r.start);
   for_each_field(r.ground_a, f), for_each_field(r.ground_b, f);
-  f(r.path_first), f(r.path_count), f(r.path_place);
+  f(r.path_first), f(r.path_count), f(r.path_parameter);
 }
 template <Is<PathPoint> T, class F>
 void for_each_field(T& r, F&& f) {

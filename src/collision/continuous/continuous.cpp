@@ -240,11 +240,11 @@ double touching_share(const ContinuousInput& input, const BodyImpactTime& impact
     pose.position = start + share * drift;
     const Pose placed = pose * own.body_from_shape;
     const DQuat back = conjugate(normalized(to_double(frame.orientation)));
-    ClosestPoints nearest;
+    ClosestPair closest;
     return find_closest_points(other.shape,
                         {&own.shape, rotate(back, placed.position - frame.position),
                          back * normalized(to_double(placed.orientation))},
-                        touching, nearest);
+                        touching, closest);
   };
   if (touches(1.0)) return 1.0;
   double low = 0.0, high = 1.0;

@@ -124,10 +124,10 @@ void find_between(const QueryInput& input, const WorldShape& shape, const CastBo
     const Frame frame(input.pose_of(target));
     const PosedShape convex{&shape.shape, frame.to_local(shape.pose.position),
                              conjugate(frame.orientation) * orientation};
-    ClosestPoints near;
-    if (!find_closest_points(input.shapes[target].shape, convex, max_distance, near)) return 1.0f;
-    max_distance = found(ShapeNear{target, near.triangle, near.distance, frame.to_world(near.on_target),
-                                   frame.to_world(near.on_convex), frame.rotate_to_world(near.normal)});
+    ClosestPair closest;
+    if (!find_closest_points(input.shapes[target].shape, convex, max_distance, closest)) return 1.0f;
+    max_distance = found(ShapeNear{target, closest.triangle, closest.distance, frame.to_world(closest.on_target),
+                                   frame.to_world(closest.on_convex), frame.rotate_to_world(closest.normal)});
     return max_distance < 0.0 ? -1.0f : 1.0f;
   });
 }

@@ -59,7 +59,7 @@ struct ShapeNear {
   std::uint32_t triangle = kNoTriangle;
   double distance = 0.0;
   DVec3 point;      // on the near shape
-  DVec3 own_point;  // on the query shape
+  DVec3 query_point;  // on the query shape
   Vec3 normal;      // from the near shape to the query shape
 };
 

@@ -16,7 +16,7 @@ inline namespace GYRE_TARGET_NAMESPACE {
 // Offsets of the groups of four in a Manifold.
 constexpr int kManifoldNormal = GYRE_FLOATS_BEFORE(Manifold, normal);          // and count
 constexpr int kManifoldPoints = GYRE_FLOATS_BEFORE(Manifold, points);          // three groups a point
-constexpr int kManifoldFriction = GYRE_FLOATS_BEFORE(Manifold, age);           // age and friction_impulse
+constexpr int kManifoldFriction = GYRE_FLOATS_BEFORE(Manifold, load_age);           // age and friction_impulse
 constexpr int kManifoldTwist = GYRE_FLOATS_BEFORE(Manifold, twist_impulse);    // and rolling_impulse
 constexpr int kManifoldTotals = GYRE_FLOATS_BEFORE(Manifold, total_friction);  // and sliding
 constexpr int kManifoldSliding = GYRE_FLOATS_BEFORE(Manifold, sliding);        // and anchor_normal
@@ -38,7 +38,7 @@ static_assert(kPointA == 0 && GYRE_FLOATS_BEFORE(ContactPointState, separation) 
 static_assert(kPointB == 4 && GYRE_FLOATS_BEFORE(ContactPointState, feature) == kPointB + 3);
 static_assert(kPointImpulse == 8 &&
               GYRE_FLOATS_BEFORE(ContactPointState, total_impulse) == kPointImpulse + 1);
-static_assert(GYRE_FLOATS_BEFORE(ContactPointState, held) == kPointImpulse + 2);
+static_assert(GYRE_FLOATS_BEFORE(ContactPointState, mean_impulse) == kPointImpulse + 2);
 static_assert(GYRE_FLOATS_BEFORE(ContactPointState, approach_speed) == kPointImpulse + 3 &&
               kPointFloats == 12);
 

@@ -6,34 +6,34 @@ namespace gyre {
 
 namespace {
 
-// Many lanes of long linkages leave the cache: these stand side by side only where half of the lanes are used.
+// Many lanes of long articulations leave the cache: these are bundled only if half of the lanes are used.
 constexpr std::size_t kLongArticulation = 64;
 
-// How many of `left` linkages of a shape the next bundle takes.
-std::size_t lanes_of(std::size_t left, const ArticulationTopology& shape, std::size_t width) {
-  const std::size_t fewest = shape.nodes.size() > kLongArticulation ? (width + 1) / 2 : 2;
+// Number of the `left` articulations of a topology that the next bundle takes.
+std::size_t lanes_of(std::size_t left, const ArticulationTopology& topology, std::size_t width) {
+  const std::size_t fewest = topology.nodes.size() > kLongArticulation ? (width + 1) / 2 : 2;
   return left < fewest ? 1 : std::min(left, width);
 }
 
-ArticulationBundle make_bundle(const ArticulationTopology& shape, const ArticulationKernels& kernels,
+ArticulationBundle make_bundle(const ArticulationTopology& topology, const ArticulationKernels& kernels,
                                Arena& arena) {
   ArticulationBundle b;
   b.kernels = &kernels;
-  b.nodes = shape.nodes.data();
-  b.couplings = shape.couplings.data();
-  b.traversal = shape.traversal.data();
-  b.node_count = std::uint32_t(shape.nodes.size());
-  b.coupling_count = std::uint32_t(shape.couplings.size());
-  b.body_count = shape.body_count;
-  b.moving_count = shape.moving_count;
-  b.columns = shape.plan.columns.data();
-  b.entries = shape.plan.entries.data();
-  b.targets = shape.plan.targets.data();
-  b.column_count = std::uint32_t(shape.plan.columns.size());
-  b.value_count = shape.plan.values;
-  b.row_count = shape.plan.rows;
-  b.has_fill = shape.has_fill;
-  for (const LaneNode& node : shape.nodes) {
+  b.nodes = topology.nodes.data();
+  b.couplings = topology.couplings.data();
+  b.traversal = topology.traversal.data();
+  b.node_count = std::uint32_t(topology.nodes.size());
+  b.coupling_count = std::uint32_t(topology.couplings.size());
+  b.body_count = topology.body_count;
+  b.moving_count = topology.moving_count;
+  b.columns = topology.plan.columns.data();
+  b.entries = topology.plan.entries.data();
+  b.targets = topology.plan.targets.data();
+  b.column_count = std::uint32_t(topology.plan.columns.size());
+  b.value_count = topology.plan.values;
+  b.row_count = topology.plan.rows;
+  b.has_fill = topology.has_fill;
+  for (const LaneNode& node : topology.nodes) {
     b.limit_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0) + (node.has_servo ? 1 : 0);
     b.drive_count += node.is_driven() ? 1 : 0;
     b.servo_count += node.has_servo ? 1 : 0;
@@ -46,22 +46,22 @@ ArticulationBundle make_bundle(const ArticulationTopology& shape, const Articula
   b.servos = arena.make<std::byte>(b.servo_count * kernels.servo_bytes).data();
   b.values = arena.make<float>(b.value_count * width).data();
   b.vector = arena.make<float>(b.row_count * width).data();
-  b.room = arena.make<float>(shape.plan.widest * width).data();
+  b.room = arena.make<float>(topology.plan.widest * width).data();
   b.energy_gain = arena.make<float>(2 * width).data();
   b.has_extreme_mass_ratio = arena.make<float>(width).data();
   b.is_factored = arena.make<bool>(1).data();
-  b.stops = arena.make<std::byte>(kernels.limit_room(b)).data();
+  b.limits = arena.make<std::byte>(kernels.limit_room(b)).data();
   return b;
 }
 
-// How far a push at a joint moves a body there, a middle of all directions (1/kg).
+// 1/kg: mobility of a body at a joint, averaged over all directions.
 float mobility(const BodyMass& mass, Vec3 arm) {
   const Sym3& i = mass.inverse_inertia;
-  const float turning = (i.xx + i.yy + i.zz) * length_squared(arm) - dot(arm, i * arm);
-  return mass.inverse_mass + (1.0f / 3.0f) * turning;
+  const float angular = (i.xx + i.yy + i.zz) * length_squared(arm) - dot(arm, i * arm);
+  return mass.inverse_mass + (1.0f / 3.0f) * angular;
 }
-// Whether one of two bodies, held by yet another joint, is so easily moved beside the other that how it bends between them is not resolved:
-// it may be as fast as can be after any solution.
+// True if a joint couples bodies whose effective masses differ by more than 50, one of them with another
+// joint too. Such links may get any speed from a solve, since their second-order bias is not resolved.
 bool has_extreme_mass_ratio(const RigidWorld& w, const JointRecord& joint) {
   constexpr float kLighter = 3.0f, kMoreMobile = 50.0f;
   if (joint.body_a == kNoBody || joint.body_b == kNoBody) return false;
@@ -77,32 +77,32 @@ bool has_extreme_mass_ratio(const RigidWorld& w, const JointRecord& joint) {
 
 }  // namespace
 
-BundleSolve lay_out_bundles(const Articulations& linkages, const SolverKernels& kernels,
+BundleSolve lay_out_bundles(const Articulations& articulations, const SolverKernels& kernels,
                             const LaneArrays& arrays, const LaneSettings& settings, Arena& arena) {
   BundleSolve result{{}, arrays, settings};
-  const std::size_t count = linkages.alike.size();
+  const std::size_t count = articulations.grouped.size();
   if (count == 0) return result;
-  // Sorted by shape, those of a shape in the order of their first joints.
+  // Sorted by topology, and for equal topology in the order of their first joints.
   const std::span<const GroupedArticulation*> sorted = arena.make<const GroupedArticulation*>(count);
-  const std::span<std::size_t> ends = arena.make<std::size_t>(linkages.shapes.size() + 1);
+  const std::span<std::size_t> ends = arena.make<std::size_t>(articulations.topologies.size() + 1);
   for (std::size_t& end : ends) end = 0;
-  for (const GroupedArticulation& articulation : linkages.alike) ++ends[articulation.shape + 1];
+  for (const GroupedArticulation& articulation : articulations.grouped) ++ends[articulation.topology + 1];
   for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
-  for (const GroupedArticulation& articulation : linkages.alike)
-    sorted[ends[articulation.shape]++] = &articulation;
+  for (const GroupedArticulation& articulation : articulations.grouped)
+    sorted[ends[articulation.topology]++] = &articulation;
   result.bundles = arena.make<BundledArticulations>(count);
-  const ArticulationKernels& wide = kernels.linkages;
-  const ArticulationKernels& narrow = narrower_kernels(kernels).linkages;
-  const ArticulationKernels& single = select_kernels(1).linkages;
+  const ArticulationKernels& wide = kernels.articulations;
+  const ArticulationKernels& narrow = narrower_kernels(kernels).articulations;
+  const ArticulationKernels& single = select_kernels(1).articulations;
   const auto kernels_of = [&](std::size_t lanes) -> const ArticulationKernels& {
     return lanes == 1 ? single : lanes <= std::size_t(narrow.width) ? narrow : wide;
   };
   std::size_t used = 0, first = 0;
-  for (std::size_t shape = 0; shape < linkages.shapes.size(); ++shape) {
-    while (first < ends[shape]) {
+  for (std::size_t topology = 0; topology < articulations.topologies.size(); ++topology) {
+    while (first < ends[topology]) {
       const std::size_t lanes =
-          lanes_of(ends[shape] - first, linkages.shapes[shape], std::size_t(wide.width));
-      result.bundles[used++] = {make_bundle(linkages.shapes[shape], kernels_of(lanes), arena),
+          lanes_of(ends[topology] - first, articulations.topologies[topology], std::size_t(wide.width));
+      result.bundles[used++] = {make_bundle(articulations.topologies[topology], kernels_of(lanes), arena),
                                 sorted.subspan(first, lanes)};
       first += lanes;
     }
@@ -115,20 +115,20 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWo
                    const LaneStart& start) {
   for (int i = begin; i < end; ++i) {
     const BundledArticulations& bundle = bundles.bundles[std::size_t(i)];
-    if (int(bundle.linkages.size()) < bundle.lanes.kernels->width) clear_lanes(bundle.lanes);
+    if (int(bundle.articulations.size()) < bundle.lanes.kernels->width) clear_lanes(bundle.lanes);
     bundle.lanes.kernels->begin(bundle.lanes);
     for (int lane = 0; lane < bundle.lanes.kernels->width; ++lane)
       bundle.lanes.has_extreme_mass_ratio[lane] = 0.0f;
-    // Joint by joint, because its lanes lie in the same cache lines.
+    // Joint by joint, because its lanes share cache lines.
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
-      const LaneNode& shape = bundle.lanes.nodes[n];
-      for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
-        const ArticulationJoint& linked = bundle.linkages[lane]->joints[n];
-        const JointRecord& joint = w.joints.records[linked.record];
+      const LaneNode& node = bundle.lanes.nodes[n];
+      for (std::size_t lane = 0; lane < bundle.articulations.size(); ++lane) {
+        const ArticulationJoint& joint_of_lane = bundle.articulations[lane]->joints[n];
+        const JointRecord& joint = w.joints.records[joint_of_lane.record];
         if (has_extreme_mass_ratio(w, joint)) bundle.lanes.has_extreme_mass_ratio[lane] = 1.0f;
-        set_lane_body(bundle.lanes, int(lane), shape.a, linked.body_a, linked.pressed_a);
-        set_lane_body(bundle.lanes, int(lane), shape.b, linked.body_b, linked.pressed_b);
-        load_lane(bundle.lanes, int(lane), n, joint, detail_of(w.joints, linked.record),
+        set_lane_body(bundle.lanes, int(lane), node.a, joint_of_lane.body_a, joint_of_lane.pressed_a);
+        set_lane_body(bundle.lanes, int(lane), node.b, joint_of_lane.body_b, joint_of_lane.pressed_b);
+        load_lane(bundle.lanes, int(lane), n, joint, detail_of(w.joints, joint_of_lane.record),
                   joint_offset(w, joint), start);
       }
     }
@@ -139,8 +139,8 @@ void finish_bundles(const BundleSolve& bundles, int begin, int end, RigidWorld& 
   for (int i = begin; i < end; ++i) {
     const BundledArticulations& bundle = bundles.bundles[std::size_t(i)];
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
-      for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
-        const std::uint32_t slot = bundle.linkages[lane]->joints[n].record;
+      for (std::size_t lane = 0; lane < bundle.articulations.size(); ++lane) {
+        const std::uint32_t slot = bundle.articulations[lane]->joints[n].record;
         store_lane(bundle.lanes, int(lane), n, w.joints.records[slot], detail_of(w.joints, slot));
       }
     }

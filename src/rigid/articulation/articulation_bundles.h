@@ -1,7 +1,8 @@
-// Lays linkages that hang together alike side by side (solver/articulation/linkage_lanes.h): the kernels' W to a bundle, what is left over
-// in kernels of fewer lanes.
+// Bundles articulations of equal topology (solver/articulation/articulation_lanes.h): the kernels' W in a
+// bundle, the rest in kernels with fewer lanes.
 //
-// In: the linkages of a batch (rigid/articulation/articulations.h). Out: bundles in the step's arena; as the step ends, impulses in the joints.
+// In: the articulations of a batch (rigid/articulation/articulations.h). Out: bundles in the step's arena; at
+// the end of the step, impulses in the joints.
 #pragma once
 
 #include "rigid/articulation/articulations.h"
@@ -11,7 +12,7 @@ namespace gyre {
 
 struct BundledArticulations {
   ArticulationBundle lanes;
-  std::span<const GroupedArticulation*> linkages;  // by lane
+  std::span<const GroupedArticulation*> articulations;  // by lane
 };
 
 struct BundleSolve {
@@ -20,13 +21,13 @@ struct BundleSolve {
   LaneSettings settings;
 };
 
-// One of the kernels that work on velocities or places.
+// A kernel on velocities or poses.
 using BundleKernel = void (*ArticulationKernels::*)(const ArticulationBundle&, const LaneArrays&,
                                                     const LaneSettings&);
 
-BundleSolve lay_out_bundles(const Articulations& linkages, const SolverKernels& kernels,
+BundleSolve lay_out_bundles(const Articulations& articulations, const SolverKernels& kernels,
                             const LaneArrays& arrays, const LaneSettings& settings, Arena& arena);
-// Of bundles [begin, end).
+// For bundles [begin, end).
 void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWorld& w,
                    const LaneStart& start);
 void finish_bundles(const BundleSolve& bundles, int begin, int end, RigidWorld& w);

@@ -11,23 +11,23 @@ namespace gyre {
 
 namespace {
 
-// A linkage is solved directly if a factorisation takes no more multiplications than this for each row.
+// Largest number of multiplications of a factorisation, per row, for a direct solution.
 constexpr std::uint64_t kMaxWorkPerRow = 400;
-// and if no more pairs of joints share a body than this for each joint.
+// Largest number of pairs of joints that share a body, per joint, for a direct solution.
 constexpr std::uint64_t kMaxPairsPerJoint = 8;
-// How many shapes a linkage is compared with. A shape found anew costs time, never bits.
-constexpr std::size_t kShapesCompared = 16;
+// Number of topologies that an articulation is compared with. A topology found twice costs time, never bits.
+constexpr std::size_t kTopologiesCompared = 16;
 
-// The joints of a batch that have equations, and how they hang together.
+// The joints of a batch that have equations, as a graph of its bodies.
 struct Graph {
-  std::span<std::uint32_t> joints;  // places in the batch's list
-  std::span<std::uint32_t> first;  // by body's place: where its part of `at_body` begins; one more at the end
-  std::span<std::uint32_t> at_body;  // numbers in `joints`, body by body
-  DisjointSets bodies;               // by place
+  std::span<std::uint32_t> joints;   // indices in the batch's list
+  std::span<std::uint32_t> first;    // by body index: begin of its part of `at_body`; one more at the end
+  std::span<std::uint32_t> at_body;  // indices in `joints`, body by body
+  DisjointSets bodies;               // by body index
 };
 
-Graph make_graph(std::span<const JointEdge> all, std::size_t bodies, std::span<const std::uint32_t> places,
-                 Arena& arena) {
+Graph make_graph(std::span<const JointEdge> all, std::size_t bodies,
+                 std::span<const std::uint32_t> body_indices, Arena& arena) {
   Graph graph;
   const std::span<std::uint32_t> joints = arena.make<std::uint32_t>(all.size());
   graph.first = arena.make<std::uint32_t>(bodies + 1);
@@ -39,10 +39,10 @@ Graph make_graph(std::span<const JointEdge> all, std::size_t bodies, std::span<c
     joints[count++] = i;
     std::uint32_t previous = kNoIndex;
     for_moving(all[i], [&](std::uint32_t body) {
-      ++graph.first[places[body] + 1];
+      ++graph.first[body_indices[body] + 1];
       ++ends;
-      if (previous != kNoIndex) graph.bodies.unite(previous, places[body]);
-      previous = places[body];
+      if (previous != kNoIndex) graph.bodies.unite(previous, body_indices[body]);
+      previous = body_indices[body];
     });
   }
   graph.joints = joints.first(count);
@@ -53,21 +53,22 @@ Graph make_graph(std::span<const JointEdge> all, std::size_t bodies, std::span<c
   for (std::uint32_t& n : used) n = 0;
   for (std::uint32_t n = 0; n < graph.joints.size(); ++n) {
     for_moving(all[graph.joints[n]], [&](std::uint32_t body) {
-      const std::uint32_t place = places[body];
-      graph.at_body[graph.first[place] + used[place]++] = n;
+      const std::uint32_t index = body_indices[body];
+      graph.at_body[graph.first[index] + used[index]++] = n;
     });
   }
   return graph;
 }
 
-// Sorts the joints by the root of their linkage, in the order of the lowest joint of each; joints of one keep theirs.
+// The joints sorted by articulation, in the order of the lowest joint of each; joints of one keep their
+// order.
 struct Groups {
-  std::span<std::uint32_t> members;  // numbers in graph.joints
+  std::span<std::uint32_t> members;  // indices in graph.joints
   std::span<std::uint32_t> ends;
-  std::span<std::uint32_t> local;  // by number in graph.joints: which of its group it is
+  std::span<std::uint32_t> local;  // by index in graph.joints: position in its group
 };
-Groups group_joints(std::span<const JointEdge> all, std::span<const std::uint32_t> places, const Graph& graph,
-                    Arena& arena) {
+Groups group_joints(std::span<const JointEdge> all, std::span<const std::uint32_t> body_indices,
+                    const Graph& graph, Arena& arena) {
   Groups groups{arena.make<std::uint32_t>(graph.joints.size()),
                 arena.make<std::uint32_t>(graph.joints.size()),
                 arena.make<std::uint32_t>(graph.joints.size())};
@@ -76,9 +77,9 @@ Groups group_joints(std::span<const JointEdge> all, std::span<const std::uint32_
   for (std::uint32_t& group : group_of_root) group = kNoIndex;
   std::uint32_t count = 0;
   for (std::uint32_t n = 0; n < graph.joints.size(); ++n) {
-    std::uint32_t place = kNoIndex;
-    for_moving(all[graph.joints[n]], [&](std::uint32_t body) { place = places[body]; });
-    std::uint32_t& group = group_of_root[graph.bodies.of(place)];
+    std::uint32_t index = kNoIndex;
+    for_moving(all[graph.joints[n]], [&](std::uint32_t body) { index = body_indices[body]; });
+    std::uint32_t& group = group_of_root[graph.bodies.of(index)];
     if (group == kNoIndex) {
       group = count;
       groups.ends[count++] = 0;
@@ -97,13 +98,14 @@ Groups group_joints(std::span<const JointEdge> all, std::span<const std::uint32_
 
 class ArticulationBuilder {
  public:
-  ArticulationBuilder(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                      std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,
-                      const LaneStart& start, const Graph& graph, std::span<const std::uint32_t> local,
-                      std::size_t most, DenseGraphCache& dense, Arena& arena)
+  ArticulationBuilder(const RigidWorld& w, const SolveBatch& batch,
+                      std::span<const std::uint32_t> body_indices, std::span<const JointEdge> joints,
+                      std::span<const std::uint8_t> pressed, const LaneStart& start, const Graph& graph,
+                      std::span<const std::uint32_t> local, std::size_t max_topologies,
+                      DenseGraphCache& dense, Arena& arena)
       : w_(w),
         batch_(batch),
-        places_(places),
+        body_indices_(body_indices),
         joints_(joints),
         pressed_(pressed),
         start_(start),
@@ -111,22 +113,22 @@ class ArticulationBuilder {
         local_(local),
         dense_(dense),
         arena_(arena),
-        shapes_(arena.make<ArticulationTopology>(most)),
+        topologies_(arena.make<ArticulationTopology>(max_topologies)),
         sides_(arena.make<std::uint32_t>(batch.bodies.size())) {
     for (std::uint32_t& side : sides_) side = kNoIndex;
   }
 
-  // Makes one of the two, `alone` where lanes cannot bear it; false: neither.
-  bool make(std::span<const std::uint32_t> members, Articulation& alone, GroupedArticulation& in_lanes) {
+  // Builds `scalar`, or `in_lanes` if its joints fit in lanes. False if neither is possible.
+  bool make(std::span<const std::uint32_t> members, Articulation& scalar, GroupedArticulation& in_lanes) {
     const auto joint_at = [&](std::size_t i) -> const JointEdge& { return joint_edge(members[i]); };
-    if (dense_.holds(members.size(), joint_at)) return false;
+    if (dense_.contains(members.size(), joint_at)) return false;
     const std::size_t pairs = count_pairs(members);
     if (pairs > kMaxPairsPerJoint * members.size()) return false;
     const Draft draft = make_draft(members);
-    ArticulationTopology shape;
-    const bool fits = describe(draft, shape);
+    ArticulationTopology topology;
+    const bool fits = describe(draft, topology);
     if (fits) in_lanes.joints = draft.joints;
-    if (fits && find_shape(shape, in_lanes)) return true;
+    if (fits && find_topology(topology, in_lanes)) return true;
     const std::span<ArticulationCoupling> couplings = arena_.make<ArticulationCoupling>(pairs);
     const std::span<BlockEdge> edges = arena_.make<BlockEdge>(pairs);
     list_pairs(members, draft, couplings, edges);
@@ -149,24 +151,24 @@ class ArticulationBuilder {
       c = {c.column, c.row, c.offset, c.body, c.column_has_b, c.row_has_b};
     }
     if (fits) {
-      in_lanes.shape = add_shape(shape, plan, couplings);
+      in_lanes.topology = add_topology(topology, plan, couplings);
     } else {
-      finish(alone, draft, plan, couplings);
+      finish(scalar, draft, plan, couplings);
     }
     return true;
   }
 
-  std::span<ArticulationTopology> shapes() const { return shapes_.first(shape_count_); }
+  std::span<ArticulationTopology> topologies() const { return topologies_.first(topology_count_); }
 
  private:
   const JointEdge& joint_edge(std::uint32_t number) const { return joints_[graph_.joints[number]]; }
   std::span<const std::uint32_t> at_body(std::uint32_t body) const {
-    const std::uint32_t place = places_[body];
-    return graph_.at_body.subspan(graph_.first[place], graph_.first[place + 1] - graph_.first[place]);
+    const std::uint32_t index = body_indices_[body];
+    return graph_.at_body.subspan(graph_.first[index], graph_.first[index + 1] - graph_.first[index]);
   }
   bool is_pressed(std::int32_t body) const {
     return !pressed_.empty() && body != kNoBody && is_active(w_, std::uint32_t(body)) &&
-           pressed_[places_[std::size_t(body)]] != 0;
+           pressed_[body_indices_[std::size_t(body)]] != 0;
   }
   std::size_t count_pairs(std::span<const std::uint32_t> members) const {
     std::size_t twice = 0;
@@ -175,10 +177,10 @@ class ArticulationBuilder {
     }
     return twice / 2;
   }
-  // The joints of a linkage and the bodies that move, each once, in the order in which the joints name them.
+  // The joints of an articulation and its movable bodies, each once, in the order of the joints.
   struct Draft {
     std::span<ArticulationJoint> joints;
-    std::span<std::int32_t> side_a, side_b;  // by joint: which of `bodies`; -1: it cannot be pushed
+    std::span<std::int32_t> side_a, side_b;  // by joint: index in `bodies`; -1: not movable
     std::span<std::int32_t> bodies;
   };
   Draft make_draft(std::span<const std::uint32_t> members) {
@@ -188,7 +190,7 @@ class ArticulationBuilder {
     std::size_t used = 0;
     const auto side_of = [&](std::int32_t body) -> std::int32_t {
       if (body == kNoBody || !is_active(w_, std::uint32_t(body))) return -1;
-      std::uint32_t& side = sides_[places_[std::size_t(body)]];
+      std::uint32_t& side = sides_[body_indices_[std::size_t(body)]];
       if (side == kNoIndex) {
         side = std::uint32_t(used);
         draft.bodies[used++] = body;
@@ -196,14 +198,14 @@ class ArticulationBuilder {
       return std::int32_t(side);
     };
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t place = graph_.joints[members[i]];
-      const std::uint32_t slot = batch_.joints[place];
+      const std::uint32_t index = graph_.joints[members[i]];
+      const std::uint32_t slot = batch_.joints[index];
       const JointRecord& joint = w_.joints.records[slot];
-      // What describe() asks of it.
+      // describe() reads it.
       if (const JointDetail* const detail = detail_of(w_.joints, slot))
         prefetch(detail, offsetof(JointDetail, row_impulses));
       draft.joints[i] = {
-          slot, place, joint.body_a, joint.body_b, is_pressed(joint.body_a), is_pressed(joint.body_b)};
+          slot, index, joint.body_a, joint.body_b, is_pressed(joint.body_a), is_pressed(joint.body_b)};
       draft.side_a[i] = side_of(joint.body_a);
       draft.side_b[i] = side_of(joint.body_b);
     }
@@ -216,10 +218,10 @@ class ArticulationBuilder {
     for (std::size_t i = 0; i < draft.joints.size(); ++i) {
       const ArticulationJoint& joint = draft.joints[i];
       ArticulationNode& node = articulation.nodes[i] = ArticulationNode{};
-      node.record = joint.record, node.work = joint.place;
+      node.record = joint.record, node.work = joint.index;
       node.body_a = joint.body_a, node.body_b = joint.body_b;
       node.side_a = draft.side_a[i], node.side_b = draft.side_b[i];
-      node.count = joints_[joint.place].equations;
+      node.count = joints_[joint.index].equations;
     }
     articulation.bodies = arena_.make<ArticulationBody>(draft.bodies.size());
     for (std::size_t i = 0; i < draft.bodies.size(); ++i) {
@@ -233,7 +235,7 @@ class ArticulationBuilder {
     articulation.room = arena_.make<double>(factor_room(plan));
     articulation.vector = arena_.make<double>(plan.rows);
   }
-  // Every pair of joints that share a body that moves, once for each such body.
+  // Lists every pair of joints that share a movable body, once for each such body.
   void list_pairs(std::span<const std::uint32_t> members, const Draft& draft,
                   std::span<ArticulationCoupling> couplings, std::span<BlockEdge> edges) const {
     std::size_t used = 0;
@@ -241,7 +243,7 @@ class ArticulationBuilder {
       for_moving(joint_edge(members[i]), [&](std::uint32_t body) {
         for (const std::uint32_t n : at_body(body)) {
           const std::uint32_t other = local_[n];
-          if (other >= i) break;  // in order
+          if (other >= i) break;  // in ascending order
           edges[used] = {i, other};
           couplings[used++] = {i,
                                other,
@@ -254,112 +256,115 @@ class ArticulationBuilder {
     }
   }
 
-  // The linkage as lanes have it; false if they cannot bear it. Bodies that cannot be pushed come last, one for each joint's end.
-  bool describe(const Draft& draft, ArticulationTopology& shape) {
-    std::size_t stops = 0, servos = 0;
-    shape.nodes = arena_.make<LaneNode>(draft.joints.size());
-    shape.body_count = shape.moving_count = std::uint32_t(draft.bodies.size());
+  // Describes the articulation for lanes; false if it does not fit. Immovable bodies come last, one for each
+  // end of a joint.
+  bool describe(const Draft& draft, ArticulationTopology& topology) {
+    std::size_t limits = 0, servos = 0;
+    topology.nodes = arena_.make<LaneNode>(draft.joints.size());
+    topology.body_count = topology.moving_count = std::uint32_t(draft.bodies.size());
     for (std::size_t i = 0; i < draft.joints.size(); ++i) {
       const ArticulationJoint& joint = draft.joints[i];
-      LaneNode& lane = shape.nodes[i] = LaneNode{};
+      LaneNode& lane = topology.nodes[i] = LaneNode{};
       if (!fits_lane(w_.joints.records[joint.record], detail_of(w_.joints, joint.record), start_, lane))
         return false;
-      stops += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0);
+      limits += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0);
       servos += lane.has_servo ? 1 : 0;
-      if (stops > kMaxLaneLimits) return false;
-      lane.rows = std::uint32_t(joints_[joint.place].equations);
-      lane.a = draft.side_a[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_a[i]);
-      lane.b = draft.side_b[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_b[i]);
+      if (limits > kMaxLaneLimits) return false;
+      lane.rows = std::uint32_t(joints_[joint.index].equations);
+      lane.a = draft.side_a[i] < 0 ? topology.body_count++ : std::uint32_t(draft.side_a[i]);
+      lane.b = draft.side_b[i] < 0 ? topology.body_count++ : std::uint32_t(draft.side_b[i]);
     }
-    if (servos > kMaxLaneServos || stops + servos > kMaxLaneLimits) iterate_servos(shape);
-    std::uint32_t driven = 0, held = 0;
-    for (LaneNode& lane : shape.nodes) {
+    if (servos > kMaxLaneServos || limits + servos > kMaxLaneLimits) iterate_servos(topology);
+    std::uint32_t driven = 0, servo_count = 0;
+    for (LaneNode& lane : topology.nodes) {
       if (lane.is_driven()) lane.drives = driven++;
-      if (lane.has_servo) lane.servo = held++;
+      if (lane.has_servo) lane.servo = servo_count++;
     }
     return true;
   }
-  static void iterate_servos(ArticulationTopology& shape) {
-    for (LaneNode& lane : shape.nodes) {
+  static void iterate_servos(ArticulationTopology& topology) {
+    for (LaneNode& lane : topology.nodes) {
       lane.has_drive = lane.has_drive || lane.has_servo;
       lane.has_servo = false;
     }
   }
-  bool find_shape(const ArticulationTopology& shape, GroupedArticulation& articulation) const {
+  bool find_topology(const ArticulationTopology& topology, GroupedArticulation& articulation) const {
     const auto same = [](const LaneNode& a, const LaneNode& b) {
       return a.kind == b.kind && a.has_twist == b.has_twist && a.has_swing == b.has_swing &&
              a.has_drive == b.has_drive && a.has_friction == b.has_friction && a.has_servo == b.has_servo &&
              a.a == b.a && a.b == b.b;
     };
-    const std::size_t oldest = shape_count_ > kShapesCompared ? shape_count_ - kShapesCompared : 0;
-    for (std::size_t i = shape_count_; i-- > oldest;) {
-      const ArticulationTopology& other = shapes_[i];
-      if (other.moving_count != shape.moving_count || other.nodes.size() != shape.nodes.size()) continue;
-      if (!std::equal(shape.nodes.begin(), shape.nodes.end(), other.nodes.begin(), same)) continue;
-      articulation.shape = std::uint32_t(i);
+    const std::size_t oldest =
+        topology_count_ > kTopologiesCompared ? topology_count_ - kTopologiesCompared : 0;
+    for (std::size_t i = topology_count_; i-- > oldest;) {
+      const ArticulationTopology& other = topologies_[i];
+      if (other.moving_count != topology.moving_count || other.nodes.size() != topology.nodes.size())
+        continue;
+      if (!std::equal(topology.nodes.begin(), topology.nodes.end(), other.nodes.begin(), same)) continue;
+      articulation.topology = std::uint32_t(i);
       return true;
     }
     return false;
   }
-  // Returns which it is.
-  std::uint32_t add_shape(ArticulationTopology& shape, const BlockPlan& plan,
-                          std::span<const ArticulationCoupling> couplings) {
-    shape.plan = plan;
-    for (std::size_t i = 0; i < shape.nodes.size(); ++i) {
+  // Returns its index.
+  std::uint32_t add_topology(ArticulationTopology& topology, const BlockPlan& plan,
+                             std::span<const ArticulationCoupling> couplings) {
+    topology.plan = plan;
+    for (std::size_t i = 0; i < topology.nodes.size(); ++i) {
       const BlockColumn& column = plan.columns[plan.index_of[i]];
-      shape.nodes[i].row = column.row;
-      shape.nodes[i].column = plan.index_of[i];
-      shape.nodes[i].diagonal = column.diagonal;
+      topology.nodes[i].row = column.row;
+      topology.nodes[i].column = plan.index_of[i];
+      topology.nodes[i].diagonal = column.diagonal;
     }
-    shape.couplings = arena_.make<LaneCoupling>(couplings.size());
+    topology.couplings = arena_.make<LaneCoupling>(couplings.size());
     for (std::size_t i = 0; i < couplings.size(); ++i) {
       const ArticulationCoupling& c = couplings[i];
-      const LaneNode& row = shape.nodes[c.row];
-      shape.couplings[i] = {c.row,       c.column,       c.offset, c.row_has_b ? row.b : row.a,
-                            c.row_has_b, c.column_has_b, false};
+      const LaneNode& row = topology.nodes[c.row];
+      topology.couplings[i] = {c.row,       c.column,       c.offset, c.row_has_b ? row.b : row.a,
+                               c.row_has_b, c.column_has_b, false};
     }
-    mark_first(shape);
-    if (shape.body_count <= shape.moving_count + 1) find_traversal(shape);
-    shapes_[shape_count_] = shape;
-    return std::uint32_t(shape_count_++);
+    mark_first(topology);
+    if (topology.body_count <= topology.moving_count + 1) find_traversal(topology);
+    topologies_[topology_count_] = topology;
+    return std::uint32_t(topology_count_++);
   }
 
   // Joint after joint, forwards and backwards, until all bodies are reached.
-  void find_traversal(ArticulationTopology& shape) const {
-    shape.traversal = arena_.make<TraversalStep>(shape.body_count - 1);
-    const std::span<std::uint8_t> is_reached = arena_.make<std::uint8_t>(shape.body_count);
+  void find_traversal(ArticulationTopology& topology) const {
+    topology.traversal = arena_.make<TraversalStep>(topology.body_count - 1);
+    const std::span<std::uint8_t> is_reached = arena_.make<std::uint8_t>(topology.body_count);
     for (std::uint8_t& reached : is_reached) reached = 0;
     is_reached[0] = 1;
-    const std::size_t count = shape.nodes.size();
+    const std::size_t count = topology.nodes.size();
     std::size_t used = 0;
-    for (std::size_t pass = 0; used < shape.traversal.size(); ++pass) {
+    for (std::size_t pass = 0; used < topology.traversal.size(); ++pass) {
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t n = pass % 2 == 0 ? i : count - 1 - i;
-        const LaneNode& node = shape.nodes[n];
+        const LaneNode& node = topology.nodes[n];
         if (is_reached[node.a] == is_reached[node.b]) continue;
-        shape.traversal[used++] = {std::uint32_t(n), is_reached[node.a] != 0};
+        topology.traversal[used++] = {std::uint32_t(n), is_reached[node.a] != 0};
         is_reached[node.a] = is_reached[node.b] = 1;
       }
     }
   }
 
-  // Which couplings are the first in their blocks, and whether that is all blocks below the diagonal.
-  void mark_first(ArticulationTopology& shape) {
+  // Marks the first coupling of each block, and finds whether all blocks below the diagonal have one.
+  void mark_first(ArticulationTopology& topology) {
     const ArenaScope scope(arena_);
-    const std::span<std::uint8_t> is_begun = arena_.make<std::uint8_t>(shape.plan.values);
+    const std::span<std::uint8_t> is_begun = arena_.make<std::uint8_t>(topology.plan.values);
     for (std::uint8_t& begun : is_begun) begun = 0;
     std::size_t blocks = 0;
-    for (LaneCoupling& coupling : shape.couplings) {
+    for (LaneCoupling& coupling : topology.couplings) {
       coupling.is_first = is_begun[coupling.offset] == 0;
       is_begun[coupling.offset] = 1;
       blocks += coupling.is_first ? 1 : 0;
     }
-    shape.has_fill = blocks < shape.plan.entries.size();
+    topology.has_fill = blocks < topology.plan.entries.size();
   }
 
   const RigidWorld& w_;
   const SolveBatch& batch_;
-  std::span<const std::uint32_t> places_;
+  std::span<const std::uint32_t> body_indices_;
   std::span<const JointEdge> joints_;
   std::span<const std::uint8_t> pressed_;
   LaneStart start_;
@@ -367,29 +372,29 @@ class ArticulationBuilder {
   std::span<const std::uint32_t> local_;
   DenseGraphCache& dense_;
   Arena& arena_;
-  std::span<ArticulationTopology> shapes_;
-  std::size_t shape_count_ = 0;
-  std::span<std::uint32_t> sides_;  // by body's place: which body of its linkage it is
+  std::span<ArticulationTopology> topologies_;
+  std::size_t topology_count_ = 0;
+  std::span<std::uint32_t> sides_;  // by body index: index in the bodies of its articulation
 };
 
 }  // namespace
 
-bool DenseGraphCache::holds(std::size_t size, FunctionRef<const JointEdge&(std::size_t)> joint_at) const {
-  for (const JointGraph& net : nets_) {
-    if (net.size != size) continue;
+bool DenseGraphCache::contains(std::size_t size, FunctionRef<const JointEdge&(std::size_t)> joint_at) const {
+  for (const JointGraph& graph : graphs_) {
+    if (graph.size != size) continue;
     std::size_t same = 0;
-    while (same < size && joints_[net.first + same] == joint_at(same)) ++same;
+    while (same < size && joints_[graph.first + same] == joint_at(same)) ++same;
     if (same == size) return true;
   }
   return false;
 }
-bool DenseGraphCache::holds(std::span<const JointEdge> joints) const {
-  return holds(joints.size(), [&](std::size_t i) -> const JointEdge& { return joints[i]; });
+bool DenseGraphCache::contains(std::span<const JointEdge> joints) const {
+  return contains(joints.size(), [&](std::size_t i) -> const JointEdge& { return joints[i]; });
 }
 
 void DenseGraphCache::add(std::size_t size, FunctionRef<const JointEdge&(std::size_t)> joint_at) {
-  if (nets_.size() == kMost) nets_.clear(), joints_.clear();
-  nets_.push_back({joints_.size(), size});
+  if (graphs_.size() == kMaxGraphs) graphs_.clear(), joints_.clear();
+  graphs_.push_back({joints_.size(), size});
   for (std::size_t i = 0; i < size; ++i) joints_.push_back(joint_at(i));
 }
 void DenseGraphCache::add(std::span<const JointEdge> joints) {
@@ -397,49 +402,50 @@ void DenseGraphCache::add(std::span<const JointEdge> joints) {
 }
 
 Articulations no_articulations(std::size_t joints, Arena& arena) {
-  const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(joints);
-  for (std::uint8_t& flag : swept) flag = 1;
-  return {{}, {}, {}, swept, {}};
+  const std::span<std::uint8_t> iterative = arena.make<std::uint8_t>(joints);
+  for (std::uint8_t& flag : iterative) flag = 1;
+  return {{}, {}, {}, iterative, {}};
 }
 
 Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch,
-                                 std::span<const std::uint32_t> places, std::span<const JointEdge> joints,
-                                 std::span<const std::uint8_t> pressed, const LaneStart& start,
-                                 DenseGraphCache& dense, Arena& arena) {
+                                 std::span<const std::uint32_t> body_indices,
+                                 std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,
+                                 const LaneStart& start, DenseGraphCache& dense, Arena& arena) {
   if (joints.empty()) return {};
-  const Graph graph = make_graph(joints, batch.bodies.size(), places, arena);
-  const Groups groups = group_joints(joints, places, graph, arena);
-  const std::size_t most = groups.ends.size();
-  const std::span<Articulation> alone = arena.make<Articulation>(most);
-  const std::span<GroupedArticulation> alike = arena.make<GroupedArticulation>(most);
-  const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(joints.size());
+  const Graph graph = make_graph(joints, batch.bodies.size(), body_indices, arena);
+  const Groups groups = group_joints(joints, body_indices, graph, arena);
+  const std::size_t group_count = groups.ends.size();
+  const std::span<Articulation> scalar = arena.make<Articulation>(group_count);
+  const std::span<GroupedArticulation> grouped = arena.make<GroupedArticulation>(group_count);
+  const std::span<std::uint8_t> iterative = arena.make<std::uint8_t>(joints.size());
   const std::span<std::uint8_t> in_lanes = arena.make<std::uint8_t>(joints.size());
-  for (std::uint8_t& flag : swept) flag = 1;
+  for (std::uint8_t& flag : iterative) flag = 1;
   for (std::uint8_t& flag : in_lanes) flag = 0;
-  ArticulationBuilder maker(w, batch, places, joints, pressed, start, graph, groups.local, most, dense,
-                            arena);
-  std::size_t alone_count = 0, alike_count = 0;
-  for (std::size_t group = 0; group < most; ++group) {
+  ArticulationBuilder builder(w, batch, body_indices, joints, pressed, start, graph, groups.local,
+                              group_count, dense, arena);
+  std::size_t scalar_count = 0, grouped_count = 0;
+  for (std::size_t group = 0; group < group_count; ++group) {
     const std::uint32_t begin = group == 0 ? 0 : groups.ends[group - 1];
     const std::span<const std::uint32_t> members = groups.members.subspan(begin, groups.ends[group] - begin);
     Articulation articulation;
     GroupedArticulation lanes;
-    if (!maker.make(members, articulation, lanes)) continue;
-    for (const std::uint32_t member : members) swept[graph.joints[member]] = 0;
+    if (!builder.make(members, articulation, lanes)) continue;
+    for (const std::uint32_t member : members) iterative[graph.joints[member]] = 0;
     if (lanes.joints.empty()) {
-      alone[alone_count++] = articulation;
+      scalar[scalar_count++] = articulation;
       continue;
     }
-    for (const ArticulationJoint& joint : lanes.joints) in_lanes[joint.place] = 1;
-    alike[alike_count++] = lanes;
+    for (const ArticulationJoint& joint : lanes.joints) in_lanes[joint.index] = 1;
+    grouped[grouped_count++] = lanes;
   }
-  const bool is_dense = most > 0 && alone_count == 0 && alike_count == 0;
-  if (is_dense && !dense.holds(joints)) dense.add(joints);
-  return {alone.first(alone_count), alike.first(alike_count), maker.shapes(), swept, in_lanes};
+  const bool is_dense = group_count > 0 && scalar_count == 0 && grouped_count == 0;
+  if (is_dense && !dense.contains(joints)) dense.add(joints);
+  return {scalar.first(scalar_count), grouped.first(grouped_count), builder.topologies(), iterative,
+          in_lanes};
 }
 
-void attach_drives(const Articulations& linkages, std::span<JointConstraint> work, Arena& arena) {
-  for (Articulation& articulation : linkages.linkages) {
+void attach_drives(const Articulations& articulations, std::span<JointConstraint> work, Arena& arena) {
+  for (Articulation& articulation : articulations.scalar) {
     std::size_t count = 0;
     for (const ArticulationNode& node : articulation.nodes)
       for (const AxisConstraint& axis : work[node.work].axes) count += is_driven_axis(axis) ? 1 : 0;
@@ -456,19 +462,20 @@ void attach_drives(const Articulations& linkages, std::span<JointConstraint> wor
   }
 }
 
-std::span<std::span<double>> find_limits(const Articulations& linkages, std::span<const JointConstraint> work,
-                                         std::size_t workers, Arena& arena) {
-  std::size_t most = 0;
-  for (Articulation& articulation : linkages.linkages) {
+std::span<std::span<double>> find_limits(const Articulations& articulations,
+                                         std::span<const JointConstraint> work, std::size_t workers,
+                                         Arena& arena) {
+  std::size_t room_size = 0;
+  for (Articulation& articulation : articulations.scalar) {
     for (const ArticulationNode& node : articulation.nodes)
       for (const AxisConstraint& axis : work[node.work].axes)
         articulation.has_limits = articulation.has_limits || has_hard_limit(axis);
     if (articulation.has_limits)
-      most = max(most, limits_room(articulation.plan.rows, articulation.bodies.size()));
+      room_size = max(room_size, limits_room(articulation.plan.rows, articulation.bodies.size()));
   }
-  if (most == 0) return {};
+  if (room_size == 0) return {};
   const std::span<std::span<double>> rooms = arena.make<std::span<double>>(workers);
-  for (std::span<double>& room : rooms) room = arena.make<double>(most);
+  for (std::span<double>& room : rooms) room = arena.make<double>(room_size);
   return rooms;
 }
 

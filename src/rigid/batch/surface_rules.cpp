@@ -89,7 +89,7 @@ bool holds(const Manifold& manifold, Vec3 direction, Vec3 outward, Vec3 leaving,
   return deepest >= 0.0f || dot(leaving, along) <= kLeaving * std::sqrt(9.81f * size);
 }
 
-void forget_impulses(Manifold& manifold) {
+void clear_impulses(Manifold& manifold) {
   for (int k = 0; k < manifold.count; ++k) {
     manifold.points[k].normal_impulse = 0.0f;
     manifold.points[k].mean_impulse = 0.0f;
@@ -115,7 +115,7 @@ bool apply_surface_rules(const RigidWorld& w, const Contact& contact, Manifold& 
     const Vec3 one_way = turn_to_world(w, contact.body_a, a.rule->one_way);
     if (a.rule->one_way != Vec3{} &&
         !holds(manifold, one_way, manifold.normal, speed, size_of(w, contact.shape_b, contact))) {
-      forget_impulses(manifold);
+      clear_impulses(manifold);
       return false;
     }
     running += turn_to_world(w, contact.body_a, a.rule->velocity);
@@ -124,7 +124,7 @@ bool apply_surface_rules(const RigidWorld& w, const Contact& contact, Manifold& 
     const Vec3 one_way = turn_to_world(w, contact.body_b, b.rule->one_way);
     if (b.rule->one_way != Vec3{} &&
         !holds(manifold, one_way, -manifold.normal, -speed, size_of(w, contact.shape_a, contact))) {
-      forget_impulses(manifold);
+      clear_impulses(manifold);
       return false;
     }
     running -= turn_to_world(w, contact.body_b, b.rule->velocity);

@@ -1,4 +1,5 @@
-// The joints of groups that follow what was stopped, as their solvers see them: of what acts on them only equations and limits.
+// The joints of projection groups for their solvers: only equations and limits, without drives, springs and
+// friction.
 #pragma once
 
 #include "rigid/batch/joint_constraints.h"
@@ -8,12 +9,13 @@ namespace gyre {
 
 struct ProjectionJoints {
   std::span<JointRecord> records;
-  JointConstraints works;
+  JointConstraints constraints;
 };
 
-constexpr JointSettings kClosingSettings{kProjectionStep, {1.0f / kProjectionStep, 1.0f, 0.0f}, false};
+constexpr JointSettings kProjectionSettings{kProjectionStep, {1.0f / kProjectionStep, 1.0f, 0.0f}, false};
 
-// Copies of the joints in these slots.
-ProjectionJoints copy_closing_joints(const RigidWorld& w, std::span<const std::uint32_t> slots, Arena& arena);
+// Copies the joints in these slots.
+ProjectionJoints copy_projection_joints(const RigidWorld& w, std::span<const std::uint32_t> slots,
+                                        Arena& arena);
 
 }  // namespace gyre

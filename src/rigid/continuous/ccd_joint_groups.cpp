@@ -7,10 +7,10 @@ namespace gyre {
 
 namespace {
 
-constexpr std::size_t kMaxJoints = 48;  // around each stopped body; those of the body itself always
+constexpr std::size_t kMaxJoints = 48;  // around each halted body; the body's own joints are always included
 
-// Whether its equations and limits are about where two bodies are, and not only about how far they have turned or run.
-bool is_closed(const RigidWorld& w, std::uint32_t joint) {
+// True if its equations and limits depend on the positions of two bodies, and not only on rotation or travel.
+bool constrains_pose(const RigidWorld& w, std::uint32_t joint) {
   const JointKind kind = w.joints.records[joint].kind;
   const JointDetail* const detail = detail_of(w.joints, joint);
   return (detail == nullptr || !detail->disabled) && kind != JointKind::gear &&
@@ -20,22 +20,22 @@ bool is_closed(const RigidWorld& w, std::uint32_t joint) {
 
 class GroupFinder {
  public:
-  GroupFinder(const RigidWorld& w, std::span<const HaltedBody> stopped, Arena& arena)
+  GroupFinder(const RigidWorld& w, std::span<const HaltedBody> halted, Arena& arena)
       : w_(w),
-        stopped_(stopped),
+        halted_(halted),
         arena_(arena),
         group_of_joint_(arena.make<std::uint32_t>(w.joints.records.size())),
         group_of_body_(arena.make<std::uint32_t>(w.bodies.motion.size())),
-        stop_of_(arena.make<const HaltedBody*>(w.bodies.motion.size())) {
+        halt_of_(arena.make<const HaltedBody*>(w.bodies.motion.size())) {
     for (std::uint32_t& group : group_of_joint_) group = 0;
     for (std::uint32_t& group : group_of_body_) group = 0;
-    for (const HaltedBody*& stop : stop_of_) stop = nullptr;
-    for (const HaltedBody& one : stopped) stop_of_[one.body] = &one;
+    for (const HaltedBody*& halt : halt_of_) halt = nullptr;
+    for (const HaltedBody& one : halted) halt_of_[one.body] = &one;
   }
 
   std::span<ProjectionGroup> find_all() {
-    const std::span<ProjectionGroup> groups = arena_.make<ProjectionGroup>(stopped_.size());
-    for (const HaltedBody& one : stopped_)
+    const std::span<ProjectionGroup> groups = arena_.make<ProjectionGroup>(halted_.size());
+    for (const HaltedBody& one : halted_)
       if (!is_in_groups(one.body)) groups[number_++] = find(one.body);
     return groups.first(number_);
   }
@@ -43,36 +43,37 @@ class GroupFinder {
  private:
   bool is_in_groups(std::uint32_t body) const {
     for (const std::uint32_t slot : joints_of(w_.bodies, body))
-      if (is_closed(w_, slot) && group_of_joint_[slot] == 0) return false;
+      if (constrains_pose(w_, slot) && group_of_joint_[slot] == 0) return false;
     return true;
   }
-  bool is_fresh(std::uint32_t slot) const {
-    return is_closed(w_, slot) && group_of_joint_[slot] != number_ + 1;
+  bool is_new(std::uint32_t slot) const {
+    return constrains_pose(w_, slot) && group_of_joint_[slot] != number_ + 1;
   }
   void add_body(std::int32_t body, std::span<ProjectionMember> members, std::size_t& count) {
     if (body == kNoBody || group_of_body_[std::size_t(body)] == number_ + 1) return;
     group_of_body_[std::size_t(body)] = number_ + 1;
     ProjectionMember& member = members[count++] = ProjectionMember{};
     member.body = std::uint32_t(body);
-    member.stopped = stop_of_[std::size_t(body)];
+    member.halted = halt_of_[std::size_t(body)];
   }
 
   // Body by body, nearest first, each with all of its joints.
   ProjectionGroup find(std::uint32_t first) {
-    const std::size_t most = max(kMaxJoints, joints_of(w_.bodies, first).size());
-    ProjectionGroup group{arena_.make<std::uint32_t>(most), arena_.make<ProjectionMember>(most + 1), true};
+    const std::size_t max_joints = max(kMaxJoints, joints_of(w_.bodies, first).size());
+    ProjectionGroup group{arena_.make<std::uint32_t>(max_joints),
+                          arena_.make<ProjectionMember>(max_joints + 1), true};
     std::size_t joints = 0, members = 0;
     add_body(std::int32_t(first), group.members, members);
     for (std::size_t next = 0; next < members; ++next) {
       ProjectionMember& member = group.members[next];
       if (!is_active(w_, member.body)) continue;
-      std::size_t fresh = 0;
-      for (const std::uint32_t slot : joints_of(w_.bodies, member.body)) fresh += is_fresh(slot) ? 1 : 0;
-      member.moves = joints + fresh <= most;
+      std::size_t new_joints = 0;
+      for (const std::uint32_t slot : joints_of(w_.bodies, member.body)) new_joints += is_new(slot) ? 1 : 0;
+      member.moves = joints + new_joints <= max_joints;
       group.is_whole = group.is_whole && member.moves;
       if (!member.moves) continue;
       for (const std::uint32_t slot : joints_of(w_.bodies, member.body)) {
-        if (!is_fresh(slot)) continue;
+        if (!is_new(slot)) continue;
         group_of_joint_[slot] = number_ + 1;
         group.joints[joints++] = slot;
         add_body(w_.joints.records[slot].body_a, group.members, members);
@@ -87,18 +88,18 @@ class GroupFinder {
   }
 
   const RigidWorld& w_;
-  std::span<const HaltedBody> stopped_;
+  std::span<const HaltedBody> halted_;
   Arena& arena_;
-  std::span<std::uint32_t> group_of_joint_, group_of_body_;  // the last, from 1 on; 0: none
-  std::span<const HaltedBody*> stop_of_;                     // by body
+  std::span<std::uint32_t> group_of_joint_, group_of_body_;  // the last group, from 1 on; 0: none
+  std::span<const HaltedBody*> halt_of_;                     // by body
   std::uint32_t number_ = 0;
 };
 
 }  // namespace
 
-std::span<ProjectionGroup> find_projection_groups(const RigidWorld& w, std::span<const HaltedBody> stopped,
+std::span<ProjectionGroup> find_projection_groups(const RigidWorld& w, std::span<const HaltedBody> halted,
                                                   Arena& arena) {
-  return GroupFinder(w, stopped, arena).find_all();
+  return GroupFinder(w, halted, arena).find_all();
 }
 
 }  // namespace gyre

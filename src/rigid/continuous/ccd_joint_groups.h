@@ -1,5 +1,5 @@
-// Who is led along when a sweep has taken bodies back (rigid/continuous/ccd_joint_projection.h): for each of them what hangs together with it by
-// joints, as far as that is few enough.
+// Finds the projection groups after CCD (rigid/continuous/ccd_joint_projection.h): each halted body with the
+// bodies that joints connect to it, up to a bound.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -9,35 +9,35 @@
 
 namespace gyre {
 
-// A fast body that goes only a part of its way in this step.
+// A fast body that CCD moved back to its time of impact.
 struct HaltedBody {
   std::uint32_t body = 0;
-  float fraction = 1.0f;  // of its way, up to where it met something
-  Vec3 moved, turned;     // the whole way, as BodyMotion has it
+  float fraction = 1.0f;                // of its displacement, up to the impact
+  Vec3 delta_position, delta_rotation;  // over the whole step, as BodyMotion has it
 };
 
-// A body of a group, and its way.
+// A body of a group, and its displacement.
 struct ProjectionMember {
-  const HaltedBody* stopped = nullptr;  // null: it was not
+  const HaltedBody* halted = nullptr;  // null: not halted
   std::uint32_t body = 0;
-  bool moves = false;  // all of its joints are in the group; others go where they go anyway
-  bool goes = false;   // moves, or does not stand still
-  bool held = false;   // stopped, and not to be moved any more
-  Vec3 start_moved;    // where the first of the group was stopped
+  bool moves = false;         // all of its joints are in the group; other bodies are not moved by the group
+  bool is_in_motion = false;  // moves, or has a displacement
+  bool fixed = false;         // halted, and not to be moved any more
+  Vec3 start_displacement;    // pose at the first impact of the group
   Quat start_orientation;
-  Vec3 rest_moved, rest_turned;  // from there to where it is
-  Vec3 kept_moved;               // where it was when joints were last closed
-  Quat kept_orientation;
+  Vec3 remaining_displacement, remaining_rotation;  // from there to the present pose
+  Vec3 saved_displacement;                          // pose when joints were last closed
+  Quat saved_orientation;
 };
 
 struct ProjectionGroup {
   std::span<std::uint32_t> joints;  // ascending
   std::span<ProjectionMember> members;
-  bool is_whole = false;  // nothing more hangs there, so no other group has a body of it that moves
+  bool is_whole = false;  // no other joint leads to it, so no other group moves a body of it
 };
 
-// In the order of the stopped bodies; those of which all joints are in groups of others have none of their own.
-std::span<ProjectionGroup> find_projection_groups(const RigidWorld& w, std::span<const HaltedBody> stopped,
+// In the order of the halted bodies. A body with all joints in groups of others has no group of its own.
+std::span<ProjectionGroup> find_projection_groups(const RigidWorld& w, std::span<const HaltedBody> halted,
                                                   Arena& arena);
 
 }  // namespace gyre

@@ -1,4 +1,4 @@
-// Joints of bodies that a sweep took back: what hangs on them comes after.
+// Joint projection after CCD: closes the joints of halted bodies.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -9,13 +9,14 @@
 
 namespace gyre {
 
-// Whether the joint holds a point of its bodies together: two stopped bodies that it joins stop as one.
+// True if the joint keeps a point of its bodies together: two halted bodies that it connects are halted
+// together.
 bool constrains_position(const RigidWorld& w, std::uint32_t joint);
-// Moves bodies that hang together with those that were stopped, which stand where they will stay, so that the joints between them are
-// closed and within their limits again: places and orientations alone, no velocities. Stopped ones are moved but for a little.
-// `stays`: nothing goes on beyond where the first that it hangs together with was stopped. Adds to `moved` what ends far, against its
-// size, from where it would have ended: it was not swept on that way.
-void project_joints_after_ccd(RigidWorld& w, std::span<const HaltedBody> stopped, bool stop_at_impact,
+// Moves the bodies that joints connect to halted ones, which are at their impact poses, so that joints are
+// closed and within limits again. Only poses change, no velocities. Halted bodies move but little.
+// `stop_at_impact`: nothing moves beyond the first impact of its group. Adds to `moved` the bodies that end
+// far, for their size, from their former end: CCD did not test that motion.
+void project_joints_after_ccd(RigidWorld& w, std::span<const HaltedBody> halted, bool stop_at_impact,
                               const SolverKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
                               Arena& arena);
 

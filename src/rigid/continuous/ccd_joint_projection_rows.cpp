@@ -9,9 +9,9 @@ namespace gyre {
 
 namespace {
 
-constexpr int kClosingSteps = 20;
+constexpr int kNewtonSteps = 20;
 constexpr double kNewtonShare = 1.0e-4;  // of the largest impulse that closes one row alone
-constexpr std::uint64_t kMaxClosingWork = 20'000'000;
+constexpr std::uint64_t kMaxProjectionWork = 20'000'000;
 
 class RowProjection {
  public:
@@ -20,11 +20,11 @@ class RowProjection {
       : w_(w),
         group_(group),
         bodies_(bodies),
-        joints_(copy_closing_joints(w, group.joints, arena)),
-        places_(arena.make<std::int32_t>(w.bodies.motion.size())) {
+        joints_(copy_projection_joints(w, group.joints, arena)),
+        body_indices_(arena.make<std::int32_t>(w.bodies.motion.size())) {
     std::int32_t movers = 0;
     for (const ProjectionMember& member : group.members)
-      places_[member.body] = member.moves ? movers++ : kNoRowBody;
+      body_indices_[member.body] = member.moves ? movers++ : kNoRowBody;
     row_bodies_ = arena.make<RowBody>(std::size_t(movers));
   }
 
@@ -34,48 +34,49 @@ class RowProjection {
     for (std::uint8_t& size : sizes) size = kLuBlock;
     const std::span<BlockEdge> edges = arena.make<BlockEdge>(joints_.records.size());
     std::size_t edge_count = 0, rows = 0;
-    const auto place = [&](std::int32_t body) {
-      return body == kNoBody ? kNoRowBody : places_[std::size_t(body)];
+    const auto index_of = [&](std::int32_t body) {
+      return body == kNoBody ? kNoRowBody : body_indices_[std::size_t(body)];
     };
     for (std::size_t i = 0; i < joints_.records.size(); ++i) {
       const JointRecord& joint = joints_.records[i];
-      rows += std::size_t(count_joint_rows(joint, joints_.works.work[i].detail, joints_.works.work[i]));
-      const std::int32_t a = place(joint.body_a), b = place(joint.body_b);
+      rows += std::size_t(
+          count_joint_rows(joint, joints_.constraints.work[i].detail, joints_.constraints.work[i]));
+      const std::int32_t a = index_of(joint.body_a), b = index_of(joint.body_b);
       if (a != kNoRowBody && b != kNoRowBody && a != b)
         edges[edge_count++] = {std::uint32_t(a), std::uint32_t(b)};
     }
     if (rows == 0 || row_bodies_.empty()) return false;
-    if (!plan_blocks(sizes, edges.first(edge_count), kMaxClosingWork, arena, plan_)) return false;
+    if (!plan_blocks(sizes, edges.first(edge_count), kMaxProjectionWork, arena, plan_)) return false;
     rows_ = arena.make<Row>(rows);
-    kept_ = arena.make<float*>(rows);
+    stored_ = arena.make<float*>(rows);
     impulses_ = arena.make<double>(rows);
     numbers_ = arena.make<double>(body_newton_room(rows, plan_));
     return true;
   }
 
-  // How far the joints are off where the bodies are; these stand still.
-  float find_open() {
-    double open = 0.0;
-    for (const Row& row : make_rows()) open = max(open, missing(row));
-    return float(open * double(kProjectionStep));
+  // The largest error of the joints at the present poses, with bodies at rest.
+  float find_error() {
+    double largest = 0.0;
+    for (const Row& row : make_rows()) largest = max(largest, missing(row));
+    return float(largest * double(kProjectionStep));
   }
 
   void solve() {
     const std::span<Row> rows = make_rows();
-    double most = 0.0;
+    double largest = 0.0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       impulses_[i] = rows[i].impulse = 0.0;
-      if (rows[i].diagonal > 0.0) most = max(most, missing(rows[i]) / rows[i].diagonal);
+      if (rows[i].diagonal > 0.0) largest = max(largest, missing(rows[i]) / rows[i].diagonal);
     }
-    if (!(most > 0.0)) return;
+    if (!(largest > 0.0)) return;
     const FrictionSet none;
-    solve_body_newton({rows, row_bodies_, &none, &plan_}, kNewtonShare * most, kClosingSteps, impulses_,
+    solve_body_newton({rows, row_bodies_, &none, &plan_}, kNewtonShare * largest, kNewtonSteps, impulses_,
                       NumberRoom(numbers_));
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = impulses_[i];
     warm_start_rows(rows, row_bodies_);
     for (const ProjectionMember& member : group_.members) {
       if (!member.moves) continue;
-      const RowBody& body = row_bodies_[std::size_t(places_[member.body])];
+      const RowBody& body = row_bodies_[std::size_t(body_indices_[member.body])];
       bodies_.motion[member.body].linear_velocity = to_float(body.linear);
       bodies_.motion[member.body].angular_velocity = to_float(body.angular);
     }
@@ -90,19 +91,19 @@ class RowProjection {
   std::span<Row> make_rows() {
     for (const ProjectionMember& member : group_.members) {
       if (!member.moves) continue;
-      RowBody& body = row_bodies_[std::size_t(places_[member.body])];
+      RowBody& body = row_bodies_[std::size_t(body_indices_[member.body])];
       const BodyMotion& motion = bodies_.motion[member.body];
       body = make_row_body(bodies_.inertia[member.body], w_.bodies.flags[member.body].locked_linear);
       body.linear = DVec3(motion.linear_velocity), body.angular = DVec3(motion.angular_velocity);
     }
     const JointBodies bodies{bodies_.motion.data(), bodies_.inertia.data(), bodies_.orientations.data()};
-    const RowFrame frame{row_bodies_, places_.data(), bodies_.motion.data(), double(kProjectionStep)};
-    RowList list{rows_.data(), kept_.data(), 0};
+    const RowFrame frame{row_bodies_, body_indices_.data(), bodies_.motion.data(), double(kProjectionStep)};
+    RowList list{rows_.data(), stored_.data(), 0};
     for (std::size_t i = 0; i < joints_.records.size(); ++i) {
-      JointConstraint& work = joints_.works.work[i];
-      prepare_joint(joints_.records[i], work, joints_.works.places[i], bodies, kClosingSettings);
-      update_joint_bias(joints_.records[i], work, bodies, kClosingSettings);
-      add_joint_rows(joints_.records[i], work, kClosingSettings, frame, list);
+      JointConstraint& work = joints_.constraints.work[i];
+      prepare_joint(joints_.records[i], work, joints_.constraints.places[i], bodies, kProjectionSettings);
+      update_joint_bias(joints_.records[i], work, bodies, kProjectionSettings);
+      add_joint_rows(joints_.records[i], work, kProjectionSettings, frame, list);
     }
     return rows_.first(std::size_t(list.count));
   }
@@ -111,33 +112,33 @@ class RowProjection {
   const ProjectionGroup& group_;
   ProjectionBodies bodies_;
   ProjectionJoints joints_;
-  std::span<std::int32_t> places_;  // by body: among those of the rows
+  std::span<std::int32_t> body_indices_;  // by body: index among the bodies of the rows
   std::span<RowBody> row_bodies_;
   BlockPlan plan_;
   std::span<Row> rows_;
-  std::span<float*> kept_;
+  std::span<float*> stored_;
   std::span<double> impulses_, numbers_;
 };
 
 }  // namespace
 
-bool follow_by_rows(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
-                    bool stop_at_impact, Arena& arena) {
+bool project_by_rows(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
+                     bool stop_at_impact, Arena& arena) {
   const ArenaScope scope(arena);
   RowProjection rows(w, group, bodies, arena);
   if (!rows.make_room(arena)) return false;
-  ProjectionPath way(w, group, bodies, stop_at_impact);
+  ProjectionPath path(w, group, bodies, stop_at_impact);
   for (;;) {
-    switch (way.next(rows.find_open())) {
+    switch (path.next(rows.find_error())) {
       case ProjectionPath::Next::done:
         return true;
-      case ProjectionPath::Next::look:
+      case ProjectionPath::Next::measure:
         continue;
       case ProjectionPath::Next::solve:
         break;
     }
     rows.solve();
-    way.advance();
+    path.advance();
   }
 }
 

@@ -8,12 +8,13 @@ namespace gyre {
 
 namespace {
 
-// Enough to tell redundant rows apart.
-constexpr float kGive = 1.0e-4f;
-// Bends are for speeds that stay; of a way to a pose, in which errors are measured anew, little helps.
-constexpr float kMaxTurn = 0.15f;  // rad
+// Enough to separate redundant rows.
+constexpr float kProjectionCompliance = 1.0e-4f;
+// The second-order bias is for velocities that persist; on the path to a pose, where errors are measured
+// anew, it helps little.
+constexpr float kMaxBiasAngleOfPath = 0.15f;  // rad
 
-// Whether lanes may bear the group, as far as that shows before its joints are looked at.
+// True if the group may fit in lanes, before its joints are checked.
 bool may_fit(const RigidWorld& w, const ProjectionGroup& group) {
   if (!group.is_whole) return false;
   for (const ProjectionMember& member : group.members) {
@@ -37,38 +38,43 @@ class LaneProjection {
         groups_(groups),
         bodies_(bodies),
         arena_(arena),
-        is_led_(arena.make<std::uint8_t>(groups.size())) {
-    for (std::uint8_t& led : is_led_) led = 0;
+        is_projected_(arena.make<std::uint8_t>(groups.size())) {
+    for (std::uint8_t& projected : is_projected_) projected = 0;
   }
 
-  std::span<const std::uint8_t> follow(bool stop_at_impact, const SolverKernels& kernels, TaskSystem& tasks) {
+  std::span<const std::uint8_t> project(bool stop_at_impact, const SolverKernels& kernels,
+                                        TaskSystem& tasks) {
     list();
-    if (batch_.joints.empty()) return is_led_;
+    if (batch_.joints.empty()) return is_projected_;
     const LaneStart start{.limits_only = true};
     DenseGraphCache dense;
-    const Articulations linkages =
-        find_articulations(w_, batch_, places_, joint_edges_, {}, start, dense, arena_);
+    const Articulations articulations =
+        find_articulations(w_, batch_, body_indices_, joint_edges_, {}, start, dense, arena_);
     const LaneArrays arrays{bodies_.motion.data(), bodies_.inertia.data(), bodies_.orientations.data()};
-    const LaneSettings settings{kProjectionStep, kClosingSettings.softness.bias_rate,
-                                kGive,           add_geometric_stiffness,
-                                kMaxErrors,      0.0f,
-                                kMaxTurn,        false};
-    bundles_ = lay_out_bundles(linkages, kernels, arrays, settings, arena_);
-    ways_ = arena_.make<ProjectionPath>(groups_.size());
-    for (const GroupedArticulation& articulation : linkages.alike) {
+    const LaneSettings settings{kProjectionStep,
+                                kProjectionSettings.softness.bias_rate,
+                                kProjectionCompliance,
+                                add_geometric_stiffness,
+                                kMaxErrors,
+                                0.0f,
+                                kMaxBiasAngleOfPath,
+                                false};
+    bundles_ = lay_out_bundles(articulations, kernels, arrays, settings, arena_);
+    paths_ = arena_.make<ProjectionPath>(groups_.size());
+    for (const GroupedArticulation& articulation : articulations.grouped) {
       const std::uint32_t group = group_of(articulation);
-      is_led_[group] = 1;
-      ways_[group] = ProjectionPath(w_, groups_[group], bodies_, stop_at_impact);
+      is_projected_[group] = 1;
+      paths_[group] = ProjectionPath(w_, groups_[group], bodies_, stop_at_impact);
     }
     for_blocks(tasks, int(bundles_.bundles.size()), 1, [&](int begin, int end, int) {
       begin_bundles(bundles_, begin, end, w_, start);
       for (int i = begin; i < end; ++i) project_bundle(bundles_.bundles[std::size_t(i)]);
     });
-    return is_led_;
+    return is_projected_;
   }
 
  private:
-  // The joints and bodies of all groups that may fit.
+  // Lists the joints and bodies of all groups that may fit.
   void list() {
     std::size_t joints = 0, bodies = 0;
     for (const ProjectionGroup& group : groups_)
@@ -77,12 +83,12 @@ class LaneProjection {
     const std::span<std::uint32_t> body_list = arena_.make<std::uint32_t>(bodies);
     group_of_joint_ = arena_.make<std::uint32_t>(joints);
     joint_edges_ = arena_.make<JointEdge>(joints);
-    places_ = arena_.make<std::uint32_t>(w_.bodies.motion.size());
+    body_indices_ = arena_.make<std::uint32_t>(w_.bodies.motion.size());
     joints = bodies = 0;
     for (std::uint32_t g = 0; g < groups_.size(); ++g) {
       if (!may_fit(w_, groups_[g])) continue;
       for (const ProjectionMember& member : groups_[g].members) {
-        places_[member.body] = std::uint32_t(bodies);
+        body_indices_[member.body] = std::uint32_t(bodies);
         if (member.moves) body_list[bodies++] = member.body;
       }
       for (const std::uint32_t slot : groups_[g].joints) {
@@ -103,54 +109,56 @@ class LaneProjection {
     return {moving(joint.body_a), moving(joint.body_b), count_equations(joint, detail_of(w_.joints, slot))};
   }
   std::uint32_t group_of(const GroupedArticulation& articulation) const {
-    return group_of_joint_[articulation.joints[0].place];
+    return group_of_joint_[articulation.joints[0].index];
   }
 
-  // All lanes step by step, until the last has come to its end.
+  // Moves all lanes segment by segment, until the last has reached its end.
   void project_bundle(const BundledArticulations& bundle) const {
     const ArticulationKernels& kernels = *bundle.lanes.kernels;
-    std::uint32_t going = (1u << bundle.linkages.size()) - 1;
-    while (going != 0) {
-      forget_lane_impulses(bundle.lanes);
+    std::uint32_t active = (1u << bundle.articulations.size()) - 1;
+    while (active != 0) {
+      clear_lane_impulses(bundle.lanes);
       kernels.prepare(bundle.lanes, bundles_.arrays, bundles_.settings);
       std::uint32_t solved = 0;
-      for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
-        if ((going >> lane & 1u) == 0) continue;
-        const ProjectionPath::Next next = way_of(bundle, lane).next(find_lane_error(bundle.lanes, int(lane)));
+      for (std::size_t lane = 0; lane < bundle.articulations.size(); ++lane) {
+        if ((active >> lane & 1u) == 0) continue;
+        const ProjectionPath::Next next =
+            path_of(bundle, lane).next(find_lane_error(bundle.lanes, int(lane)));
         if (next == ProjectionPath::Next::solve) solved |= 1u << lane;
-        if (next == ProjectionPath::Next::done) going &= ~(1u << lane);
+        if (next == ProjectionPath::Next::done) active &= ~(1u << lane);
       }
       if (solved == 0) continue;
       kernels.compute_bias(bundle.lanes, bundles_.arrays, bundles_.settings);
       kernels.solve(bundle.lanes, bundles_.arrays, bundles_.settings);
       kernels.solve_after_contacts(bundle.lanes, bundles_.arrays, bundles_.settings);
-      for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane)
-        if ((solved >> lane & 1u) != 0) way_of(bundle, lane).advance();
+      for (std::size_t lane = 0; lane < bundle.articulations.size(); ++lane)
+        if ((solved >> lane & 1u) != 0) path_of(bundle, lane).advance();
     }
   }
-  ProjectionPath& way_of(const BundledArticulations& bundle, std::size_t lane) const {
-    return ways_[group_of(*bundle.linkages[lane])];
+  ProjectionPath& path_of(const BundledArticulations& bundle, std::size_t lane) const {
+    return paths_[group_of(*bundle.articulations[lane])];
   }
 
   RigidWorld& w_;
   std::span<const ProjectionGroup> groups_;
   ProjectionBodies bodies_;
   Arena& arena_;
-  std::span<std::uint8_t> is_led_;
+  std::span<std::uint8_t> is_projected_;
   SolveBatch batch_;
-  std::span<std::uint32_t> places_;          // by body: in the batch's list
-  std::span<std::uint32_t> group_of_joint_;  // by place in the batch's list
+  std::span<std::uint32_t> body_indices_;    // by body: index in the batch's list
+  std::span<std::uint32_t> group_of_joint_;  // by index in the batch's list
   std::span<JointEdge> joint_edges_;
   BundleSolve bundles_;
-  std::span<ProjectionPath> ways_;  // by group
+  std::span<ProjectionPath> paths_;  // by group
 };
 
 }  // namespace
 
 std::span<const std::uint8_t> project_batched(RigidWorld& w, std::span<const ProjectionGroup> groups,
                                               const ProjectionBodies& bodies, bool stop_at_impact,
-                                              const SolverKernels& kernels, TaskSystem& tasks, Arena& arena) {
-  return LaneProjection(w, groups, bodies, arena).follow(stop_at_impact, kernels, tasks);
+                                              const SolverKernels& kernels, TaskSystem& tasks,
+                                              Arena& arena) {
+  return LaneProjection(w, groups, bodies, arena).project(stop_at_impact, kernels, tasks);
 }
 
 }  // namespace gyre

@@ -1,9 +1,11 @@
-// Leads groups along side by side: those that are whole linkages of ball, cone and hinge joints with hard stops, as limbs of ragdolls
-// are, by the kernels that solve these in the sub-steps (solver/articulation/linkage_lanes.h). A short step's speeds stand for displacements: the
-// equations are solved directly, stops with them, and both take errors back wholly. Joints are measured and placed anew for each
-// motion, as in closing_rows.h, but one solution after another takes the place of Newton's steps.
+// Projects groups side by side, by the kernels of the sub-steps (solver/articulation/articulation_lanes.h).
+// Only for groups that are whole articulations of ball, cone and hinge joints with hard limits, as limbs of
+// ragdolls. The speeds of a short step stand for displacements: equations are solved directly, limits with
+// them, and both remove whole errors. Joints are measured and prepared anew for each motion, as in
+// ccd_joint_projection_rows.h, but repeated solves replace Newton's steps.
 //
-// In: groups, of which some may be others. Out: where the bodies of those that fit have come, and which groups these are.
+// In: groups, some of which may not fit. Out: poses of the bodies of those that fit, and which groups these
+// are.
 #pragma once
 
 #include "rigid/continuous/ccd_projection_path.h"
@@ -12,7 +14,7 @@
 
 namespace gyre {
 
-// Returns by group whether it was led.
+// Returns by group whether it was projected.
 std::span<const std::uint8_t> project_batched(RigidWorld& w, std::span<const ProjectionGroup> groups,
                                               const ProjectionBodies& bodies, bool stop_at_impact,
                                               const SolverKernels& kernels, TaskSystem& tasks, Arena& arena);

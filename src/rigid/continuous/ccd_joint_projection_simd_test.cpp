@@ -1,5 +1,5 @@
-// What follows a stopped limb, side by side against one by one by Newton's method on rows: both end where joints and limits hold, and
-// as near to each other as that leaves them; each lane has the same bits whatever stands beside it.
+// Projection side by side against projection one by one by Newton's method on rows: both end with joints and
+// limits satisfied and in similar poses; each lane has the same bits whatever stands beside it.
 #include "rigid/continuous/ccd_joint_projection_simd.h"
 
 #include "math/rotation.h"
@@ -16,9 +16,10 @@ namespace {
 constexpr int kLinks = 5;
 constexpr float kHalf = 0.2f, kMaxSwing = 0.1f;
 
-// Chains along x, each 3 m further along z, that are to go some way along y and turn a little as they do: ends by a ball, by a cone
-// that may lean by 0.1 rad, by a hinge about z, and by what the test says. The third link of each is stopped.
-class ChainsFollow : public ::testing::Test {
+// Chains along x, each 3 m further along z, that move along y and rotate a little: joined by a ball, by a
+// cone with a swing of 0.1 rad, by a hinge about z, and by a joint of the test. The third link of each is
+// halted.
+class ChainsAfterImpact : public ::testing::Test {
  protected:
   void add_chain(JointKind last = JointKind::ball) {
     const int chain = int(stopped_.size());
@@ -31,22 +32,22 @@ class ChainsFollow : public ::testing::Test {
     add_joint(last, first + 3, {});
     const std::uint32_t body = std::uint32_t(first) + 2;
     BodyMotion& motion = world_.bodies.motion[body];
-    stopped_.push_back({body, 0.3f, motion.moved, motion.turned});
-    motion.moved = 0.3f * motion.moved;
+    stopped_.push_back({body, 0.3f, motion.delta_position, motion.delta_rotation});
+    motion.delta_position = 0.3f * motion.delta_position;
   }
   std::span<const std::uint8_t> project_batched(std::size_t chains) {
     begin(chains);
     return gyre::project_batched(world_, groups_, bodies_, false, select_kernels(8), tasks_, arena_);
   }
-  void follow_by_rows() {
+  void project_by_rows() {
     begin(stopped_.size());
     for (const ProjectionGroup& group : groups_)
-      ASSERT_TRUE(gyre::follow_by_rows(world_, group, bodies_, false, arena_));
+      ASSERT_TRUE(gyre::project_by_rows(world_, group, bodies_, false, arena_));
   }
   DVec3 place(std::size_t body) const {
-    return world_.bodies.places[body].center + DVec3(bodies_.motion[body].moved);
+    return world_.bodies.places[body].center + DVec3(bodies_.motion[body].delta_position);
   }
-  // How far apart the joint's ends are, and how far the cone leans.
+  // The gap of the joint, and the swing of the cone.
   double gap(const JointRecord& joint) const {
     const auto end = [&](std::int32_t body, Vec3 anchor) {
       return place(std::size_t(body)) + DVec3(rotate(bodies_.orientations[std::size_t(body)], anchor));
@@ -68,7 +69,7 @@ class ChainsFollow : public ::testing::Test {
   }
 
   RigidWorld world_;
-  float spread_ = 0.0f;  // by how much of the first's way each chain goes farther than the one before
+  float spread_ = 0.0f;  // difference of the displacement of successive chains, as a share of the first's
   std::vector<HaltedBody> stopped_;
   ProjectionBodies bodies_;
   TaskSystem tasks_{1};
@@ -88,9 +89,9 @@ class ChainsFollow : public ::testing::Test {
     store.masses.set(body, mass);
     store.places[body] = {at, {}};
     const float share = 1.0f + spread_ * float(body / kLinks);
-    store.motion[body].moved = share * Vec3{0, 0.1f + 0.002f * float(body % kLinks), 0.01f};
-    store.motion[body].turned = share * Vec3{0.05f, 0, 0};
-    store.orientations[body] = from_rotation_vector(store.motion[body].turned);
+    store.motion[body].delta_position = share * Vec3{0, 0.1f + 0.002f * float(body % kLinks), 0.01f};
+    store.motion[body].delta_rotation = share * Vec3{0.05f, 0, 0};
+    store.orientations[body] = from_rotation_vector(store.motion[body].delta_rotation);
   }
   void add_joint(JointKind kind, std::int32_t a, Quat frame) {
     const std::uint32_t slot = std::uint32_t(world_.joints.records.size());
@@ -120,39 +121,41 @@ class ChainsFollow : public ::testing::Test {
   std::span<ProjectionGroup> groups_;
 };
 
-TEST_F(ChainsFollow, WhereJointsAndLimitsHoldAndAsRowsDo) {
+TEST_F(ChainsAfterImpact, SatisfyJointsAndLimitsAsByRows) {
   for (int i = 0; i < 3; ++i) add_chain();
   for (const std::uint8_t led : project_batched(3)) EXPECT_EQ(led, 1);
   expect_closed();
   std::vector<DVec3> places;
   for (std::size_t i = 0; i < world_.bodies.motion.size(); ++i) places.push_back(place(i));
-  follow_by_rows();
+  project_by_rows();
   expect_closed();
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LT(length(place(i) - places[i]), 2.0e-3) << i;
-  // The ends go on, the one that was stopped hardly.
+  // The ends move on, the halted link hardly.
   EXPECT_GT(places[0].y, 0.08);
   EXPECT_LT(places[2].y, 0.05);
 }
 
-TEST_F(ChainsFollow, WithTheSameBitsWhateverStandsBeside) {
-  spread_ = 1.0f;  // so that lanes end after each other
+TEST_F(ChainsAfterImpact, HaveTheSameBitsInAnyLane) {
+  spread_ = 1.0f;  // lanes end one after the other
   for (int i = 0; i < 5; ++i) add_chain();
   project_batched(1);
   const ProjectionBodies alone = bodies_;
   project_batched(5);
   for (std::size_t i = 0; i < kLinks; ++i) {
-    EXPECT_EQ(std::memcmp(&alone.motion[i].moved, &bodies_.motion[i].moved, sizeof(Vec3)), 0) << i;
+    EXPECT_EQ(std::memcmp(&alone.motion[i].delta_position, &bodies_.motion[i].delta_position, sizeof(Vec3)),
+              0)
+        << i;
     EXPECT_EQ(std::memcmp(&alone.orientations[i], &bodies_.orientations[i], sizeof(Quat)), 0) << i;
   }
 }
 
-TEST_F(ChainsFollow, WithOtherJointsByRows) {
+TEST_F(ChainsAfterImpact, WithOtherJointsByRows) {
   add_chain();
   add_chain(JointKind::fixed);
   const std::span<const std::uint8_t> led = project_batched(2);
   EXPECT_EQ(led[0], 1);
   EXPECT_EQ(led[1], 0);
-  follow_by_rows();
+  project_by_rows();
   expect_closed();
 }
 

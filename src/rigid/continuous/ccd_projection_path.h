@@ -1,11 +1,12 @@
-// How a group that hangs together follows what a sweep took back: from where all of it was when the first body was stopped (joints
-// hold there: all have gone the same part of their way) along the rest of its way, in a few parts, each as far as the joints can be
-// closed without moving stopped bodies further than they may be. Those that were are held, and where that is no way either, all stay
-// where the last part left them.
+// The path of a projection group: after CCD halts a body, the group moves from its pose at the first impact
+// (joints are closed there, since all bodies have the same fraction of their displacement) along the rest of
+// its displacement, in a few segments. Each ends where the joints can be closed without moving halted bodies
+// further than they may. Halted bodies that would are fixed, and if that does not help, all stay at the end
+// of the last segment.
 //
-// Whoever solves the joints asks for the next motion again and again: next() says what to do where the joints are as far off as they
-// are, and sets velocities that would make a displacement in kProjectionStep seconds; the solver changes them, advance() goes there and
-// leaves none.
+// The solver of the joints calls next() with the present error: it returns what to do, and sets velocities
+// that would make a displacement in kProjectionStep seconds. The solver changes the velocities; advance()
+// applies and clears them.
 #pragma once
 
 #include "rigid/continuous/ccd_joint_groups.h"
@@ -13,10 +14,10 @@
 
 namespace gyre {
 
-// s: short, so that what solvers of speeds leave (rad/s) is little.
+// s: short, so that residuals of velocity solvers (rad/s) matter little.
 constexpr float kProjectionStep = 0.25f;
 
-// Where bodies are meanwhile, and how hard they are to move. By body.
+// Poses and mobility of the bodies meanwhile. By body.
 struct ProjectionBodies {
   std::span<BodyMotion> motion;
   std::span<BodyInertia> inertia;
@@ -27,39 +28,39 @@ class ProjectionPath {
  public:
   enum class Next : std::uint8_t {
     solve,
-    look,  // bodies have been put elsewhere: asks again how far the joints are off
+    measure,  // bodies have been moved: call again with the new error
     done,
   };
 
   ProjectionPath() = default;
-  // Puts all where the first was stopped. `stays`: it goes no further.
+  // Puts all bodies at the first impact. `stop_at_impact`: they go no further.
   ProjectionPath(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
                  bool stop_at_impact);
 
-  // `open`: m or rad, the farthest that a joint or a limit is off.
-  Next next(float open);
+  // `error`: m or rad, the largest error of a joint or limit.
+  Next next(float error);
   void advance();
 
  private:
-  void place_inertia() const;
+  void update_inertia() const;
   void find_displacements() const;
-  int count_parts() const;
+  int count_segments() const;
   void set_velocities(float share) const;
   Next correct();
-  Next end_start(float open);
-  Next begin_part();
-  Next end_part(float open);
-  bool hold_those_moved_far() const;
-  void keep() const;
-  void put_back() const;
+  Next end_start(float error);
+  Next begin_segment();
+  Next end_segment(float error);
+  bool fix_displaced_bodies() const;
+  void save() const;
+  void restore() const;
 
   const RigidWorld* w_ = nullptr;
   std::span<ProjectionMember> members_;
   ProjectionBodies bodies_;
-  bool stays_ = false, goes_ = false, was_put_back_ = false;
-  int part_ = 0, parts_ = 0, corrections_ = 0;
-  float first_open_ = 0.0f;  // m or rad, as the step began
-  float least_ = 0.0f;       // what is off by less is closed
+  bool stop_at_impact_ = false, is_moving_ = false, was_restored_ = false;
+  int segment_ = 0, segments_ = 0, corrections_ = 0;
+  float initial_error_ = 0.0f;  // m or rad, at the beginning of the step
+  float max_error_ = 0.0f;      // smaller errors count as closed
 };
 
 }  // namespace gyre

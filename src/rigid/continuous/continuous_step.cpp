@@ -1,5 +1,5 @@
-// The stage that keeps fast bodies from passing through things: lists those that moved far against their size, lets
-// collision/continuous/continuous sweep them, and takes back what motion they may not keep.
+// The stage of continuous collision detection: lists fast bodies, lets collision/continuous/continuous sweep
+// them, and moves them back to their time of impact.
 #include "collision/continuous/continuous.h"
 #include "math/rotation.h"
 #include "rigid/continuous/ccd_joint_projection.h"
@@ -15,12 +15,13 @@ namespace gyre {
 
 namespace {
 
-// The part of its way that a body in contact keeps whatever the sweep says.
+// The fraction of its displacement that a constrained body keeps in any case.
 constexpr float kMinProgress = 0.2f;
-// How often bodies that follow others by joints are swept in turn.
+// Number of sweeps of bodies that joint projection has moved.
 constexpr int kMaxRounds = 4;
 
-// What was inside as the step began has been told to begin, and its end is seen when the contact is looked at again.
+// A shape that was inside as the step began has had its begin event, and its end is found with the next
+// manifold update.
 void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
   for (const std::uint64_t key : crossings) {
     const std::uint32_t sensor = std::uint32_t(key >> 32), visitor = std::uint32_t(key);
@@ -31,33 +32,33 @@ void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
   }
 }
 
-// The middle of mass as the body will be once its motion is done.
-DVec3 middle_of(const RigidWorld& w, std::uint32_t body) {
-  return w.bodies.places[body].center + DVec3(w.bodies.motion[body].moved);
+// The centre of mass after the step.
+DVec3 center_of_mass_of(const RigidWorld& w, std::uint32_t body) {
+  return w.bodies.places[body].center + DVec3(w.bodies.motion[body].delta_position);
 }
 
-// Takes the speed with which a body goes on into what its core met: first by an impulse without bounce at the point where the
-// core would have gone in, and then, if its middle still goes that way, by one through the middle. What is at rest or asleep is
-// not moved by them.
+// Removes the closing speed of a halted body against its blocker: first by an impulse without restitution at
+// the point where the core would have entered, and then, if the centre still approaches, by one through the
+// centre. Resting and sleeping bodies are not moved.
 class BodyImpulse {
  public:
-  BodyImpulse(RigidWorld& w, std::uint32_t body, const SavedMotion& kept)
-      : w_(w), bodies_{body, kept.other}, normal_(kept.impact_normal), at_(kept.impact_point) {}
+  BodyImpulse(RigidWorld& w, std::uint32_t body, const SavedMotion& result)
+      : w_(w), bodies_{body, result.other}, normal_(result.impact_normal), at_(result.impact_point) {}
 
-  void take() {
-    for (int k = 0; k < 2; ++k) lever_[k] = to_float(at_ - middle_of(w_, bodies_[k]));
-    push();
-    // Through the middle of the body that was stopped.
+  void apply() {
+    for (int k = 0; k < 2; ++k) lever_[k] = to_float(at_ - center_of_mass_of(w_, bodies_[k]));
+    apply_impulse();
+    // Through the centre of the halted body.
     lever_[0] = {};
-    push();
+    apply_impulse();
   }
 
  private:
   bool is_moved(std::uint32_t i) const {
     return is_movable(w_.bodies.flags[i]) && w_.bodies.flags[i].awake != 0;
   }
-  void push() {
-    Vec3 turn[2];
+  void apply_impulse() {
+    Vec3 spin[2];
     float mass = 0.0f, closing = 0.0f;
     for (int k = 0; k < 2; ++k) {
       const std::uint32_t i = bodies_[k];
@@ -65,8 +66,8 @@ class BodyImpulse {
       const Vec3 speed = motion.linear_velocity + cross(motion.angular_velocity, lever_[k]);
       closing += (k == 0 ? 1.0f : -1.0f) * dot(speed, normal_);
       if (!is_moved(i)) continue;
-      turn[k] = w_.bodies.inertia[i].inverse * cross(lever_[k], normal_);
-      mass += motion.inverse_mass + dot(cross(turn[k], lever_[k]), normal_);
+      spin[k] = w_.bodies.inertia[i].inverse * cross(lever_[k], normal_);
+      mass += motion.inverse_mass + dot(cross(spin[k], lever_[k]), normal_);
     }
     if (!(closing > 0.0f) || !(mass > 0.0f)) return;
     for (int k = 0; k < 2; ++k) {
@@ -74,7 +75,7 @@ class BodyImpulse {
       BodyMotion& motion = w_.bodies.motion[bodies_[k]];
       const float impulse = (k == 0 ? -closing : closing) / mass;
       motion.linear_velocity += impulse * motion.inverse_mass * normal_;
-      motion.angular_velocity += impulse * turn[k];
+      motion.angular_velocity += impulse * spin[k];
     }
   }
 
@@ -85,9 +86,11 @@ class BodyImpulse {
   Vec3 lever_[2];
 };
 
-// A bound on the way that the farthest points of a body go in the step as seen from another one: that of its middle, and what
-// its turning against the other adds. (A rotation differs from its first order by half the angle squared at most.)
-float way_against(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame, std::uint32_t body) {
+// A bound on the displacement of the farthest points of a body in the step relative to another body: that of
+// its centre, plus the effect of relative rotation. (A rotation differs from its first order by at most half
+// the angle squared.)
+float relative_displacement_bound(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame,
+                                  std::uint32_t body) {
   const Sweep own = sweep_of_body(w.bodies, body);
   const Vec3 apart = difference(w.bodies.places[body].center, w.bodies.places[seen_from].center);
   return length(own.translation - frame.translation - cross(frame.rotation, apart)) +
@@ -95,8 +98,9 @@ float way_against(const RigidWorld& w, std::uint32_t seen_from, const Sweep& fra
          length(own.rotation - frame.rotation) * w.bodies.masses[body].reach;
 }
 
-// What moves by itself runs over what stands in its way, however slow that is: such bodies are fast against it, unless they go
-// along. Where one of the two is a sensor and nothing can stop either, both are looked at for what they cross.
+// Kinematic bodies run over bodies in their path, however slowly: such bodies are fast relative to them,
+// unless they move along. If one of the two is a sensor and nothing can halt either, both are tested for
+// crossings.
 class Overrun {
  public:
   Overrun(const RigidWorld& w, ContinuousScratch& scratch) : w_(w), scratch_(scratch) {}
@@ -107,12 +111,12 @@ class Overrun {
     for (const std::uint32_t i : w_.bodies.awake) {
       if (w_.bodies.flags[i].type != BodyType::kinematic || w_.bodies.shapes[i].empty()) continue;
       const Sweep sweep = sweep_of_body(w_.bodies, i);
-      if (sweep.translation != Vec3{} || sweep.rotation != Vec3{}) add_those_before(i, sweep);
+      if (sweep.translation != Vec3{} || sweep.rotation != Vec3{}) add_bodies_in_path(i, sweep);
     }
   }
 
  private:
-  void add_those_before(std::uint32_t i, const Sweep& sweep) {
+  void add_bodies_in_path(std::uint32_t i, const Sweep& sweep) {
     for (const ShapeId id : w_.bodies.shapes[i]) {
       const ColliderShape& shape = w_.shapes.colliders[id.index];
       if (shape.shape.kind == ShapeKind::plane) continue;
@@ -125,7 +129,8 @@ class Overrun {
         const bool surface = !is_convex(shape.shape.kind) && is_convex(w_.shapes.colliders[found].shape.kind);
         if (surface && own.sensor != other.sensor) scratch_.gates.push_back({found, id.index});
         if (moves) {
-          if (way_against(w_, i, sweep, other.body) > kFastShare * w_.bodies.masses[other.body].size)
+          if (relative_displacement_bound(w_, i, sweep, other.body) >
+              kFastShare * w_.bodies.masses[other.body].size)
             add(other.body, false);
         } else if (own.sensor != other.sensor) {
           add(other.body, true);
@@ -151,35 +156,36 @@ class Overrun {
   bool any_ = false;
 };
 
-std::size_t count_stopped_with_joints(const RigidWorld& w, const ContinuousScratch& scratch) {
+std::size_t count_halted_with_joints(const RigidWorld& w, const ContinuousScratch& scratch) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < scratch.fast.size(); ++k)
     count += scratch.kept[k].fraction < 1.0f && !joints_of(w.bodies, scratch.fast[k].body).empty() ? 1 : 0;
   return count;
 }
 
-// Of two stopped bodies with a joint between them both keep what the one that is stopped first keeps.
-void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<SavedMotion> kept,
+// Two halted bodies with a joint between them both keep the smaller fraction.
+void halt_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<SavedMotion> results,
                    Arena& arena) {
   constexpr int kMaxPasses = 16;
-  const std::span<std::uint32_t> place = arena.make<std::uint32_t>(w.bodies.motion.size());
-  for (std::uint32_t& p : place) p = kNoIndex;
-  for (std::uint32_t k = 0; k < kept.size(); ++k) {
-    if (kept[k].fraction < 1.0f) place[scratch.fast[k].body] = k;
+  const std::span<std::uint32_t> index = arena.make<std::uint32_t>(w.bodies.motion.size());
+  for (std::uint32_t& p : index) p = kNoIndex;
+  for (std::uint32_t k = 0; k < results.size(); ++k) {
+    if (results[k].fraction < 1.0f) index[scratch.fast[k].body] = k;
   }
   bool changed = true;
   for (int pass = 0; pass < kMaxPasses && changed; ++pass) {
     changed = false;
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      if (!(kept[k].fraction < 1.0f)) continue;
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      if (!(results[k].fraction < 1.0f)) continue;
       const std::int32_t body = std::int32_t(scratch.fast[k].body);
       for (const std::uint32_t slot : joints_of(w.bodies, std::uint32_t(body))) {
         const JointRecord& joint = w.joints.records[slot];
         const std::int32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
-        if (other == kNoBody || place[std::size_t(other)] == kNoIndex || !constrains_position(w, slot)) continue;
-        const float others = kept[place[std::size_t(other)]].fraction;
-        changed = changed || others < kept[k].fraction;
-        kept[k].fraction = min(kept[k].fraction, others);
+        if (other == kNoBody || index[std::size_t(other)] == kNoIndex || !constrains_position(w, slot))
+          continue;
+        const float others = results[index[std::size_t(other)]].fraction;
+        changed = changed || others < results[k].fraction;
+        results[k].fraction = min(results[k].fraction, others);
       }
     }
   }
@@ -188,23 +194,25 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
 void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   scratch.fast.clear();
-  const auto goes_fast = [&](std::uint32_t n) {
+  const auto is_moving_fast = [&](std::uint32_t n) {
     const std::uint32_t i = w.bodies.awake[n];
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
-    return is_fast(motion.moved, motion.turned, mass.reach, mass.size) && is_movable(w.bodies.flags[i]) &&
-           !w.bodies.shapes[i].empty();
+    return is_fast(motion.delta_position, motion.delta_rotation, mass.reach, mass.size) &&
+           is_movable(w.bodies.flags[i]) && !w.bodies.shapes[i].empty();
   };
-  for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), goes_fast).list) {
+  for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), is_moving_fast).list) {
     const std::uint32_t i = w.bodies.awake[n];
-    // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
-    const float least = w.bodies.flags[i].touched != 0 ? kMinProgress : 0.0f;
-    scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, joints_of(w.bodies, i).empty(), false});
+    // A body with contacts must not be halted in the air: it keeps a part of its displacement, and the
+    // contacts respond.
+    const float min_fraction = w.bodies.flags[i].touched != 0 ? kMinProgress : 0.0f;
+    scratch.fast.push_back(
+        {i, w.bodies.flags[i].continuous != 0, min_fraction, joints_of(w.bodies, i).empty(), false});
   }
   Overrun(w, scratch).add_all();
 }
 
-// By shape: whether a contact may stop it.
+// By shape: whether a contact with it may be a blocker.
 void mark_near_blockers(const RigidWorld& w, Bitset& near) {
   near.resize(w.shapes.colliders.size());
   near.reset_all();
@@ -216,8 +224,8 @@ void mark_near_blockers(const RigidWorld& w, Bitset& near) {
   });
 }
 
-// Leaves those out that stay in their fat boxes, in which nothing is that may stop them: most of what falls.
-void leave_out_free(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
+// Removes bodies that stay in fat boxes without any blocker: most falling bodies.
+void remove_unblocked(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   Array<FastBody>& fast = scratch.fast;
   const std::span<std::uint32_t> bodies = arena.make<std::uint32_t>(fast.size());
@@ -233,10 +241,10 @@ void leave_out_free(const RigidWorld& w, ContinuousScratch& scratch, Arena& aren
       if (scratch.near_blockers.test(id.index)) return false;
     return true;
   };
-  std::size_t kept = 0;
+  std::size_t count = 0;
   for (std::size_t k = 0; k < fast.size(); ++k)
-    if (!is_free(k)) fast[kept++] = fast[k];
-  fast.resize(kept);
+    if (!is_free(k)) fast[count++] = fast[k];
+  fast.resize(count);
 }
 
 void list_moved_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
@@ -248,9 +256,9 @@ void list_moved_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
   }
 }
 
-// What the listed bodies keep of their ways: into scratch.kept.
+// Sweeps the listed bodies; results go to scratch.kept.
 void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
-  // The shapes of each fast body as plain indices, in a place that is found by body.
+  // The shapes of each fast body as plain indices, by body.
   const std::span<std::span<const std::uint32_t>> shapes =
       arena.make<std::span<const std::uint32_t>>(w.bodies.motion.size());
   for (const FastBody& fast : scratch.fast) {
@@ -261,8 +269,8 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
   }
   const auto sweep_of = [&](std::uint32_t body) { return sweep_of_body(w.bodies, body); };
   const auto shapes_of = [&](std::uint32_t body) { return shapes[body]; };
-  const auto passes = [&](std::uint32_t shape, Vec3 way) { return lets_pass(w, shape, way); };
-  const FunctionRef<bool(std::uint32_t shape, Vec3 way)> one_way(passes);
+  const auto passes = [&](std::uint32_t shape, Vec3 direction) { return lets_pass(w, shape, direction); };
+  const FunctionRef<bool(std::uint32_t shape, Vec3 direction)> one_way(passes);
   const KnownContacts contacts{w.contacts, w.touches.ccd_blockers, scratch.near_blockers};
   const ContinuousInput input{w.shapes.colliders,
                               w.shapes.proxies,
@@ -277,9 +285,10 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
 }
 
-// The angular velocity of a body that is turned back on its way, as its angular momentum asks for there: of what turns freely that is the one
-// that it had. It never is more than its energy allows: what contacts gave on the way would turn a slender body much faster where it was
-// before, and a stick that whirls along the ground would gain energy each time that it is stopped.
+// The angular velocity of a body that was moved back, from its angular momentum at the earlier orientation;
+// for free rotation that is the velocity it had. Its energy must not grow: impulses of contacts on the way
+// would spin a slender body much faster at its earlier orientation, and a fast-spinning stick on the ground
+// would gain energy each time it is halted.
 Vec3 spin_at(const BodyMass& mass, const BodyFlags& flags, Quat from, Quat to, Vec3 spin) {
   if (mass.isotropic != 0 || flags.locked_angular != 0 || spin == Vec3{}) return spin;
   const Vec3 own_spin = rotate_inverse(from, spin), own_momentum = mass.inertia * own_spin;
@@ -290,30 +299,30 @@ Vec3 spin_at(const BodyMass& mass, const BodyFlags& flags, Quat from, Quat to, V
   return rotate(to, share * turned);
 }
 
-// Puts the listed bodies where they stay. Returns those that were stopped and hang on joints.
-std::span<const HaltedBody> remove_error(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
-  const std::span<HaltedBody> stopped = arena.make<HaltedBody>(count_stopped_with_joints(w, scratch));
-  std::size_t stopped_count = 0;
-  if (!stopped.empty()) stop_together(w, scratch, scratch.kept, arena);
+// Moves the halted bodies back. Returns those with joints.
+std::span<const HaltedBody> halt_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
+  const std::span<HaltedBody> halted = arena.make<HaltedBody>(count_halted_with_joints(w, scratch));
+  std::size_t halted_count = 0;
+  if (!halted.empty()) halt_together(w, scratch, scratch.kept, arena);
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
-    const SavedMotion& kept = scratch.kept[k];
-    if (!(kept.fraction < 1.0f)) continue;
+    const SavedMotion& result = scratch.kept[k];
+    if (!(result.fraction < 1.0f)) continue;
     BodyMotion& motion = w.bodies.motion[i];
     if (!joints_of(w.bodies, i).empty())
-      stopped[stopped_count++] = {i, kept.fraction, motion.moved, motion.turned};
-    const Quat stopped_at = pose_at(sweep_of_body(w.bodies, i), double(kept.fraction)).orientation;
+      halted[halted_count++] = {i, result.fraction, motion.delta_position, motion.delta_rotation};
+    const Quat impact_orientation = pose_at(sweep_of_body(w.bodies, i), double(result.fraction)).orientation;
     const Quat end = w.bodies.orientations[i];
     w.bodies.orientations[i] =
-        kept.rotation == Vec3{} ? stopped_at : integrate_rotation(stopped_at, kept.rotation);
+        result.rotation == Vec3{} ? impact_orientation : integrate_rotation(impact_orientation, result.rotation);
     motion.angular_velocity = spin_at(w.bodies.masses[i], w.bodies.flags[i], end, w.bodies.orientations[i],
                                       motion.angular_velocity);
-    motion.moved = kept.fraction * motion.moved + kept.slide;
-    motion.turned = kept.fraction * motion.turned + kept.rotation;
+    motion.delta_position = result.fraction * motion.delta_position + result.slide;
+    motion.delta_rotation = result.fraction * motion.delta_rotation + result.rotation;
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
-    if (!(kept.impact_normal == Vec3{})) BodyImpulse(w, i, kept).take();
+    if (!(result.impact_normal == Vec3{})) BodyImpulse(w, i, result).apply();
   }
-  return stopped;
+  return halted;
 }
 
 }  // namespace
@@ -323,17 +332,17 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const SolverKe
   list_fast_bodies(w, scratch, arena, tasks);
   if (!scratch.fast.empty()) {
     mark_near_blockers(w, scratch.near_blockers);
-    leave_out_free(w, scratch, arena, tasks);
+    remove_unblocked(w, scratch, arena, tasks);
   }
   if (scratch.fast.empty() && scratch.gates.empty()) return;
   for (int round = 1; round <= kMaxRounds; ++round) {
     sweep_fast_bodies(w, scratch, arena, tasks);
     if (round == 1) report_crossings(w, scratch.collision.crossings());
-    const std::span<const HaltedBody> stopped = remove_error(w, scratch, arena);
-    if (stopped.empty()) return;
-    // What hangs on those that were stopped comes after, on ways that have not been looked at.
+    const std::span<const HaltedBody> halted = halt_bodies(w, scratch, arena);
+    if (halted.empty()) return;
+    // Bodies connected to the halted ones follow, along paths that were not tested yet.
     scratch.moved.clear();
-    project_joints_after_ccd(w, stopped, round == kMaxRounds, kernels, tasks, scratch.moved, arena);
+    project_joints_after_ccd(w, halted, round == kMaxRounds, kernels, tasks, scratch.moved, arena);
     list_moved_bodies(w, scratch);
     if (scratch.fast.empty()) return;
   }

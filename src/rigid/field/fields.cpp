@@ -10,8 +10,9 @@ namespace {
 
 BodyStance stance_of(const RigidWorld& w, std::uint32_t body) {
   const BodyMotion& motion = w.bodies.motion[body];
-  return {w.bodies.places[body].center + motion.moved, normalized(to_double(w.bodies.orientations[body])),
-          DVec3(motion.linear_velocity), DVec3(motion.angular_velocity)};
+  return {w.bodies.places[body].center + motion.delta_position,
+          normalized(to_double(w.bodies.orientations[body])), DVec3(motion.linear_velocity),
+          DVec3(motion.angular_velocity)};
 }
 
 // Mass and world inertia.

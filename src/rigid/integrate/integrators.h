@@ -1,10 +1,12 @@
-// Moving bodies. Those that no constraint acts on fly: the whole step at once. The others are moved by the motion kernels
-// (solver/motion/motion_kernel.h), sub-step by sub-step between the constraints; here is what they do not do: the description of a
-// body for them, rotations that are fast or bound to axes, and orientations at the end of the step.
+// Integration of bodies. Free bodies move over the whole step at once. Constrained bodies are moved by the
+// motion kernels (solver/motion/motion_kernel.h), sub-step by sub-step between the constraints. This unit
+// does what the kernels do not: their input, rotations that are fast or have locked axes, and orientations at
+// the end of the step.
 //
-// Semi-implicit Euler (symplectic: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", I.1): a kick by
-// forces and constraints at the present place, then the exact drift of a free body: x += h v, and torque-free rotation
-// for the orientation. The kick changes momentum, the drift keeps it.
+// Semi-implicit Euler (symplectic: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", I.1):
+// velocities change by forces and constraints at the present pose, then the body drifts freely and exactly: x
+// += h v, and torque-free rotation for the orientation. The first part changes momentum, the drift conserves
+// it.
 #pragma once
 
 #include "rigid/store/body_store.h"
@@ -15,39 +17,42 @@
 
 namespace gyre {
 
-// The sub-steps of a step and what acts in all of them.
+// The sub-steps of a step and the forces that all of them share.
 struct Motions {
   int count = 1;
   float substep = 0.0f;
   Vec3 gravity;
 };
 
-// The fastest turn in a sub-step (rad) that the kernels make. Their error is of order angle^3 / 12 where there is a
-// gyroscopic torque: below a float's resolution. Without one it is that of how fast the axis itself turns.
-constexpr float kKernelAngle = 0.01f;
-constexpr float kKernelAngleIsotropic = 0.1f;
+// The largest rotation in a sub-step (rad) by the kernels. Their error is of order angle^3 / 12 with
+// gyroscopic torque: below the resolution of floats. Without it, the error is that of the rotation of the
+// axis.
+constexpr float kMaxKernelAngle = 0.01f;
+constexpr float kMaxKernelAngleIsotropic = 0.1f;
 
-// Whether a body spins so fast, or is so bound, that the motion kernels leave its rotation to rotate_exactly.
+// True if a body spins too fast, or has locked axes, so that rotate_exactly rotates it instead of the motion
+// kernels.
 inline bool needs_exact_rotation(const BodyStore& bodies, std::uint32_t body, float substep) {
   const BodyFlags& flags = bodies.flags[body];
   if (flags.type != BodyType::dynamic || flags.locked_angular != 0) return true;
-  const float most = bodies.masses[body].isotropic != 0 ? kKernelAngleIsotropic : kKernelAngle;
-  return !(substep * length(bodies.motion[body].angular_velocity) <= most);
+  const float max_angle = bodies.masses[body].isotropic != 0 ? kMaxKernelAngleIsotropic : kMaxKernelAngle;
+  return !(substep * length(bodies.motion[body].angular_velocity) <= max_angle);
 }
 
-// A body of which constraints are made, as the motion kernels want it. `shown`: somebody looks at its place in each sub-step.
-MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool shown);
+// The input of the motion kernels for a constrained body. `pose_read`: its pose is read in each sub-step.
+MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions,
+                          bool pose_read);
 
-// A whole step of bodies that no constraint acts on, kinematic ones among them.
+// A whole step of free bodies, kinematic ones among them.
 void integrate_free_bodies(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,
                            const RotationKernels& kernels);
 
-// The rotation of a sub-step of bodies that turn alone.
+// The rotation in a sub-step of bodies that need exact rotation.
 void rotate_exactly(BodyStore& bodies, std::span<const std::uint32_t> list, float substep,
                     const RotationKernels& kernels);
 
-// At the end of a step: orientations and world inertia of the bodies of which constraints were made. `pushes` (rotation
-// vectors, one for each of `moved`) are the turns by which overlap was pushed apart.
+// At the end of a step: orientations and world inertia of constrained bodies. `pushes`: rotation vectors of
+// pushout, one for each of `moved`.
 void apply_rotations(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes,
                      const RotationKernels& kernels);
 

@@ -12,13 +12,13 @@ struct EndMotion {
 
 EndMotion motion_of(const SmoothSystem& system, const SpringEnd& end, std::span<const SmoothState> states,
                     double ahead) {
-  if (end.place < 0) return {end.point + ahead * end.velocity, end.velocity, {}};
-  const SmoothState& s = states[std::size_t(end.place)];
+  if (end.index < 0) return {end.point + ahead * end.velocity, end.velocity, {}};
+  const SmoothState& s = states[std::size_t(end.index)];
   const DVec3 lever = rotate(s.q, end.arm);
-  return {s.x + lever, s.v + cross(spin_of(system.bodies[std::size_t(end.place)], s), lever), lever};
+  return {s.x + lever, s.v + cross(spin_of(system.bodies[std::size_t(end.index)], s), lever), lever};
 }
 
-// Torques of bodies with locked axes become what they do to these.
+// Projects torques of bodies with locked axes to the free ones, as angular accelerations.
 DVec3 on_free_axes(const SmoothBody& body, const SmoothState& s, DVec3 torque) {
   if (body.locked_angular == 0) return torque;
   const Quat q = to_float(s.q);
@@ -52,10 +52,10 @@ DVec3 momentum_of(const SmoothBody& body, const SmoothState& s, DVec3 spin) {
 }
 
 SpringForce spring_force(const SmoothSpring& spring, DVec3 a, DVec3 b, DVec3 velocity_a, DVec3 velocity_b) {
-  const DVec3 way = b - a;
-  const double size = length(way);
+  const DVec3 offset = b - a;
+  const double size = length(offset);
   if (!(size > 0.0)) return {{}, size};
-  const DVec3 along = way / size;
+  const DVec3 along = offset / size;
   const double speed = dot(velocity_b - velocity_a, along);
   return {(-(spring.stiffness * (size - spring.rest) + spring.damping * speed)) * along, size};
 }
@@ -66,7 +66,7 @@ void find_rates(const SmoothSystem& system, std::span<const SmoothState> states,
   for (std::size_t i = 0; i < states.size(); ++i) {
     const SmoothBody& body = system.bodies[i];
     const SmoothState& s = states[i];
-    rates[i] = {body.geometric_stiffness, body.torque};
+    rates[i] = {body.acceleration, body.torque};
     if (body.fields.empty()) continue;
     const BodyStance stance{s.x, s.q, s.v, spin_of(body, s)};
     const Vec6 force = force_of_fields(w, body.body, body.fields, stance, system.begin + time);
@@ -74,20 +74,20 @@ void find_rates(const SmoothSystem& system, std::span<const SmoothState> states,
     rates[i].torque += force.angular();
   }
   for (SmoothSpring& spring : system.springs) {
-    const double ahead = time - system.part;
+    const double ahead = time - system.substep_begin;
     const EndMotion a = motion_of(system, spring.a, states, ahead),
                     b = motion_of(system, spring.b, states, ahead);
     const SpringForce on_b = spring_force(spring, a.point, b.point, a.velocity, b.velocity);
     spring.impulse += weight * on_b.force;
     spring.length = on_b.length;
-    if (spring.a.place >= 0) {
-      Rates& r = rates[std::size_t(spring.a.place)];
-      r.acceleration += (-1.0 / system.bodies[std::size_t(spring.a.place)].mass) * on_b.force;
+    if (spring.a.index >= 0) {
+      Rates& r = rates[std::size_t(spring.a.index)];
+      r.acceleration += (-1.0 / system.bodies[std::size_t(spring.a.index)].mass) * on_b.force;
       r.torque += cross(on_b.force, a.lever);
     }
-    if (spring.b.place >= 0) {
-      Rates& r = rates[std::size_t(spring.b.place)];
-      r.acceleration += (1.0 / system.bodies[std::size_t(spring.b.place)].mass) * on_b.force;
+    if (spring.b.index >= 0) {
+      Rates& r = rates[std::size_t(spring.b.index)];
+      r.acceleration += (1.0 / system.bodies[std::size_t(spring.b.index)].mass) * on_b.force;
       r.torque += cross(b.lever, on_b.force);
     }
   }

@@ -1,17 +1,18 @@
-// The smooth part of motion: bodies that no contact or joint acts on, with the forces that depend on where and how fast they are,
-// as one system of ordinary differential equations. For integrators that look at forces at several stages
-// (rigid/integrate/smooth_schemes.h); the default one does not come here.
+// Smooth motion: free bodies under forces that depend on pose and velocity, as a system of ordinary
+// differential equations. For integrators with several stages (rigid/integrate/smooth_schemes.h); the default
+// integrator does not use it.
 //
-// A system holds bodies that springs couple, or one body alone. Its state is place and orientation, and as velocities v and the
-// angular momentum L about the centre of mass (world frame), since  x' = v, m v' = F, q' = 1/2 w q, w = I^-1(q) L, L' = T.
-// A body that may not turn about some axes has its angular velocity in the place of L: what holds it takes up the rest.
+// A system holds bodies that springs connect, or a single body. Its state is position and orientation, and as
+// velocities v and the angular momentum L about the centre of mass (world frame): x' = v, m v' = F, q' = 1/2
+// w q, w = I^-1(q) L, L' = T. A body with locked angular axes has its angular velocity in the place of L: the
+// locks take up the rest.
 //
-// In: the world as the step began, the state of the system. Out: forces. In double throughout: velocities and places become
-// floats when the step is over.
+// In: the world as the step began, the state of the system. Out: forces. Everything is double; velocities and
+// poses become floats after the step.
 #pragma once
 
-#include "rigid/integrate/free_rotation.h"
 #include "rigid/field/medium.h"
+#include "solver/motion/torque_free_rotation.h"
 
 #include <span>
 
@@ -21,29 +22,29 @@ struct SmoothState {
   DVec3 x;  // m, centre of mass, world
   DQuat q;  // world_from_body
   DVec3 v;  // m/s
-  DVec3 l;  // kg m^2/s, world; rad/s of a body with locked axes
+  DVec3 l;  // kg m^2/s, world; rad/s for a body with locked axes
 };
 
-// What stays the same in a step.
+// Constants of a body in a step.
 struct SmoothBody {
   std::uint32_t body = 0;
   double mass = 1.0;
   Tensor inertia, inverse_inertia;                     // body frame
-  DVec3 geometric_stiffness;                           // m/s^2: gravity, and forces that the user gave
-  DVec3 torque;                                        // N m, that the user gave
+  DVec3 acceleration;                                  // m/s^2: gravity, and forces of the user
+  DVec3 torque;                                        // N m, of the user
   double linear_damping = 0.0, angular_damping = 0.0;  // 1/s
-  double reach = 0.0;                                  // m
+  double bounding_radius = 0.0;                        // m
   std::uint8_t locked_linear = 0, locked_angular = 0;
-  std::span<const std::uint32_t> fields{};  // that act on it: slots
-  SmoothState start;                        // as the step began
+  std::span<const std::uint32_t> fields{};  // slots of the fields that act on it
+  SmoothState start;                        // at the beginning of the step
 };
 
-// One end of a spring: a body of the system, or a point that is carried along by what is none of it.
+// One end of a spring: a body of the system, or a point on another body that carries it.
 struct SpringEnd {
-  int place = -1;          // in the system; -1: carried
-  std::int32_t body = -1;  // kNoBody: the fixed world
+  int index = -1;          // in the system; -1: carried
+  std::int32_t body = -1;  // kNoBody: the static world
   DVec3 arm;               // from the centre of mass, body frame
-  DVec3 point, velocity;   // carried: as the part began, world
+  DVec3 point, velocity;   // carried: at the beginning of the sub-step, world
 };
 
 // Hooke's spring with a damper, between two points.
@@ -51,34 +52,35 @@ struct SmoothSpring {
   std::uint32_t joint = 0;
   double stiffness = 0.0, damping = 0.0, rest = 0.0;  // N/m, N s/m, m
   SpringEnd a, b;
-  DVec3 impulse;        // N s, on b, of the part: what the scheme made of the forces at its stages
+  DVec3 impulse;        // N s, on b, in the sub-step: the scheme's sum of forces at its stages
   DVec3 total;          // of the step
-  double length = 0.0;  // m, when last looked at
+  double length = 0.0;  // m, at the last evaluation
 };
 
 struct Rates {
   DVec3 acceleration;  // m/s^2
-  DVec3 torque;        // N m; rad/s^2 of a body with locked axes
+  DVec3 torque;        // N m; rad/s^2 for a body with locked axes
 };
 
 struct SmoothSystem {
   const RigidWorld* world = nullptr;
   std::span<SmoothBody> bodies{};
   std::span<SmoothSpring> springs{};
-  bool carried = false;  // a spring has an end on something that moves and is none of the system
+  bool carried = false;  // a spring has an end on a moving body outside of the system
   bool damped = false;   // forces depend on velocities
-  double begin = 0.0;    // s, as the step began: for fields that change by themselves
-  double part = 0.0;     // s after that, as the part began: since then carried points move
+  double begin = 0.0;    // s, at the beginning of the step, for fields that vary in time
+  double substep_begin = 0.0;  // s after that, at the beginning of the sub-step, from where carried points
+                               // move
 };
 
 // World angular velocity.
 DVec3 spin_of(const SmoothBody& body, const SmoothState& s);
-// The l that goes with an angular velocity.
+// The l for an angular velocity.
 DVec3 momentum_of(const SmoothBody& body, const SmoothState& s, DVec3 spin);
 DVec3 without_axes(DVec3 v, std::uint8_t locked);
 
-// Forces at a state, `time` after the step began (s). Springs add `weight` (s) times theirs to their impulse. With `damping` that
-// of the bodies is among the forces.
+// Forces at a state, `time` after the beginning of the step (s). Springs add their force times `weight` (s)
+// to their impulse. `damping`: includes the damping of bodies.
 void find_rates(const SmoothSystem& system, std::span<const SmoothState> states, double time, double weight,
                 bool damping, std::span<Rates> rates);
 

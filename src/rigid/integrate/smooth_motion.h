@@ -1,13 +1,13 @@
-// Bodies that no contact or joint acts on, where the world's integrator or springs are not the default: they are parted into
-// systems that springs couple, and moved by the schemes of rigid/integrate/smooth_schemes.h.
+// Free bodies in worlds whose integrator or springs are not the default: they are divided into systems that
+// springs connect, and moved by the schemes of rigid/integrate/smooth_schemes.h.
 //
-// A system that nothing else moves does the whole step at once; where the time plan says so with as many parts as keep the
-// estimated error below the tolerance: the step is done with n parts and with 2 n, whose difference tells the error of the latter
-// (L. F. Richardson), until that is small enough. A system with a spring to a body that constraints act on moves part by part
-// with it; the other end takes the impulse that the scheme made of the spring, with the opposite sign.
+// A system that nothing else moves takes the whole step at once. With error control it uses as many sub-steps
+// as keep the estimated error below the tolerance: the difference between n and 2 n sub-steps gives the error
+// of the latter (L. F. Richardson). A system with a spring to a constrained body moves sub-step by sub-step
+// with it; the other end gets the scheme's impulse of the spring, with the opposite sign.
 //
-// In: a batch of islands after constraints were gathered (BodyFlags::touched says who is free). Out: motion of the free bodies,
-// velocities of the others, sums of the springs, and Verlet's last moves.
+// In: a batch of islands after constraints were gathered (BodyFlags::touched marks constrained bodies). Out:
+// motion of the free bodies, velocities of the others, sums of the springs, and Verlet's last moves.
 #pragma once
 
 #include "rigid/integrate/smooth_schemes.h"
@@ -15,7 +15,7 @@
 
 namespace gyre {
 
-// Whether the joint is a spring that is a force to the integrator and none of the solver's rows.
+// True if the joint is a spring that is a force of the integrator instead of a solver row.
 bool is_explicit_spring(const RigidWorld& w, std::uint32_t joint);
 
 struct SmoothMotion {
@@ -23,23 +23,25 @@ struct SmoothMotion {
   MotionSettings settings;
   std::span<SmoothSystem> systems{};
   std::span<SchemeRoom> rooms{};         // of each
-  std::span<SchemeRoom> second_rooms{};  // for the same step with twice the parts; empty if parts are fixed
-  std::span<std::uint32_t> parts_used{};
+  std::span<SchemeRoom> second_rooms{};  // for the same step with twice the sub-steps; empty without error
+                                         // control
+  std::span<std::uint32_t> substeps_used{};
   std::span<double> errors{};       // m, estimated, of the step
   std::span<SmoothSpring> loose{};  // with no end in a system
-  int parts = 0;
-  double h = 0.0;     // s, a part
-  double time = 0.0;  // s since the step began, of the part at hand
+  int substeps = 0;
+  double h = 0.0;     // s, a sub-step
+  double time = 0.0;  // s since the step began, of the present sub-step
   bool any_carried = false;
 
   int count() const { return int(systems.size()); }
 };
 
-// All free bodies of the batch, also kinematic ones with springs: those are marked as shown to the solver.
-SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                                int parts, float h, Arena& arena);
+// All free bodies of the batch, also kinematic ones with springs: these are marked as read in each sub-step.
+SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch,
+                                std::span<const std::uint32_t> body_indices, int substeps, float h,
+                                Arena& arena);
 
-// The stages of systems; a block is a system.
+// Stages of the sub-step program; a block is a system.
 // Once, before all sub-steps, and after them.
 void move_spring_systems(const SmoothMotion& motion, int begin, int end);
 void finish_spring_systems(const SmoothMotion& motion, int begin, int end);
@@ -48,7 +50,7 @@ void finish_spring_systems(const SmoothMotion& motion, int begin, int end);
 void move_coupled_spring_systems(const SmoothMotion& motion, int begin, int end);
 void apply_spring_impulses(SmoothMotion& motion, int begin, int end);
 
-// What springs gave, into their joints; what the plan did, into the report.
+// Stores the impulses of springs in their joints, and the error control in the report.
 void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepStats& report);
 
 }  // namespace gyre

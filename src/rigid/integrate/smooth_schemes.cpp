@@ -6,23 +6,24 @@ namespace gyre {
 
 namespace {
 
-// No body turns farther than this in a part, rad: beyond it a rotation vector is none.
+// rad: bound on the rotation of a body in a sub-step; rotation vectors are undefined beyond it.
 constexpr double kMaxHalfStepRotation = 3.0;
-// Verlet's implicit turn: each round gains the factor h w / 2; what it cannot reach at large turns no scheme of order 2 can.
-constexpr int kTurnRounds = 24;
-constexpr double kTurnReached = 1.0e-15;
-// Rounds for the velocity within forces that depend on it: each gains an order.
+// Verlet's implicit rotation: each round gains the factor h w / 2. Rotations too large to converge are beyond
+// any scheme of order 2.
+constexpr int kRotationRounds = 24;
+constexpr double kRotationTolerance = 1.0e-15;
+// Rounds for velocities within forces that depend on them: each gains an order.
 constexpr int kVelocityRounds = 3;
 
-DQuat turned_by(DQuat q, DVec3 turn) { return normalized(exponential_map(turn) * q); }
+DQuat rotated_by(DQuat q, DVec3 rotation) { return normalized(exponential_map(rotation) * q); }
 
-void turn(SchemeRoom& room, std::size_t i, DVec3 by) {
-  room.states[i].q = turned_by(room.states[i].q, by);
-  room.turned[i] += by;
+void rotate(SchemeRoom& room, std::size_t i, DVec3 by) {
+  room.states[i].q = rotated_by(room.states[i].q, by);
+  room.delta_rotation[i] += by;
 }
 
 // The exact step of v' = a - c v.
-void kick(DVec3& v, DVec3 a, double damping, double h) {
+void integrate_velocity(DVec3& v, DVec3 a, double damping, double h) {
   if (!(damping > 0.0)) {
     v += h * a;
     return;
@@ -31,21 +32,21 @@ void kick(DVec3& v, DVec3 a, double damping, double h) {
   v = v + (share / damping) * a + (-share) * v;
 }
 
-void kick(const SmoothSystem& system, SchemeRoom& room, double h) {
+void integrate_velocities(const SmoothSystem& system, SchemeRoom& room, double h) {
   for (std::size_t i = 0; i < room.states.size(); ++i) {
     const SmoothBody& body = system.bodies[i];
-    kick(room.states[i].v, room.rates[i].acceleration, body.linear_damping, h);
-    kick(room.states[i].l, room.rates[i].torque, body.angular_damping, h);
+    integrate_velocity(room.states[i].v, room.rates[i].acceleration, body.linear_damping, h);
+    integrate_velocity(room.states[i].l, room.rates[i].torque, body.angular_damping, h);
   }
 }
 
-void turn_at_constant_momentum(const SmoothBody& body, SchemeRoom& room, std::size_t i, double h) {
+void rotate_at_constant_momentum(const SmoothBody& body, SchemeRoom& room, std::size_t i, double h) {
   SmoothState& s = room.states[i];
   const DVec3 spin = spin_of(body, s);
   const double angle = h * length(spin);
-  if (body.locked_angular != 0 || !(angle > 0.0)) return turn(room, i, h * spin);
-  const DQuat next = normalized(turn_at_momentum(s.q, s.l, body.inverse_inertia, h, angle));
-  room.turned[i] += logarithm_map(next * conjugate(s.q));
+  if (body.locked_angular != 0 || !(angle > 0.0)) return rotate(room, i, h * spin);
+  const DQuat next = normalized(rotate_at_momentum(s.q, s.l, body.inverse_inertia, h, angle));
+  room.delta_rotation[i] += logarithm_map(next * conjugate(s.q));
   s.q = next;
 }
 
@@ -53,17 +54,17 @@ void step_explicit_euler(const SmoothSystem& system, SchemeRoom& room, double ti
   find_rates(system, room.states, time, h, false, room.rates);
   for (std::size_t i = 0; i < room.states.size(); ++i) {
     room.states[i].x += h * room.states[i].v;
-    turn(room, i, h * spin_of(system.bodies[i], room.states[i]));
+    rotate(room, i, h * spin_of(system.bodies[i], room.states[i]));
   }
-  kick(system, room, h);
+  integrate_velocities(system, room, h);
 }
 
 void step_semi_implicit_euler(const SmoothSystem& system, SchemeRoom& room, double time, double h) {
   find_rates(system, room.states, time, h, false, room.rates);
-  kick(system, room, h);
+  integrate_velocities(system, room, h);
   for (std::size_t i = 0; i < room.states.size(); ++i) {
     room.states[i].x += h * room.states[i].v;
-    turn_at_constant_momentum(system.bodies[i], room, i, h);
+    rotate_at_constant_momentum(system.bodies[i], room, i, h);
   }
 }
 
@@ -112,7 +113,7 @@ void step_rk4(const SmoothSystem& system, SchemeRoom& room, double time, double 
   for (std::size_t i = 0; i < count; ++i) {
     SmoothState& s = room.states[i];
     const DQuat next = normalized(along(s.q, room.sum_q[i], share));
-    room.turned[i] += logarithm_map(next * conjugate(s.q));
+    room.delta_rotation[i] += logarithm_map(next * conjugate(s.q));
     s.q = next;
     s.x += share * room.drift[i];
     s.v += share * room.sum[i].acceleration;
@@ -122,9 +123,9 @@ void step_rk4(const SmoothSystem& system, SchemeRoom& room, double time, double 
 
 // ------------------------------------------------------------------------------------------------------------ Verlet
 
-// Within Verlet v and l are those at the middle of the last move; these are they at the time of the pose, by what is known of
-// the forces there, in `stage`.
-void look_at_velocities(SchemeRoom& room, bool known) {
+// Verlet's v and l are those at the middle of the last move. Extrapolates them to the time of the pose by the
+// known forces there, into `stage`.
+void find_pose_velocities(SchemeRoom& room, bool known) {
   for (std::size_t i = 0; i < room.states.size(); ++i) {
     room.stage[i] = room.states[i];
     const LastMove& move = room.moves[i];
@@ -134,37 +135,37 @@ void look_at_velocities(SchemeRoom& room, bool known) {
   }
 }
 
-// Forces at the present poses. Where they depend on velocities these depend on them.
+// Forces at the present poses, iterated where they depend on velocities.
 void find_rates_at_pose(const SmoothSystem& system, SchemeRoom& room, double time, double weight) {
   const int rounds = system.damped ? kVelocityRounds : 1;
   for (int round = 0; round < rounds; ++round) {
-    look_at_velocities(room, round > 0);
+    find_pose_velocities(room, round > 0);
     find_rates(system, room.stage, time, round + 1 == rounds ? weight : 0.0, true, room.rates);
   }
 }
 
-// The turn of which I(q_mid) turn / h = l.
-DVec3 find_turn(const SmoothBody& body, const SmoothState& s, double h) {
+// The rotation with I(q_mid) rotation / h = l.
+DVec3 find_rotation(const SmoothBody& body, const SmoothState& s, double h) {
   if (body.locked_angular != 0) return h * s.l;
   SmoothState middle = s;
-  DVec3 turn = h * spin_of(body, s);
-  for (int round = 0; round < kTurnRounds; ++round) {
-    middle.q = turned_by(s.q, 0.5 * turn);
+  DVec3 rotation = h * spin_of(body, s);
+  for (int round = 0; round < kRotationRounds; ++round) {
+    middle.q = rotated_by(s.q, 0.5 * rotation);
     const DVec3 next = h * spin_of(body, middle);
-    const double change = length(next - turn);
-    turn = next;
-    if (change <= kTurnReached * (1.0 + length(turn))) break;
+    const double change = length(next - rotation);
+    rotation = next;
+    if (change <= kRotationTolerance * (1.0 + length(rotation))) break;
   }
-  const double size = length(turn);
-  return size > kMaxHalfStepRotation ? (kMaxHalfStepRotation / size) * turn : turn;
+  const double size = length(rotation);
+  return size > kMaxHalfStepRotation ? (kMaxHalfStepRotation / size) * rotation : rotation;
 }
 
-// v and l at the middle of the last move, as the last two poses say.
+// v and l at the middle of the last move, from the last two poses.
 void read_last_move(const SmoothBody& body, const LastMove& move, SmoothState& s) {
   if (!(move.seconds > 0.0)) return;
   s.v = move.moved / move.seconds;
   SmoothState middle = s;
-  middle.q = turned_by(s.q, -0.5 * move.turned);
+  middle.q = rotated_by(s.q, -0.5 * move.turned);
   s.l = momentum_of(body, middle, move.turned / move.seconds);
 }
 
@@ -175,15 +176,16 @@ void step_verlet(const SmoothSystem& system, SchemeRoom& room, double time, doub
   for (std::size_t i = 0; i < count; ++i) {
     SmoothState& s = room.states[i];
     LastMove& move = room.moves[i];
-    // A body that has a velocity and no last pose: half a kick makes the one of it that the pose would.
-    const double kick = 0.5 * (h + move.seconds);
-    s.v += kick * room.rates[i].acceleration;
-    s.l += kick * room.rates[i].torque;
+    // A body with a velocity but no last pose: half a sub-step of acceleration turns it into that of the
+    // middle.
+    const double seconds = 0.5 * (h + move.seconds);
+    s.v += seconds * room.rates[i].acceleration;
+    s.l += seconds * room.rates[i].torque;
     move.moved = h * s.v;
-    move.turned = find_turn(system.bodies[i], s, h);
+    move.turned = find_rotation(system.bodies[i], s, h);
     move.seconds = h;
     s.x += move.moved;
-    turn(room, i, move.turned);
+    rotate(room, i, move.turned);
   }
 }
 
@@ -208,10 +210,10 @@ void integrate(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room
   }
 }
 
-void show_velocities(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time) {
+void set_pose_velocities(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time) {
   if (kind == IntegratorKind::verlet) {
     find_rates_at_pose(system, room, time, 0.0);
-    look_at_velocities(room, true);
+    find_pose_velocities(room, true);
     return;
   }
   for (std::size_t i = 0; i < room.states.size(); ++i) room.stage[i] = room.states[i];

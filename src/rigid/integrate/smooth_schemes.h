@@ -16,11 +16,11 @@
 
 namespace gyre {
 
-// Memory for a system of some bodies.
+// Memory for the bodies of a system.
 struct SchemeRoom {
-  std::span<SmoothState> states;  // where the system is
-  std::span<LastMove> moves;      // Verlet: how it came there. `linear` and `angular` are not used.
-  std::span<DVec3> turned;        // rotation vector since the step began, as the sum of those of its parts
+  std::span<SmoothState> states;    // present state of the system
+  std::span<LastMove> moves;        // Verlet: the last move. `linear` and `angular` are not used.
+  std::span<DVec3> delta_rotation;  // rotation vector since the step began: the sum over the sub-steps
   std::span<SmoothState> stage;   // Runge-Kutta: the stage's state, and sums over stages
   std::span<Rates> rates, sum;
   std::span<DVec3> drift;
@@ -28,13 +28,14 @@ struct SchemeRoom {
 };
 SchemeRoom make_room(std::size_t bodies, Arena& arena);
 
-// Moves the system on by `h`, `time` after the step began (s).
+// Advances the system by `h`, `time` after the step began (s).
 void integrate(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time, double h);
 
-// The state with the velocities that go with the place it has come to, into `stage`: Verlet's own are those of half a step before.
-void show_velocities(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time);
+// Puts the state with the velocities at the time of the pose into `stage`: Verlet's own are half a step
+// older.
+void set_pose_velocities(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time);
 
-// The order of the error in places.
+// The order of the error of positions.
 constexpr int order_of(IntegratorKind kind) {
   return kind == IntegratorKind::rk4 ? 4 : kind == IntegratorKind::verlet ? 2 : 1;
 }

@@ -14,7 +14,7 @@ double spectral_square(double a, double b, double c, double d) {
   return square(absolute(half_trace) + std::sqrt(root));
 }
 
-// (x, h v) after a step of (x, h v), of x'' = -w^2 x - 2 d x'.
+// Growth of (x, h v) in a step of x'' = -w^2 x - 2 d x'.
 double growth(IntegratorKind kind, double frequency, double decay, double h) {
   const double k = square(frequency * h), c = 2.0 * decay * h;
   switch (kind) {
@@ -70,9 +70,9 @@ SpringRow make_row(const RigidWorld& w, std::uint32_t slot) {
     point[k] = w.bodies.places[i].center + row.lever[k];
     if (is_active(w, std::uint32_t(i))) row.body[k] = bodies[k];
   }
-  const DVec3 way = point[1] - point[0];
-  const double size = length(way);
-  row.along = size > 0.0 ? way / size : DVec3{0, 1, 0};
+  const DVec3 offset = point[1] - point[0];
+  const double size = length(offset);
+  row.along = size > 0.0 ? offset / size : DVec3{0, 1, 0};
   row.root = std::sqrt(double(joint.stiffness));
   row.damping = double(joint.damping);
   return row;
@@ -82,7 +82,7 @@ struct Twist {
   DVec3 linear, angular;
 };
 
-// What impulses `z` along the springs make of the bodies' velocities, and these of the springs' speeds.
+// Applies impulses `z` along the springs, and computes the speeds of the springs from the velocities.
 template <class Scale>
 void respond(const RigidWorld& w, std::span<const SpringRow> rows, std::span<const double> z,
              std::span<Twist> twists, std::span<double> speeds, Scale&& scale) {
@@ -130,7 +130,7 @@ SpringMode find_fastest_mode(const RigidWorld& w, Arena& arena) {
   const std::span<const SpringRow> rows = room.first(count);
   const std::span<Twist> twists = arena.make<Twist>(w.bodies.motion.size());
   const std::span<double> z = arena.make<double>(count), next = arena.make<double>(count);
-  // No mode that symmetry could hide.
+  // A start that no symmetric mode is orthogonal to.
   for (std::size_t n = 0; n < count; ++n) z[n] = 1.0 + 0.37 * double(n % 7);
   const auto root = [](const SpringRow& row) { return row.root; };
   double value = 0.0;
@@ -152,11 +152,11 @@ SpringMode find_fastest_mode(const RigidWorld& w, Arena& arena) {
   mode.frequency = std::sqrt(value);
   // In the mode's velocities the dampers take  sum c s^2  of  sum of m u^2 = z' z = 1.
   respond(w, rows, z, twists, next, root);
-  double most = 0.0, power = 0.0, inertia = 0.0;
+  double largest = 0.0, power = 0.0, inertia = 0.0;
   for (std::size_t n = 0; n < count; ++n) {
     power += rows[n].damping * next[n] * next[n];
     inertia += z[n] * rows[n].root * next[n];
-    if (absolute(z[n]) > most) most = absolute(z[n]), mode.joint = rows[n].joint;
+    if (absolute(z[n]) > largest) largest = absolute(z[n]), mode.joint = rows[n].joint;
   }
   mode.decay = inertia > 0.0 ? 0.5 * power / inertia : 0.0;
   return mode;
@@ -165,14 +165,14 @@ SpringMode find_fastest_mode(const RigidWorld& w, Arena& arena) {
 double critical_step(IntegratorKind kind, double frequency, double decay) {
   const double rate = max(frequency, decay);
   if (!(rate > 0.0)) return kAnyStep;
-  // Explicit Euler grows at any step without damping; the others by rounding only.
+  // Explicit Euler grows at any step without damping; the others only by rounding.
   constexpr double kSlack = 1.0e-9, kRounding = 1.0e-14;
   const auto follows = [&](double h) {
     return growth(kind, frequency, decay, h) <= 1.0 + kSlack * square(rate * h) + kRounding;
   };
   double low = 1.0e-4 / rate, high = 1.0e3 / rate;
   if (!follows(low)) return 0.0;
-  // The first step that fails, then bisection: what is stable again beyond it is of no use.
+  // The first failing step, then bisection: stability beyond it is of no use.
   double h = low;
   while (h < high && follows(h)) low = h, h *= 1.1;
   high = h;

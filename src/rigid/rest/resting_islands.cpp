@@ -93,8 +93,8 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
     if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
     if (c.point_count < 3) count.balances = true;
     if (c.point_count == 1) ++count.corners;
-    if (c.hold == ContactStiffness::held) count.held = true;
-    if (c.hold == ContactStiffness::sprung) count.springs = true;
+    if (c.stiffness == ContactStiffness::rigid) count.held = true;
+    if (c.stiffness == ContactStiffness::soft) count.springs = true;
     if (active_a && active_b) continue;
     ++count.grounded;
     count.first = i;

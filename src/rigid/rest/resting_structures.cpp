@@ -82,9 +82,9 @@ class StructureMaker {
     const Members& members = members_[root];
     RestingStructure structure;
     const IslandCount& count = islands_.at_root(root);
-    structure.settling = count.settling;
-    structure.held = is_in_equilibrium(count);
-    structure.fresh = !count.held && !count.springs;
+    structure.is_settling = count.settling;
+    structure.was_rigid = is_in_equilibrium(count);
+    structure.is_new = !count.held && !count.springs;
     structure.nodes = members.nodes;
     structure.contacts = members.contacts;
     structure.work = arena_.make<StructureScratch>(members.contacts.size());
@@ -106,8 +106,8 @@ class StructureMaker {
     StructureNode node;
     node.body = std::int32_t(body);
     node.mass = mass.mass;
-    node.still = kStructureStillShare * std::sqrt(length(w_.settings.gravity) * mass.reach);
-    node.still_spin = mass.reach > 0.0f ? node.still / mass.reach : 0.0f;
+    node.rest_speed = kStructureStillShare * std::sqrt(length(w_.settings.gravity) * mass.reach);
+    node.rest_spin = mass.reach > 0.0f ? node.rest_speed / mass.reach : 0.0f;
     node.inertia = rotate_inertia(w_.bodies.places[body].orientation, mass.inertia);
     return node;
   }

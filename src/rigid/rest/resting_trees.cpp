@@ -18,8 +18,8 @@ TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, 
   node.constraint = constraint;
   node.sign = is_b ? 1.0f : -1.0f;
   node.mass = mass.mass;
-  node.still = kStillSpeedShare * std::sqrt(geometric_stiffness * mass.reach);
-  node.still_spin = mass.reach > 0.0f ? node.still / mass.reach : 0.0f;
+  node.rest_speed = kStillSpeedShare * std::sqrt(geometric_stiffness * mass.reach);
+  node.rest_spin = mass.reach > 0.0f ? node.rest_speed / mass.reach : 0.0f;
   node.center = w.bodies.places[body].center;
   node.orientation = w.bodies.places[body].orientation;
   node.inertia = mass.inertia;

@@ -61,7 +61,7 @@ void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
     w.bodies.sleep[root].next_in_group = body;
   }
   w.bodies.flags[body].awake = 0;
-  stop(w.bodies.motion[body]);
+  clear_motion(w.bodies.motion[body]);
   w.bodies.awake_stale = true;
   w.events.sleep_changes.push_back({body_id(w, body), true});
 }
@@ -112,7 +112,7 @@ SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float geometric_st
   const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
   rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
   // What is pushed apart in every step, and taken back by what it hangs on or is wedged in, goes nowhere.
-  rest.pushed = min(motion.pushed, length(motion.moved) + reach * length(motion.turned));
+  rest.pushed = min(motion.pushout, length(motion.delta_position) + reach * length(motion.delta_rotation));
   rest.rest_speed =
       kRestShare * std::sqrt((geometric_stiffness > 0.0f ? geometric_stiffness : 9.81f) * reach);
   if (is_on_spring(w, body)) rest.rest_speed *= kSpringRest;

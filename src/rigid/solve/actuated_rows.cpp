@@ -25,11 +25,11 @@ RowState state_of(const JointSolve& solve, const ActuatedRow& row) {
   const JointPair pair(solve.w.joints.records[solve.batch.joints[row.place]], solve.bodies);
   if (row.axis != kDriveRow) {
     const AxisConstraint& x = work.axes[std::size_t(row.axis)];
-    if (x.in_articulation) return {{}, {}, {}, {}, x.worked};
+    if (x.in_articulation) return {{}, {}, {}, {}, x.drive_work};
     return {{worked_impulse(x.axis), 0, 0}, {axis_speed(x.row, pair), 0, 0}, {}, {}, 0.0};
   }
   return {work.detail->drive_force_impulse, pair.point_velocity(work.drive->from_a, work.from_b),
-          work.detail->drive_torque_impulse, pair.turning(), 0.0};
+          work.detail->drive_torque_impulse, pair.relative_spin(), 0.0};
 }
 
 }  // namespace

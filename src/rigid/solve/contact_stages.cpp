@@ -33,7 +33,7 @@ void advance_contact_points(const ContactGroup& group, int begin, int end) {
   };
   const auto advance_block = [&] {
     if (count == 0) return;
-    s.kernels.contacts.follow(s.blocks, present, lanes, count);
+    s.kernels.contacts.advance_points(s.blocks, present, lanes, count);
     for (int i = 0; i < count; ++i) {
       Vec3& spin = s.bodies.motion[contacts[i]->body].angular_velocity;
       spin = spin + contacts[i]->drift;

@@ -25,7 +25,7 @@ IslandFrame frame_of(JointKind kind) {
 }
 
 bool turns_far(const BodyMotion& motion, float h) {
-  return square(h) * length_squared(motion.angular_velocity) > square(kStraightTurn);
+  return square(h) * length_squared(motion.angular_velocity) > square(kSlowRotation);
 }
 
 // Calls fn(place in the batch's list) for the joints that are looked at: those that are swept, of linkages solved alone, and of those
@@ -37,10 +37,10 @@ void for_each_swept(const JointSolve& solve, Fn&& fn) {
 template <class Fn>
 void for_each_joint(const JointSolve& solve, Fn&& fn) {
   for_each_swept(solve, fn);
-  for (const Articulation& articulation : solve.linkages.linkages)
+  for (const Articulation& articulation : solve.linkages.scalar)
     for (const ArticulationNode& node : articulation.nodes) fn(node.work);
-  for (const GroupedArticulation& articulation : solve.linkages.alike)
-    for (const ArticulationJoint& joint : articulation.joints) fn(joint.place);
+  for (const GroupedArticulation& articulation : solve.linkages.grouped)
+    for (const ArticulationJoint& joint : articulation.joints) fn(joint.index);
 }
 
 // What is known of an island while it is gathered, at its lowest place.
@@ -91,7 +91,7 @@ class IslandFinder {
     });
   }
   void find_kinds() {
-    for (const Articulation& articulation : solve_.linkages.linkages)
+    for (const Articulation& articulation : solve_.linkages.scalar)
       drafts_[sets_.of(place(articulation.bodies[0].body))].is_alone = true;
     for_each_swept(solve_, [&](std::uint32_t at) {
       const JointRecord& joint = w_.joints.records[solve_.batch.joints[at]];
@@ -225,7 +225,7 @@ Vec3 spin_of(const BodyStore& bodies, std::uint32_t body, Vec3 turning) {
 }
 
 DVec3 center_of(const BodyStore& bodies, std::uint32_t body) {
-  return bodies.places[body].center + DVec3(bodies.motion[body].moved);
+  return bodies.places[body].center + DVec3(bodies.motion[body].delta_position);
 }
 
 // The motion of what holds an island, as that of all its bodies: none, if it does not move.
@@ -364,7 +364,7 @@ double energy_of_errors(const BodyStore& bodies, const JointIsland& island, floa
       bent += double(bodies.masses[body].mass) * double(length_squared(h * geometric_stiffness));
     }
     sum += double(bodies.masses[body].mass) * square(double(kMaxErrors.point));
-    sum += double(max(inertia.xx, max(inertia.yy, inertia.zz))) * square(double(kMaxErrors.turn));
+    sum += double(max(inertia.xx, max(inertia.yy, inertia.zz))) * square(double(kMaxErrors.rotation));
   }
   return 0.5 * (square(double(rate)) * sum + bent);
 }
@@ -381,13 +381,13 @@ bool bound_gain(BodyStore& bodies, JointIsland& island, float most, float left, 
   return true;
 }
 
-void forget_impulses(JointAxisRecord& axis) {
+void clear_impulses(JointAxisRecord& axis) {
   axis.low_impulse = axis.high_impulse = axis.motor_impulse = axis.spring_impulse = axis.friction_impulse =
       0.0f;
 }
 // What follows does not begin with the impulses that gave too much, nor with those of springs and motors that they answered. In the middle
 // of a step axes are in the joints' work, as it ends in what persists.
-void forget_impulses(const JointSolve& solve, const JointIsland& island) {
+void clear_impulses(const JointSolve& solve, const JointIsland& island) {
   JointStore& joints = solve.w.joints;
   const std::span<const std::uint8_t> in_lanes = prepared_in_simd(solve);
   for (const std::uint32_t at : island.joints) {
@@ -396,11 +396,11 @@ void forget_impulses(const JointSolve& solve, const JointIsland& island) {
     joint.low_impulse = joint.high_impulse = joint.motor_impulse = joint.spring_impulse = 0.0f;
     if (JointDetail* const detail = detail_of(joints, solve.batch.joints[at])) {
       for (float& impulse : detail->row_impulses) impulse = 0.0f;
-      for (JointAxisRecord& axis : detail->axes) forget_impulses(axis);
+      for (JointAxisRecord& axis : detail->axes) clear_impulses(axis);
       detail->drive_force_impulse = detail->drive_torque_impulse = detail->friction_impulse = {};
     }
     if (!in_lanes.empty() && in_lanes[at] != 0) continue;
-    for (AxisConstraint& x : solve.works.work[at].axes) forget_impulses(x.axis);
+    for (AxisConstraint& x : solve.works.work[at].axes) clear_impulses(x.axis);
   }
 }
 
@@ -414,12 +414,12 @@ bool any_turns_far(const JointSolve& solve, const JointIsland& island) {
 
 std::span<JointIsland> find_joint_islands(const JointSolve& solve, std::span<const ColoringPair> contacts,
                                           std::span<const FieldBody> fields, Arena& arena) {
-  if (solve.lists.swept.empty() && solve.linkages.linkages.empty()) return {};
+  if (solve.lists.swept.empty() && solve.linkages.scalar.empty()) return {};
   const BodyStore& bodies = solve.w.bodies;
   const auto is_fast = [&](std::uint32_t body) {
     return is_active(solve.w, body) && turns_far(bodies.motion[body], solve.settings.substep);
   };
-  bool is_any = !solve.linkages.linkages.empty();
+  bool is_any = !solve.linkages.scalar.empty();
   for (const std::uint32_t body : solve.batch.bodies) {
     if (is_any) break;
     is_any = is_fast(body);
@@ -459,7 +459,7 @@ void limit_energy_gain(const JointSolve& solve, int begin, int end) {
         energy_of_errors(solve.w.bodies, island, solve.settings.softness.bias_rate, solve.settings.substep);
     if (!bound_gain(solve.w.bodies, island, kMaxEnergyGainAhead, kMaxEnergyGainAhead, least)) continue;
     island.is_bounded = true;
-    forget_impulses(solve, island);
+    clear_impulses(solve, island);
   }
 }
 void remove_energy_gain(const JointSolve& solve, int begin, int end) {
@@ -474,7 +474,7 @@ void remove_energy_gain(const JointSolve& solve, int begin, int end) {
 }
 void forget_limited_impulses(const JointSolve& solve) {
   for (const JointIsland& island : solve.islands)
-    if (island.is_bounded) forget_impulses(solve, island);
+    if (island.is_bounded) clear_impulses(solve, island);
 }
 
 }  // namespace gyre

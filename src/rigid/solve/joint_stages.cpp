@@ -93,7 +93,7 @@ void finish_ball_joints(const JointGroup& g, int begin, int end) {
 void prepare_joints(const JointGroup& g, int begin, int end) {
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
+    return balls.kernels.prepare(balls.blocks, balls.begin, balls.end, balls.arrays);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets& places) {
     prepare_joint(joint, work, places, g.solve->bodies, g.solve->settings);
@@ -102,7 +102,7 @@ void prepare_joints(const JointGroup& g, int begin, int end) {
 void compute_second_order_bias(const JointGroup& g, int begin, int end) {
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.second_order_bias(balls.blocks, balls.begin, balls.end, balls.settings);
+    return balls.kernels.update_bias(balls.blocks, balls.begin, balls.end, balls.settings);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
     update_joint_bias(joint, work, g.solve->bodies, g.solve->settings);
@@ -111,7 +111,7 @@ void compute_second_order_bias(const JointGroup& g, int begin, int end) {
 void warm_start_joints(const JointGroup& g, int begin, int end) {
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.warm(balls.blocks, balls.begin, balls.end);
+    return balls.kernels.warm_start(balls.blocks, balls.begin, balls.end);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
     warm_start_joint(joint, work, g.solve->bodies);
@@ -132,7 +132,7 @@ void prepare_other_joints(const JointGroup& g, int begin, int end) {
 void relax_joints(const JointGroup& g, int begin, int end) {
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
+    balls.kernels.prepare(balls.blocks, balls.begin, balls.end, balls.arrays);
     return balls.kernels.relax(balls.blocks, balls.begin, balls.end);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {

@@ -21,12 +21,12 @@ void part_measured(const BodyMotionSolve& s, int begin, int end, Run&& run) {
 
 void apply_forces(const BodyMotionSolve& s, int begin, int end, bool with_warm_start) {
   part_measured(s, begin, end, [&](int first, int last, bool measured) {
-    s.kernels.motion.predict(s.blocks, first, last, s.arrays.motion, with_warm_start && measured, measured);
+    s.kernels.motion.integrate_velocities(s.blocks, first, last, s.arrays.motion, with_warm_start && measured, measured);
   });
 }
 void integrate(const BodyMotionSolve& s, int begin, int end, bool adds_contact_change) {
   part_measured(s, begin, end, [&](int first, int last, bool measured) {
-    s.kernels.motion.advance(s.blocks, first, last, s.arrays, s.motions.substep,
+    s.kernels.motion.integrate_positions(s.blocks, first, last, s.arrays, s.motions.substep,
                              measured && adds_contact_change);
   });
 }
@@ -41,7 +41,7 @@ void apply_forces_and_warm_start(const BodyMotionSolve& s, int begin, int end) {
   apply_forces(s, begin, end, true);
 }
 void warm_start_bodies(const BodyMotionSolve& s, int begin, int end) {
-  s.kernels.motion.warm(s.blocks, begin, end, s.arrays.motion);
+  s.kernels.motion.warm_start(s.blocks, begin, end, s.arrays.motion);
 }
 void start_contact_change(const BodyMotionSolve& s, int begin, int end) {
   const int last = min(end, s.measured_blocks);
@@ -59,7 +59,7 @@ void add_contact_change_and_integrate(const BodyMotionSolve& s, int begin, int e
 void apply_forces_and_warm_start_in_lanes(const BodyMotionSolve& s, int begin, int end,
                                           const LaneVelocities& lanes) {
   part_measured(s, begin, end, [&](int first, int last, bool measured) {
-    s.kernels.motion.predict_in_lanes(s.blocks, first, last, lanes, measured, measured);
+    s.kernels.motion.integrate_velocities_in_lanes(s.blocks, first, last, lanes, measured, measured);
   });
 }
 void start_contact_change_in_lanes(const BodyMotionSolve& s, int begin, int end,
@@ -73,7 +73,7 @@ void add_contact_change_in_lanes(const BodyMotionSolve& s, int begin, int end, c
     s.kernels.motion.add_contact_change_in_lanes(s.blocks, begin, last, s.arrays.motion, lanes);
 }
 void integrate_positions_in_lanes(const BodyMotionSolve& s, int begin, int end, const LaneVelocities& lanes) {
-  s.kernels.motion.advance_in_lanes(s.blocks, begin, end, s.arrays, lanes, s.motions.substep);
+  s.kernels.motion.integrate_positions_in_lanes(s.blocks, begin, end, s.arrays, lanes, s.motions.substep);
 }
 
 bool has_fast_spinning(const BodyMotionSolve& s, int begin, int end) {
@@ -85,11 +85,11 @@ void integrate_fast_spinning_of_blocks(const BodyMotionSolve& s, int begin, int 
   const std::uint32_t first = s.fast_spinning_starts[std::size_t(begin)],
                       last = s.fast_spinning_starts[std::size_t(end)];
   rotate_exactly(s.w.bodies, s.fast_spinning.subspan(first, last - first), s.motions.substep,
-                 s.kernels.turns);
+                 s.kernels.rotation);
 }
 void integrate_fast_spinning(const BodyMotionSolve& s, int begin, int end) {
   rotate_exactly(s.w.bodies, block_of(s.fast_spinning, begin, end, kSpinnersPerBlock), s.motions.substep,
-                 s.kernels.turns);
+                 s.kernels.rotation);
 }
 
 void begin_projection(const BodyMotionSolve& s, int begin, int end) {
@@ -101,11 +101,11 @@ void end_projection(const BodyMotionSolve& s, int begin, int end) {
 
 void move_free_bodies(const BodyMotionSolve& s, int begin, int end) {
   integrate_free_bodies(s.w.bodies, block_of(s.free_bodies, begin, end, kBodiesPerBlock), s.motions,
-                        s.kernels.turns);
+                        s.kernels.rotation);
 }
 void finish_orientations(const BodyMotionSolve& s, int begin, int end) {
   apply_rotations(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
-                  block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
+                  block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.rotation);
 }
 
 }  // namespace gyre

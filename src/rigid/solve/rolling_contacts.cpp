@@ -310,7 +310,7 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const ContactLists& lists,
   RollingContacts all;
   const FastSpinningContacts is_fast_spinning(w, lists, bodies, seconds, arena);
   const auto may_roll = [&](std::uint32_t i) {
-    return constraints[i].may_roll || is_fast_spinning.has(lists.pairs[i]);
+    return constraints[i].can_roll || is_fast_spinning.has(lists.pairs[i]);
   };
   const std::span<const std::uint32_t> candidates =
       parallel_filter(tasks, arena, constraints.size(), may_roll).list;
@@ -323,14 +323,14 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const ContactLists& lists,
       const std::uint32_t i = candidates[k];
       const Contact& contact = contact_of(i);
       const ColoringPair places = lists.pairs[i];
-      const bool flat_a = constraints[i].may_roll && is_flat(w.shapes.colliders[contact.shape_a].shape);
-      const bool is_fast_spinning_here = !constraints[i].may_roll
+      const bool flat_a = constraints[i].can_roll && is_flat(w.shapes.colliders[contact.shape_a].shape);
+      const bool is_fast_spinning_here = !constraints[i].can_roll
                                              ? is_fast_spinning.has(places)
                                              : is_fast_spinning.has(flat_a ? places.b : places.a);
       const bool chosen =
           is_fast_spinning_here
               ? choose_fast_spinning(w, contact, constraints[i], places, is_fast_spinning, seconds, sides[k])
-              : constraints[i].may_roll &&
+              : constraints[i].can_roll &&
                     choose_rolling(w, contact, constraints[i], places, bearers, seconds, sides[k]);
       sides[k].constraint = chosen ? i : kNotRolling;
     }
@@ -366,7 +366,7 @@ void advance_contact_point(const RigidWorld& w, RollingContact& rolling, float a
   const Quat now = w.bodies.orientations[body];
   const PointsPlace place(rolling, now),
       middle_place(rolling, turned_on(now, ahead * motion.angular_velocity));
-  const Vec3 offset = rolling.offset + (motion.moved - other.moved);
+  const Vec3 offset = rolling.offset + (motion.delta_position - other.delta_position);
   const Vec3 middle_offset = offset + ahead * (motion.linear_velocity - other.linear_velocity);
   const auto put = [&](PointArmPairs& pairs, int k, Vec3 arm, Vec3 apart) {
     pairs.from_a[k] = rolling.side > 0.0f ? arm + apart : arm;
@@ -383,7 +383,7 @@ void advance_contact_point(const RigidWorld& w, RollingContact& rolling, float a
     put(arms.middle, k, middle_arm, middle_offset);
     // Surfaces come nearer by what the arm grows outward; what turning the body makes of it is taken off again.
     arms.separation[k] = point.first_separation - dot(arm - point.first_arm, rolling.outward) +
-                         dot(cross(motion.turned, middle_arm), rolling.outward);
+                         dot(cross(motion.delta_rotation, middle_arm), rolling.outward);
   }
   if (!rolling.once) rolling.drift = free_change(w, body, now, ahead);
 }

@@ -73,7 +73,7 @@ void iterate_island(const RowSolve& s, const IslandRows& island, NumberRoom room
   if (s.settings.kind == SolverKind::lcp) {
     const GaussSeidelResult result =
         solve_nncg(rows, bodies, s.friction, kNncgShare * scale, sweeps_of(s.settings), room);
-    report.sweeps = max(report.sweeps, result.sweeps);
+    report.sweeps = max(report.sweeps, result.iterations);
     report.residual = max(report.residual, result.residual);
     return;
   }
@@ -136,7 +136,7 @@ bool solve_island_by_all_means(const RowSolve& s, const IslandRows& island, Numb
     if (sweeps > 0) {
       warm_start_rows(rows, island.bodies());
       solve_nncg(rows, island.bodies(), s.friction, kNncgShare * scale, sweeps, room);
-      for (const Row& row : rows) push_row(row, -row.impulse, island.bodies());
+      for (const Row& row : rows) apply_row_impulse(row, -row.impulse, island.bodies());
     }
     if (solve_island_by_newton(s, island, room, scale, report)) return true;
   }
@@ -196,12 +196,12 @@ void keep_impulses(const RowSolve& s, const IslandRows& island) {
   };
   for (const std::uint32_t i : island.island.joints) {
     const auto [begin, count] = range();
-    keep_joint_impulses(joints.w.joints.records[joints.batch.joints[i]], joints.works.work[i],
+    store_joint_impulses(joints.w.joints.records[joints.batch.joints[i]], joints.works.work[i],
                         island.room.rows.subspan(begin, count), island.room.kept.subspan(begin, count));
   }
   for (const std::uint32_t i : island.island.constraints) {
     const auto [begin, count] = range();
-    keep_contact_impulses(s.contacts.lists.constraints[i], s.friction,
+    store_contact_impulses(s.contacts.lists.constraints[i], s.friction,
                           island.room.rows.subspan(begin, count));
   }
 }

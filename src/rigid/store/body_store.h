@@ -157,7 +157,8 @@ inline bool is_simulated(const BodyFlags& flags) {
 inline Sweep sweep_of_body(const BodyStore& store, std::uint32_t body) {
   const BodyMotion& motion = store.motion[body];
   const bool moves = is_simulated(store.flags[body]);
-  return {origin_pose(store, body), store.masses[body].center, moves ? motion.moved : Vec3{}, moves ? motion.turned : Vec3{}};
+  return {origin_pose(store, body), store.masses[body].center, moves ? motion.delta_position : Vec3{},
+          moves ? motion.delta_rotation : Vec3{}};
 }
 // What loops over bodies take at once.
 constexpr int kBodiesPerBlock = 64;

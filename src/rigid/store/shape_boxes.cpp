@@ -63,7 +63,7 @@ struct Going {
 constexpr Going coming(float seconds) {
   return {&BodyMotion::linear_velocity, &BodyMotion::angular_velocity, seconds};
 }
-constexpr Going kGone{&BodyMotion::moved, &BodyMotion::turned, 1.0f};
+constexpr Going kGone{&BodyMotion::delta_position, &BodyMotion::delta_rotation, 1.0f};
 
 // From one to four shapes.
 class ShapeLanes {

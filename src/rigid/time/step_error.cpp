@@ -15,9 +15,9 @@ double step_difference(const RigidWorld& w, std::span<const BodyMotion> other, f
   for (const std::uint32_t body : w.bodies.awake) {
     if (w.bodies.flags[body].touched == kNotConstrained) continue;
     const BodyMotion &a = w.bodies.motion[body], &b = other[body];
-    const double way = length(DVec3(a.moved) - DVec3(b.moved)) +
+    const double way = length(DVec3(a.delta_position) - DVec3(b.delta_position)) +
                        t * length(DVec3(a.linear_velocity) - DVec3(b.linear_velocity));
-    const double turn = length(DVec3(a.turned) - DVec3(b.turned)) +
+    const double turn = length(DVec3(a.delta_rotation) - DVec3(b.delta_rotation)) +
                         t * length(DVec3(a.angular_velocity) - DVec3(b.angular_velocity));
     most = max(most, way + double(w.bodies.masses[body].reach) * turn);
   }

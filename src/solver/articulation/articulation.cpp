@@ -10,27 +10,24 @@ namespace gyre {
 
 namespace {
 
-// h^2 k / I up to which tension is left alone; kick and drift are stable up to 4.
-constexpr float kMaxGeometricStiffness = 1.0f;
-
 void make_rows(ArticulationNode& node, const JointRecord& joint, const JointConstraint& work) {
   node.count = 0;
-  list_equations(joint, work, [&](Vec3 direction, Vec3 arm_a, Vec3 arm_b) {
+  list_equations(joint, work, [&](Vec3 direction, Vec3 angular_a, Vec3 angular_b) {
     const int row = node.count++;
     node.rows.direction.set(row, direction);
-    node.rows.arm_a.set(row, arm_a);
-    node.rows.arm_b.set(row, arm_b);
+    node.rows.angular_a.set(row, angular_a);
+    node.rows.angular_b.set(row, angular_b);
   });
 }
 
 JointEquation equation_at(const ArticulationRows& rows, int i) {
-  return {rows.direction.at(i), rows.arm_a.at(i), rows.arm_b.at(i)};
+  return {rows.direction.at(i), rows.angular_a.at(i), rows.angular_b.at(i)};
 }
 
-// A force f at arm r turns with the body's orientation like a spring of stiffness (r . f) 1 - sym(r f^T). Springs that a
-// sub-step does not resolve, h^2 k > I, would make the links of a heavily loaded chain flutter ever more; so the inertia
-// against the joints' impulses is raised towards h^2 k, as if the turning of forces were implicit (M. Tournier, M. Nesme,
-// B. Gilles, F. Faure, "Stable Constrained Dynamics", 2015). Of a body that nothing pulls like that it stays as it is, to
+// A force f at arm r rotates with the body like a spring of stiffness (r . f) 1 - sym(r f^T). Unresolved
+// springs, h^2 k > I, would make the links of a heavily loaded chain flutter ever more. So h^2 k is added to
+// the inertia against joint impulses, as if the rotation of forces were implicit (M. Tournier, M. Nesme, B.
+// Gilles, F. Faure, "Stable Constrained Dynamics", 2015). Bodies without such tension keep their inertia to
 // the bit.
 void add_geometric_stiffness_term(ArticulationBody& body, Vec3 r, Vec3 f) {
   const float k = dot(r, f);
@@ -42,7 +39,7 @@ void add_geometric_stiffness_term(ArticulationBody& body, Vec3 r, Vec3 f) {
                                                              -0.5f * (r.y * f.z + r.z * f.y)};
 }
 
-// What of the symmetric matrix holds back.
+// The positive semi-definite part of the symmetric matrix.
 Sym3 positive_part(const Sym3& m) {
   const double matrix[6] = {double(m.xx), double(m.yy), double(m.zz),
                             double(m.xy), double(m.xz), double(m.yz)};
@@ -57,7 +54,7 @@ Sym3 positive_part(const Sym3& m) {
   return sum;
 }
 
-void raise_inertias(const Articulation& articulation, const ArticulationSolve& s) {
+void stiffen_bodies(const Articulation& articulation, const ArticulationSolve& s) {
   for (ArticulationBody& body : articulation.bodies) body.geometric_stiffness = {};
   const float h = s.settings.substep;
   for (const ArticulationNode& node : articulation.nodes) {
@@ -75,8 +72,8 @@ void raise_inertias(const Articulation& articulation, const ArticulationSolve& s
     body.inertia = inverse(body.inverse);
     const Mat3 spin = to_matrix(body.inverse) * to_matrix(body.geometric_stiffness);
     const float unresolved = h * h * 0.5f * (spin.x.x + spin.y.y + spin.z.z);
-    if (!(unresolved > kMaxGeometricStiffness) || body.is_pressed) continue;
-    const float share = h * h * (1.0f - kMaxGeometricStiffness / unresolved);
+    if (!(unresolved > kGeometricStiffnessThreshold) || body.is_pressed) continue;
+    const float share = h * h * (1.0f - kGeometricStiffnessThreshold / unresolved);
     body.inverse = inverse(body.inertia + share * positive_part(body.geometric_stiffness));
   }
 }
@@ -93,13 +90,13 @@ void store_rows(RowVectors& to, int first, const Rows4& v) {
   v.x.store_unaligned(to.x + first), v.y.store_unaligned(to.y + first), v.z.store_unaligned(to.z + first);
 }
 Rows4 splat_rows(Vec3 v) { return splat<kHalf>(v); }
-Rows4 turn_rows(const Sym3& m, const RowVectors& arms, int first) {
+Rows4 times_rows(const Sym3& m, const RowVectors& arms, int first) {
   return Sym3W<kHalf>{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz} * load_rows(arms, first);
 }
 
-// The rows' spins, and the node's own block K + give.
-void make_own_block(ArticulationNode& node, const Articulation& articulation, const ArticulationSolve& s,
-                    double* block) {
+// Computes the spins of the rows, and the node's diagonal block K + compliance.
+void make_diagonal_block(ArticulationNode& node, const Articulation& articulation, const ArticulationSolve& s,
+                         double* block) {
   constexpr ArticulationBody kImmovable{};
   const ArticulationBody& a = node.side_a < 0 ? kImmovable : articulation.bodies[std::size_t(node.side_a)];
   const ArticulationBody& b = node.side_b < 0 ? kImmovable : articulation.bodies[std::size_t(node.side_b)];
@@ -108,15 +105,15 @@ void make_own_block(ArticulationNode& node, const Articulation& articulation, co
   ArticulationRows& rows = node.rows;
   const int count = node.count;
   for (int first = 0; first < count; first += kHalf) {
-    const Rows4 pushes = load_rows(rows.direction, first);
-    const Rows4 spins_a = turn_rows(a.inverse, rows.arm_a, first),
-                spins_b = turn_rows(b.inverse, rows.arm_b, first);
+    const Rows4 directions = load_rows(rows.direction, first);
+    const Rows4 spins_a = times_rows(a.inverse, rows.angular_a, first),
+                spins_b = times_rows(b.inverse, rows.angular_b, first);
     store_rows(rows.spin_a, first, spins_a);
     store_rows(rows.spin_b, first, spins_b);
     for (int i = first; i < count; ++i) {
       float k[kHalf];
-      (Wide<kHalf>(inverse_mass) * dot(splat_rows(rows.direction.at(i)), pushes) +
-       dot(splat_rows(rows.arm_a.at(i)), spins_a) + dot(splat_rows(rows.arm_b.at(i)), spins_b))
+      (Wide<kHalf>(inverse_mass) * dot(splat_rows(rows.direction.at(i)), directions) +
+       dot(splat_rows(rows.angular_a.at(i)), spins_a) + dot(splat_rows(rows.angular_b.at(i)), spins_b))
           .store_unaligned(k);
       if (i < first + kHalf) {
         rows.compliance[i] = s.compliance * k[i - first];
@@ -128,19 +125,20 @@ void make_own_block(ArticulationNode& node, const Articulation& articulation, co
   }
 }
 
-// Adds what the shared body couples: signs, because a feels the opposite of what b does.
+// Adds the coupling by the shared body. Signs differ because a gets the opposite of b.
 void add_coupling(const ArticulationCoupling& coupling, const ArticulationNode& row,
                   const ArticulationNode& column, const BodyInertia& body, double* block) {
   const float sign = coupling.row_has_b == coupling.column_has_b ? 1.0f : -1.0f;
   const float scale = sign * body.inverse_mass;
   const RowVectors& spins = coupling.row_has_b ? row.rows.spin_b : row.rows.spin_a;
-  const RowVectors& arms_of = coupling.column_has_b ? column.rows.arm_b : column.rows.arm_a;
+  const RowVectors& arms_of = coupling.column_has_b ? column.rows.angular_b : column.rows.angular_a;
   const int columns = column.count;
   for (int first = 0; first < columns; first += kHalf) {
-    const Rows4 pushes = load_rows(column.rows.direction, first), arms = load_rows(arms_of, first);
+    const Rows4 directions = load_rows(column.rows.direction, first), arms = load_rows(arms_of, first);
     for (int i = 0; i < row.count; ++i) {
       float k[kHalf];
-      (dot(splat_rows(scale * row.rows.direction.at(i)), pushes) + dot(splat_rows(sign * spins.at(i)), arms))
+      (dot(splat_rows(scale * row.rows.direction.at(i)), directions) +
+       dot(splat_rows(sign * spins.at(i)), arms))
           .store_unaligned(k);
       for (int j = first; j < columns && j < first + kHalf; ++j)
         block[i * columns + j] += double(k[j - first]);
@@ -148,7 +146,7 @@ void add_coupling(const ArticulationCoupling& coupling, const ArticulationNode& 
   }
 }
 
-// The bodies of a node while it is read or pushed.
+// The bodies of a node while its rows are measured or solved.
 class NodeBodies {
  public:
   NodeBodies(const ArticulationNode& node, const JointBodies& bodies)
@@ -157,12 +155,12 @@ class NodeBodies {
     const Rows4 u = splat_rows(b_.linear - a_.linear), w_a = splat_rows(a_.angular),
                 w_b = splat_rows(b_.angular);
     for (int first = 0; first < count; first += kHalf) {
-      (dot(load_rows(rows.direction, first), u) + dot(load_rows(rows.arm_b, first), w_b) -
-       dot(load_rows(rows.arm_a, first), w_a))
+      (dot(load_rows(rows.direction, first), u) + dot(load_rows(rows.angular_b, first), w_b) -
+       dot(load_rows(rows.angular_a, first), w_a))
           .store_unaligned(out + first);
     }
   }
-  void direction(const ArticulationRows& rows, int row, float impulse) {
+  void apply_impulse(const ArticulationRows& rows, int row, float impulse) {
     const Vec3 direction = rows.direction.at(row);
     a_.linear -= (impulse * a_.inverse_mass) * direction;
     b_.linear += (impulse * b_.inverse_mass) * direction;
@@ -181,171 +179,181 @@ class NodeBodies {
       const BodyInertia& inertia = bodies.inertia[body];
       motion = &bodies.motion[body];
       inverse_mass = inertia.inverse_mass;
-      movable = inverse_mass > 0.0f || inertia.inverse != Sym3{};
+      is_movable = inverse_mass > 0.0f || inertia.inverse != Sym3{};
       linear = motion->linear_velocity;
       angular = motion->angular_velocity;
     }
     // Adding zero keeps -0 out of the state.
     void store() const {
-      if (!movable) return;
+      if (!is_movable) return;
       motion->linear_velocity = linear + Vec3{};
       motion->angular_velocity = angular + Vec3{};
     }
     BodyMotion* motion = nullptr;
     float inverse_mass = 0.0f;
-    bool movable = false;
+    bool is_movable = false;
     Vec3 linear, angular;
   };
   Side a_, b_;
 };
 
-// As from_rotation_vector, by series: turns of a sub-step are small, and of those that are not kMaxBiasAngle leaves little.
+// As from_rotation_vector, by series: rotations in a sub-step are small, and for larger ones the bias fades
+// (kMaxBiasAngle).
 Quat small_rotation(Vec3 v) {
   const float a = min(length_squared(v), 1.0f);
   const Vec3 u = (0.5f - a * (1.0f / 48.0f - a / 3840.0f)) * v;
   return {u.x, u.y, u.z, 1.0f - a * (1.0f / 8.0f - a * (1.0f / 384.0f))};
 }
 
-// What a body's velocities do in the coming sub-step.
-struct Course {
+// The motion of a body in the coming sub-step.
+struct PredictedMotion {
   Vec3 linear, angular;
-  Quat turn;
+  Quat rotation;
 
-  // How far turning takes the end of an arm.
-  Vec3 swing(Vec3 arm) const {
-    const Vec3 u{turn.x, turn.y, turn.z};
+  // Displacement of the end of an arm by the rotation.
+  Vec3 displacement_of(Vec3 arm) const {
+    const Vec3 u{rotation.x, rotation.y, rotation.z};
     const Vec3 t = 2.0f * cross(u, arm);
-    return turn.w * t + cross(u, t);
+    return rotation.w * t + cross(u, t);
   }
 };
 
-Course course_of(const Articulation& articulation, const ArticulationSolve& s, std::int32_t body,
-                 std::int32_t side) {
+PredictedMotion predicted_motion(const Articulation& articulation, const ArticulationSolve& s,
+                                 std::int32_t body, std::int32_t side) {
   if (body == kNoBody) return {};
   const BodyMotion& motion = s.bodies.motion[body];
   if (side >= 0)
-    return {motion.linear_velocity, motion.angular_velocity, articulation.bodies[std::size_t(side)].turn};
+    return {motion.linear_velocity, motion.angular_velocity, articulation.bodies[std::size_t(side)].rotation};
   const Vec3 w = motion.angular_velocity;
   return {motion.linear_velocity, w, small_rotation(s.settings.substep * w)};
 }
 
-// How the joint's errors will have changed at the end of the sub-step, over its length, beyond what the rows see.
+// Change of the joint's errors in the sub-step, over its length, beyond the linear rows.
 struct SecondOrderBias {
-  Vec3 point, turn;
+  Vec3 linear, angular;
 };
 
-Vec3 angular_second_order_bias(const JointRecord& joint, const JointConstraint& work, const Course& a,
-                               const Course& b, float h) {
+Vec3 angular_second_order_bias(const JointRecord& joint, const JointConstraint& work,
+                               const PredictedMotion& a, const PredictedMotion& b, float h) {
   const Vec3 seen = b.angular - a.angular;
   if (joint.kind == JointKind::hinge) {
     const Vec3 error = work.angular_error;  // axis a x axis b
     const Vec3 axis_b =
         cross(error, work.axis) + std::sqrt(max(0.0f, 1.0f - length_squared(error))) * work.axis;
-    const Vec3 change_a = a.swing(work.axis), change_b = b.swing(axis_b);
+    const Vec3 change_a = a.displacement_of(work.axis), change_b = b.displacement_of(axis_b);
     return (cross(change_a, axis_b) + cross(work.axis, change_b) + cross(change_a, change_b)) / h - seen;
   }
-  const Quat later = b.turn * from_rotation_vector(work.angular_error) * conjugate(a.turn);
+  const Quat later = b.rotation * from_rotation_vector(work.angular_error) * conjugate(a.rotation);
   return (to_rotation_vector(later) - work.angular_error) / h - seen;
 }
 
-SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstraint& work, const Course& a,
-                                     const Course& b, float h) {
+SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstraint& work,
+                                     const PredictedMotion& a, const PredictedMotion& b, float h) {
   SecondOrderBias second_order_bias;
-  const Vec3 along = work.along;
-  const Vec3 arm_a = work.from_a - work.error - along;  // to a's own anchor
+  const Vec3 along = work.free_offset;
+  const Vec3 anchor_arm = work.from_a - work.error - along;  // to a's own anchor
   const Vec3 seen = b.linear + cross(b.angular, work.from_b) - a.linear - cross(a.angular, work.from_a);
-  const Vec3 apart = h * (b.linear - a.linear) + b.swing(work.from_b) - a.swing(work.from_a);
+  const Vec3 apart =
+      h * (b.linear - a.linear) + b.displacement_of(work.from_b) - a.displacement_of(work.from_a);
   switch (joint.kind) {
     case JointKind::slider: {
-      // Seen from a's frame as it will be.
+      // As seen from a's frame at the end.
       const Vec3 now = work.error + along;
-      const Vec3 later = now + h * (b.linear - a.linear) + b.swing(work.from_b) - a.swing(arm_a);
-      second_order_bias.point = (later + Course{{}, {}, conjugate(a.turn)}.swing(later) - now) / h - seen;
+      const Vec3 later =
+          now + h * (b.linear - a.linear) + b.displacement_of(work.from_b) - a.displacement_of(anchor_arm);
+      second_order_bias.linear =
+          (later + PredictedMotion{{}, {}, conjugate(a.rotation)}.displacement_of(later) - now) / h - seen;
       break;
     }
     case JointKind::distance: {
       const Vec3 now = work.position * work.axis;
-      second_order_bias.point =
+      second_order_bias.linear =
           ((length(now + apart) - work.position) / h - dot(seen, work.axis)) * work.axis;
       break;
     }
     default:
-      second_order_bias.point = apart / h - seen;
+      second_order_bias.linear = apart / h - seen;
   }
   if (joint.kind == JointKind::hinge || joint.kind == JointKind::slider || joint.kind == JointKind::fixed)
-    second_order_bias.turn = angular_second_order_bias(joint, work, a, b, h);
+    second_order_bias.angular = angular_second_order_bias(joint, work, a, b, h);
   return second_order_bias;
 }
 
-// The same for each row of a kind that is a list of rows: by what they would say at the end of the sub-step.
+// The same for kinds that are a list of rows, from their errors at the end of the sub-step.
 void rows_second_order_bias(const JointRecord& joint, const JointConstraint& work,
-                            const ArticulationNode& node, const Course& a, const Course& b, float h,
-                            float (&bends)[kJointAxisCount]) {
-  const Vec3 arm_a = work.from_a - work.error - work.along;  // to a's own anchor
-  const Vec3 now = work.error + work.along;
+                            const ArticulationNode& node, const PredictedMotion& a, const PredictedMotion& b,
+                            float h, float (&biases)[kJointAxisCount]) {
+  const Vec3 anchor_arm = work.from_a - work.error - work.free_offset;  // to a's own anchor
+  const Vec3 now = work.error + work.free_offset;
   const Vec3 moved = h * (b.linear - a.linear);
-  const RowPose later{now + moved + b.swing(work.from_b) - a.swing(arm_a), now - work.from_b + arm_a + moved,
-                      a.turn * work.frame_a, b.turn * work.frame_b};
+  const RowPose later{now + moved + b.displacement_of(work.from_b) - a.displacement_of(anchor_arm),
+                      now - work.from_b + anchor_arm + moved, a.rotation * work.frame_a,
+                      b.rotation * work.frame_b};
   float errors[kJointAxisCount];
   measure_rows(joint, work, later, errors);
   for (int i = 0; i < node.count; ++i) {
     const float seen = dot(node.rows.direction.at(i), b.linear - a.linear) +
-                       dot(node.rows.arm_b.at(i), b.angular) - dot(node.rows.arm_a.at(i), a.angular);
-    bends[i] = (errors[i] - work.rows->rows[i].error) / h - seen;
+                       dot(node.rows.angular_b.at(i), b.angular) - dot(node.rows.angular_a.at(i), a.angular);
+    biases[i] = (errors[i] - work.rows->rows[i].error) / h - seen;
   }
 }
 
-// The square of the rate at which a rod turns, also between bodies that do not (rad/s).
-float rod_rate(const JointRecord& joint, const JointConstraint& work, const Course& a, const Course& b) {
+// The square of the angular rate of a rod, also between bodies that do not rotate (rad/s).
+float rod_rate(const JointRecord& joint, const JointConstraint& work, const PredictedMotion& a,
+               const PredictedMotion& b) {
   if (joint.kind != JointKind::distance || !(work.position > 0.0f)) return 0.0f;
   const Vec3 speed = b.linear + cross(b.angular, work.from_b) - a.linear - cross(a.angular, work.from_a);
   return length_squared(cross(speed, work.axis)) / square(work.position);
 }
 
-// What is asked of the rows: that the end of the sub-step, not its beginning, meets the joints (docs/derive/joints.md).
+// Computes the bias of the rows, so that the end of the sub-step, not its beginning, meets the joints
+// (docs/derive/joints.md).
 void compute_bias(const Articulation& articulation, const ArticulationSolve& s, ErrorBounds bounds) {
   const float h = s.settings.substep;
   for (ArticulationBody& body : articulation.bodies) {
     const Vec3 w = s.bodies.motion[body.body].angular_velocity;
-    const Vec3 swerve = s.bodies.inertia[body.body].inverse * cross(body.inertia * w, w);  // free rotation
-    body.turn = small_rotation(h * (w + (0.5f * h) * swerve));
+    // free rotation
+    const Vec3 gyroscopic = s.bodies.inertia[body.body].inverse * cross(body.inertia * w, w);
+    body.rotation = small_rotation(h * (w + (0.5f * h) * gyroscopic));
   }
   for (ArticulationNode& node : articulation.nodes) {
     const JointRecord& joint = s.records[node.record];
     const JointConstraint& work = s.work[node.work];
-    const Course a = course_of(articulation, s, node.body_a, node.side_a);
-    const Course b = course_of(articulation, s, node.body_b, node.side_b);
+    const PredictedMotion a = predicted_motion(articulation, s, node.body_a, node.side_a);
+    const PredictedMotion b = predicted_motion(articulation, s, node.body_b, node.side_b);
     const float fastest = square(h) * max(max(length_squared(a.angular), length_squared(b.angular)),
                                           rod_rate(joint, work, a, b));
     const float share = fastest > square(kMaxBiasAngle) ? square(kMaxBiasAngle) / fastest : 1.0f;
-    const float at_once = fastest > square(kCalmTurn) ? 1.0f - square(kCalmTurn) / fastest : 0.0f;
+    const float fast_share =
+        fastest > square(kFastErrorAngle) ? 1.0f - square(kFastErrorAngle) / fastest : 0.0f;
     const float rate = s.settings.softness.bias_rate;
-    const float back = -rate - (1.0f / h - rate) * at_once;
+    const float error_rate = -rate - (1.0f / h - rate) * fast_share;
     SecondOrderBias second_order_bias;
-    float bends[kJointAxisCount] = {};
+    float biases[kJointAxisCount] = {};
     if (fastest > square(kMinBiasAngle) || joint.kind == JointKind::path) {
       if (work.rows != nullptr) {
-        rows_second_order_bias(joint, work, node, a, b, h, bends);
+        rows_second_order_bias(joint, work, node, a, b, h, biases);
       } else {
         second_order_bias = second_order_bias_of(joint, work, a, b, h);
       }
     }
     if (share < 1.0f) {
-      second_order_bias.point *= share;
-      second_order_bias.turn *= share;
+      second_order_bias.linear *= share;
+      second_order_bias.angular *= share;
     }
     for (int i = 0; i < node.count; ++i) {
       ArticulationRows& rows = node.rows;
-      rows.target_speed[i] = back * error_of(joint, work, equation_at(rows, i), i, bounds);
-      rows.target_speed[i] -= work.rows != nullptr ? share * bends[i]
-                              : is_turn(equation_at(rows, i))
-                                  ? dot(second_order_bias.turn, rows.arm_a.at(i))
-                                  : dot(second_order_bias.point, rows.direction.at(i));
+      rows.target_speed[i] = error_rate * error_of(joint, work, equation_at(rows, i), i, bounds);
+      rows.target_speed[i] -= work.rows != nullptr ? share * biases[i]
+                              : is_angular(equation_at(rows, i))
+                                  ? dot(second_order_bias.angular, rows.angular_a.at(i))
+                                  : dot(second_order_bias.linear, rows.direction.at(i));
     }
   }
 }
 
-// Solves for the change of all impulses and applies it; soft: what is wanted and the give count, otherwise only the speed.
+// Solves for the change of all impulses and applies it. soft: with bias and compliance, otherwise for zero
+// speed.
 void solve_rows(const Articulation& articulation, const ArticulationSolve& s, bool soft) {
   for (std::size_t n = 0; n < articulation.nodes.size(); ++n) {
     const ArticulationNode& node = articulation.nodes[n];
@@ -359,7 +367,7 @@ void solve_rows(const Articulation& articulation, const ArticulationSolve& s, bo
       float missing = -speeds[i];
       if (soft)
         missing += node.rows.target_speed[i] -
-                   node.rows.compliance[i] * kept_impulse(joint, work, equation_at(node.rows, i), i);
+                   node.rows.compliance[i] * accumulated_impulse(joint, work, equation_at(node.rows, i), i);
       x[i] = double(missing);
     }
   }
@@ -371,8 +379,8 @@ void solve_rows(const Articulation& articulation, const ArticulationSolve& s, bo
     const double* x = &articulation.vector[articulation.plan.columns[articulation.plan.index_of[n]].row];
     for (int i = 0; i < node.count; ++i) {
       const float impulse = float(x[i]);
-      bodies.direction(node.rows, i, impulse);
-      keep_impulse(joint, s.work[node.work], equation_at(node.rows, i), i, impulse);
+      bodies.apply_impulse(node.rows, i, impulse);
+      add_impulse(joint, s.work[node.work], equation_at(node.rows, i), i, impulse);
     }
     bodies.store();
   }
@@ -389,8 +397,8 @@ void iterate_drives(const Articulation& articulation, const ArticulationSolve& s
 void add_geometric_stiffness(const float* geometric_stiffness, const float* inertia, float share,
                              float* inverse_inertia) {
   const auto matrix = [](const float* m) { return Sym3{m[0], m[1], m[2], m[3], m[4], m[5]}; };
-  const Sym3 raised = inverse(matrix(inertia) + share * positive_part(matrix(geometric_stiffness)));
-  const float out[6] = {raised.xx, raised.yy, raised.zz, raised.xy, raised.xz, raised.yz};
+  const Sym3 stiffened = inverse(matrix(inertia) + share * positive_part(matrix(geometric_stiffness)));
+  const float out[6] = {stiffened.xx, stiffened.yy, stiffened.zz, stiffened.xy, stiffened.xz, stiffened.yz};
   for (int i = 0; i < 6; ++i) inverse_inertia[i] = out[i];
 }
 
@@ -400,13 +408,14 @@ void prepare_articulation(const Articulation& articulation, const ArticulationSo
     ArticulationNode& node = articulation.nodes[n];
     JointRecord& joint = s.records[node.record];
     JointConstraint& work = s.work[node.work];
-    prepare_joint(joint, work, s.places[node.work], s.bodies, s.settings);
+    prepare_joint(joint, work, s.offsets[node.work], s.bodies, s.settings);
     make_rows(node, joint, work);
   }
-  raise_inertias(articulation, s);
+  stiffen_bodies(articulation, s);
   for (std::size_t n = 0; n < articulation.nodes.size(); ++n) {
-    make_own_block(articulation.nodes[n], articulation, s,
-                   &articulation.values[articulation.plan.columns[articulation.plan.index_of[n]].diagonal]);
+    make_diagonal_block(
+        articulation.nodes[n], articulation, s,
+        &articulation.values[articulation.plan.columns[articulation.plan.index_of[n]].diagonal]);
   }
   for (const ArticulationCoupling& coupling : articulation.couplings) {
     add_coupling(coupling, articulation.nodes[coupling.row], articulation.nodes[coupling.column],
@@ -417,21 +426,23 @@ void prepare_articulation(const Articulation& articulation, const ArticulationSo
 }
 
 void warm_start_articulation(const Articulation& articulation, const ArticulationSolve& s) {
-  // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
+  // Before the impulses of the last sub-step: after an impact these do not belong to this sub-step, and
+  // neither would their bias.
   compute_bias(articulation, s, kErrorsBeforeContacts);
-  note_warm_work(articulation, s);
+  add_warm_start_work(articulation, s);
   for (const ArticulationNode& node : articulation.nodes) {
     JointRecord& joint = s.records[node.record];
     const JointConstraint& work = s.work[node.work];
     warm_start_joint_axes(joint, work, s.bodies);
-    // What was kept, along the rows as they are now.
-    float kept[kMaxBlockRows];
-    for (int i = 0; i < node.count; ++i) kept[i] = kept_impulse(joint, work, equation_at(node.rows, i), i);
-    forget_kept(joint, work);
+    // The accumulated impulses, along the present rows.
+    float accumulated[kMaxBlockRows];
+    for (int i = 0; i < node.count; ++i)
+      accumulated[i] = accumulated_impulse(joint, work, equation_at(node.rows, i), i);
+    clear_equation_impulses(joint, work);
     NodeBodies bodies(node, s.bodies);
     for (int i = 0; i < node.count; ++i) {
-      bodies.direction(node.rows, i, kept[i]);
-      keep_impulse(joint, work, equation_at(node.rows, i), i, kept[i]);
+      bodies.apply_impulse(node.rows, i, accumulated[i]);
+      add_impulse(joint, work, equation_at(node.rows, i), i, accumulated[i]);
     }
     bodies.store();
   }
@@ -442,7 +453,7 @@ void solve_articulation(const Articulation& articulation, const ArticulationSolv
   solve_rows(articulation, s, true);
   solve_drives(articulation, s, true);
   solve_limits(articulation, s, kErrorsBeforeContacts);
-  compute_bias(articulation, s, kMaxErrors);  // now with velocities that agree with the joints
+  compute_bias(articulation, s, kMaxErrors);  // with velocities that agree with the joints
 }
 
 void solve_articulation_after_contacts(const Articulation& articulation, const ArticulationSolve& s) {

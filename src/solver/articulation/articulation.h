@@ -1,14 +1,15 @@
-// Linkages: bodies that hang together by joints, solved directly.
+// Articulations: bodies connected by joints whose equations are solved together, directly.
 //
-// The rows of a joint that hold always (a common point, a common axis, the length of a rod) are equations. Those of a whole
-// linkage are solved together: (J M^-1 J^T + give) p = -(J v + errors), a sparse matrix of one block a joint, factored in an
-// order found once a step (math/block_ldlt.h); for a tree that is elimination from the leaves to the root. What acts
-// along axes (springs, motors, stops) is solved along what the equations make of it, after them (solver/articulation/articulation_drives.h, linkage_stops.h);
-// drives to a pose are swept over first. The rows, softness excepted, are those of
-// solver/joint/joint.h; docs/derive/joints.md has the equations, docs/decisions/joint-trees.md the figures.
+// The equations of a joint are a common point, a common axis, or the length of a rod. Those of an
+// articulation form (J M^-1 J^T + compliance) p = -(J v + errors), a sparse matrix with one block a joint,
+// factored in an order found once a step (math/block_ldlt.h); for a tree this is elimination from the leaves
+// to the root. Springs, motors and limits are solved after the equations, along their responses
+// (solver/articulation/articulation_drives.h, articulation_limits.h). Pose drives are iterated before. Rows
+// are those of solver/joint/joint.h, softness excepted. docs/derive/joints.md has the equations,
+// docs/decisions/joint-trees.md the figures.
 //
-// Sources: D. Baraff, "Linear-Time Dynamics using Lagrange Multipliers", SIGGRAPH 1996; R. Featherstone, "Rigid Body Dynamics
-// Algorithms", 2008, chapter 8.
+// Sources: D. Baraff, "Linear-Time Dynamics using Lagrange Multipliers", SIGGRAPH 1996; R. Featherstone,
+// "Rigid Body Dynamics Algorithms", 2008, chapter 8.
 #pragma once
 
 #include "math/block_ldlt.h"
@@ -16,8 +17,8 @@
 
 namespace gyre {
 
-// The rows of a joint lie side by side, so that what one of them has to do with all others is one run over lanes. Lanes beyond the
-// rows are zero.
+// The rows of a joint side by side, so that products of one row with all others are one run over lanes. Lanes
+// beyond the rows are zero.
 constexpr int kRowLanes = 8;
 struct RowVectors {
   float x[kRowLanes] = {}, y[kRowLanes] = {}, z[kRowLanes] = {};
@@ -25,37 +26,37 @@ struct RowVectors {
   void set(int row, Vec3 v) { x[row] = v.x, y[row] = v.y, z[row] = v.z; }
 };
 
-// A row sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
+// The speed of a row is direction . (v_b - v_a) + angular_b . w_b - angular_a . w_a.
 struct ArticulationRows {
-  RowVectors direction;          // direction of a force; zero for a turning row
-  RowVectors arm_a, arm_b;       // r x push, or the axis of a turn
-  RowVectors spin_a, spin_b;     // inverse inertia times arm
-  float compliance[kRowLanes] = {};  // added to K: the speed by which the row gives way to an impulse of one
-  float target_speed[kRowLanes] = {};  // the speed asked for
+  RowVectors direction;                // of a force; zero for an angular row
+  RowVectors angular_a, angular_b;     // r x direction, or the axis of an angular row
+  RowVectors spin_a, spin_b;           // inverse inertia times the angular part
+  float compliance[kRowLanes] = {};    // added to K: the speed by which the row yields to an impulse of one
+  float target_speed[kRowLanes] = {};  // bias
 };
 
-// A joint of a linkage, while it is solved.
+// A joint of an articulation during its solve.
 struct ArticulationNode {
   std::uint32_t record = 0;  // slot of the joint
-  std::uint32_t work = 0;    // place of its JointConstraint
+  std::uint32_t work = 0;    // index of its JointConstraint
   std::int32_t body_a = kNoBody, body_b = kNoBody;
-  std::int32_t side_a = -1, side_b = -1;  // which bodies of the linkage they are; -1: it cannot be pushed
+  std::int32_t side_a = -1, side_b = -1;  // indices in the bodies of the articulation; -1: not movable
   int count = 0;                          // rows
   ArticulationRows rows;
 };
 static_assert(kMaxBlockRows <= kRowLanes);
 
-// A body of a linkage that moves.
+// A movable body of an articulation.
 struct ArticulationBody {
   std::int32_t body = kNoBody;
   bool is_pressed = false;  // contacts act on it
-  Sym3 geometric_stiffness;  // by how much tension holds its orientation: N m / rad
-  Sym3 inverse;             // inertia, raised to what a sub-step can bear
-  Sym3 inertia;             // as it is
-  Quat turn;                // what its velocities make of a sub-step
+  Sym3 geometric_stiffness;  // N m / rad, from tension in the joints
+  Sym3 inverse;              // of the inertia with geometric stiffness
+  Sym3 inertia;              // without geometric stiffness
+  Quat rotation;             // rotation in the sub-step by its velocities
 };
 
-// Two joints that share a body that moves, and where their block lies.
+// Two joints that share a movable body, and the offset of their block.
 struct ArticulationCoupling {
   std::uint32_t row = 0, column = 0;  // nodes
   std::uint32_t offset = 0;
@@ -63,7 +64,7 @@ struct ArticulationCoupling {
   bool row_has_b = false, column_has_b = false;  // the body is b of the joint
 };
 
-// An axis along which more acts than hard stops (solver/articulation/articulation_drives.h).
+// An axis with more than hard limits (solver/articulation/articulation_drives.h).
 struct DrivenAxis {
   std::uint32_t node = 0;
   AxisConstraint* axis = nullptr;
@@ -77,7 +78,7 @@ struct Articulation {
   std::span<double> values;  // of the matrix, then of its factors
   std::span<double> room;
   std::span<double> vector;
-  bool has_limits = false;  // limits that do not give way (solver/articulation/articulation_limits.h)
+  bool has_limits = false;  // hard limits (solver/articulation/articulation_limits.h)
   std::span<DrivenAxis> axes{};
   std::span<double> axis_room{};
 };
@@ -85,25 +86,26 @@ struct Articulation {
 struct ArticulationSolve {
   std::span<JointRecord> records;
   std::span<JointConstraint> work;
-  std::span<const JointOffsets> places;
+  std::span<const JointOffsets> offsets;
   JointBodies bodies;
   JointSettings settings;
-  float compliance = 0.0f;   // share of K by which rows give way
-  std::span<double> room{};  // of the worker, for the stops of the largest linkage
+  float compliance = 0.0f;   // compliance of rows, as a share of K
+  std::span<double> room{};  // of the worker, for the limits of the largest articulation
 };
 
-// The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
+// Adds `share` of the positive part of the geometric stiffness to an inertia and inverts it (six floats each,
+// as Sym3).
 void add_geometric_stiffness(const float* geometric_stiffness, const float* inertia, float share,
                              float* inverse_inertia);
 
-// The rows where the bodies are now, and their matrix, factored.
+// Prepares the rows at the present poses, and factors their matrix.
 void prepare_articulation(const Articulation& articulation, const ArticulationSolve& solve);
-// With the velocities after the forces: what is asked of the rows, and the impulses of the last sub-step.
+// At the velocities after forces: computes the bias, and applies the impulses of the last sub-step.
 void warm_start_articulation(const Articulation& articulation, const ArticulationSolve& solve);
 void solve_articulation(const Articulation& articulation, const ArticulationSolve& solve);
 // After the contacts.
 void solve_articulation_after_contacts(const Articulation& articulation, const ArticulationSolve& solve);
-// After the move: takes away all speed along the rows, and sums the impulses.
+// After the move: removes all speed along the rows, and sums the impulses.
 void relax_articulation(const Articulation& articulation, const ArticulationSolve& solve);
 
 }  // namespace gyre

@@ -1,29 +1,31 @@
-// What acts along the axes of a linkage's joints (springs, motors, dry friction, stops that give way), solved with its equations.
+// Springs, motors, dry friction and soft limits along the axes of an articulation, solved with its equations.
 //
-// A sweep over an axis sees its two bodies alone. Where a light body ties heavy ones, or an arm is long, that is a thousandth of what hangs
-// on the axis: a spring then finds its force some steps late, and a late spring feeds what it should hold. So what an impulse along each
-// axis makes of the whole linkage is found once its equations are placed; with that a spring has the effective mass that moves,
-// and what it gives leaves all equations as they are. Several axes are swept until none changes. Source: as of solver/articulation/articulation_limits.h.
+// An iteration over a joint sees its two bodies alone. Where a light body connects heavy ones, or an arm is
+// long, their mass is a thousandth of the mass on the axis: a spring then finds its force some steps late,
+// and a late spring adds energy. So the response of the whole articulation to an impulse along each axis is
+// found once its equations are prepared. With it a spring has the true effective mass, and its impulse leaves
+// all equations as they are. Several axes are iterated until none changes. Sources as of
+// solver/articulation/articulation_limits.h.
 #pragma once
 
 #include "solver/articulation/articulation.h"
 
 namespace gyre {
 
-// Axes that are solved together, at most; others of the linkage are swept as if two bodies were alone.
+// Largest number of axes that are solved together; others are iterated as if two bodies were alone.
 constexpr std::size_t kMaxDrivenAxes = 96;
 
-// Whether anything acts along an axis besides hard stops.
+// True if anything acts along an axis besides hard limits.
 bool is_driven_axis(const AxisConstraint& axis);
 
-// How many numbers Linkage::axis_room holds.
+// Size of Articulation::axis_room, in numbers.
 std::size_t drives_room(const Articulation& articulation, std::size_t axes);
 
-// Once equations are placed and factored: responses, effective masses, what springs make of a sub-step.
+// After preparation and factorisation: computes responses, effective masses and spring coefficients.
 void prepare_drives(const Articulation& articulation, const ArticulationSolve& solve);
-// Before the impulses of the last sub-step are given once more: adds what those of the axes will do to AxisConstraint::worked.
-void note_warm_work(const Articulation& articulation, const ArticulationSolve& solve);
-// Changes velocities and impulses; equations hold as they did. soft: as solve_axis().
+// Before the warm start: adds the work of the axes' accumulated impulses to AxisConstraint::drive_work.
+void add_warm_start_work(const Articulation& articulation, const ArticulationSolve& solve);
+// Changes velocities and impulses without violating equations. soft: as solve_axis().
 void solve_drives(const Articulation& articulation, const ArticulationSolve& solve, bool soft);
 
 }  // namespace gyre

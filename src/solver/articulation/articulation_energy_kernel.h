@@ -1,35 +1,36 @@
-// Joints do no work, and those of a linkage must do none either (solver/articulation/linkage_lanes.h). Where limbs turn far within a sub-step its
-// equations, whose bend is asked for to second order, may give energy, and what they give in one they give again in the next: small nets
-// of light knots that whipped gained fifty times what they could fall by, thousands with more of the bend asked for. So what they gave
-// in a sub-step, beside what forces and contacts did, is taken away as it ends, and what is more than there was at once, by slowing all
-// inner motion alike: joints that keep to their rows at two velocities do so in between, and what hangs on nothing keeps its momentum and
-// angular momentum.
-// docs/decisions/joint-trees.md has the figures.
+// Limits the kinetic energy that passive joints of a bundle add (solver/articulation/articulation_lanes.h).
+// Where links rotate far within a sub-step, the equations with second-order bias can do work, and each
+// sub-step repeats it: small nets of light knots that whipped gained fifty times the energy of their fall,
+// thousands of times with more bias. So the energy added in a sub-step, beyond forces and contacts, is
+// removed at its end, and gain beyond the existing energy at once, by scaling all inner motion. Velocities
+// between two that satisfy the rows satisfy them too, and a free articulation keeps its momentum and angular
+// momentum. docs/decisions/joint-trees.md has the figures.
 #pragma once
 
-#include "solver/articulation/linkage_block.h"
+#include "solver/articulation/articulation_block.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Where bodies are, as seen from the first.
+// Positions of the centres relative to the first body.
 template <int W>
-GYRE_INLINE void place_centers(const WideBundle<W>& bundle) {
+GYRE_INLINE void compute_centers(const WideBundle<W>& bundle) {
   const Wide<W> zero(0.0f);
   bundle.bodies[0].center = {zero, zero, zero};
   for (std::uint32_t i = 0; i + 1 < bundle.plain.body_count; ++i) {
     const TraversalStep& step = bundle.plain.traversal[i];
     const LaneNode& node = bundle.plain.nodes[step.node];
     const WideJoint<W>& joint = bundle.joints[step.node];
-    const Vec3W<W> way = joint.from_a + joint.error - joint.from_b;
+    const Vec3W<W> offset = joint.from_a + joint.error - joint.from_b;
     if (step.to_b)
-      bundle.bodies[node.b].center = bundle.bodies[node.a].center + way;
+      bundle.bodies[node.b].center = bundle.bodies[node.a].center + offset;
     else
-      bundle.bodies[node.a].center = bundle.bodies[node.b].center - way;
+      bundle.bodies[node.a].center = bundle.bodies[node.b].center - offset;
   }
 }
 
-// The motion of what holds a linkage, as that of all its bodies, where one body does and it moves.
+// The motion of the carrier of an articulation as that of all its bodies, if it has a single carrier that
+// moves.
 template <int W>
 struct CarrierMotion {
   bool moves = false;  // in any lane
@@ -37,55 +38,57 @@ struct CarrierMotion {
   Vec3W<W> at(const WideBody<W>& body) const { return linear + cross(angular, body.center - center); }
 };
 template <int W>
-bool has_one_holder(const WideBundle<W>& bundle) {
+bool has_one_carrier(const WideBundle<W>& bundle) {
   return bundle.plain.moving_count + 1 == bundle.plain.body_count;
 }
 template <int W>
-__attribute__((noinline)) CarrierMotion<W> carriage_of(const WideBundle<W>& bundle) {
+__attribute__((noinline)) CarrierMotion<W> carrier_motion_of(const WideBundle<W>& bundle) {
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
-  CarrierMotion<W> carriage{false, none, none, none};
-  if (!has_one_holder(bundle)) return carriage;
-  const WideBody<W>& held_by = bundle.bodies[bundle.plain.moving_count];
-  carriage.moves = any(max(length_squared(held_by.linear), length_squared(held_by.angular)) > zero);
-  if (!carriage.moves) return carriage;
-  carriage.linear = held_by.linear, carriage.angular = held_by.angular;
-  place_centers(bundle);
-  carriage.center = held_by.center;
-  return carriage;
+  CarrierMotion<W> carrier{false, none, none, none};
+  if (!has_one_carrier(bundle)) return carrier;
+  const WideBody<W>& carrier_body = bundle.bodies[bundle.plain.moving_count];
+  carrier.moves = any(max(length_squared(carrier_body.linear), length_squared(carrier_body.angular)) > zero);
+  if (!carrier.moves) return carrier;
+  carrier.linear = carrier_body.linear, carrier.angular = carrier_body.angular;
+  compute_centers(bundle);
+  carrier.center = carrier_body.center;
+  return carrier;
 }
 
-// J, of what can be pushed, as seen from what holds it. (In one place, as what follows: it is asked for rarely, from many.)
+// J, of the movable bodies, relative to the carrier. (Not inlined, like the next ones: rarely called, from
+// many places.)
 template <int W>
 __attribute__((noinline)) Wide<W> kinetic_energy(const WideBundle<W>& bundle,
-                                                 const CarrierMotion<W>& carriage) {
+                                                 const CarrierMotion<W>& carrier) {
   Wide<W> twice(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
     const WideBody<W>& body = bundle.bodies[i];
     Vec3W<W> linear = body.linear, angular = body.angular;
-    if (carriage.moves) linear = linear - carriage.at(body), angular = angular - carriage.angular;
+    if (carrier.moves) linear = linear - carrier.at(body), angular = angular - carrier.angular;
     twice += keep(body.inverse_mass > 0.0f, length_squared(linear) / body.inverse_mass);
     twice += dot(angular, body.inertia * angular);
   }
   return 0.5f * twice;
 }
 
-// Those lanes whose joints should do no work: of bodies that turn about all axes, that hang on nothing that moves, or on one body.
+// Lanes whose joints should do no work: their bodies rotate about all axes, and they are free or have a
+// static or single carrier.
 template <int W>
-__attribute__((noinline)) Mask<W> are_workless(const WideBundle<W>& bundle) {
-  Mask<W> workless = Mask<W>::splat(!bundle.plain.has_drives);
+__attribute__((noinline)) Mask<W> find_passive_lanes(const WideBundle<W>& bundle) {
+  Mask<W> passive = Mask<W>::splat(!bundle.plain.has_drives);
   for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
     const WideBody<W>& body = bundle.bodies[i];
     const Wide<W> zero(0.0f);
     if (bundle.moves(i))
-      workless = workless & (body.inertia.xx > zero);
-    else if (!has_one_holder(bundle))
-      workless = workless & (max(length_squared(body.linear), length_squared(body.angular)) <= zero);
+      passive = passive & (body.inertia.xx > zero);
+    else if (!has_one_carrier(bundle))
+      passive = passive & (max(length_squared(body.linear), length_squared(body.angular)) <= zero);
   }
-  return workless;
+  return passive;
 }
 
-// The motion that a linkage would have as one rigid body, with the momenta that it has; of what hangs on something, that of this.
+// The motion of an articulation as one rigid body with its momenta; of a carried one, that of its carrier.
 template <int W>
 struct RigidMotion {
   Vec3W<W> center, linear, angular;
@@ -93,12 +96,12 @@ struct RigidMotion {
 };
 
 template <int W>
-GYRE_INLINE RigidMotion<W> rigid_motion(const WideBundle<W>& bundle, const CarrierMotion<W>& carriage) {
+GYRE_INLINE RigidMotion<W> rigid_motion(const WideBundle<W>& bundle, const CarrierMotion<W>& carrier) {
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
   if (bundle.plain.moving_count < bundle.plain.body_count)
-    return {carriage.center, carriage.linear, carriage.angular, zero};
-  place_centers(bundle);
+    return {carrier.center, carrier.linear, carrier.angular, zero};
+  compute_centers(bundle);
   Wide<W> mass = zero;
   Vec3W<W> moment = none, momentum = none;
   const auto mass_of = [&](const WideBody<W>& body) {
@@ -129,27 +132,27 @@ GYRE_INLINE RigidMotion<W> rigid_motion(const WideBundle<W>& bundle, const Carri
   return {center, linear, angular, 0.5f * (mass * length_squared(linear) + dot(angular, spin))};
 }
 
-// Slows inner motion until no more than `left` (J) is there, in these lanes. `turns`: whether the rigid motion may.
+// Scales inner motion until `left` (J) remain, in these lanes. `rotates`: whether the rigid motion may.
 template <int W>
-GYRE_INLINE void slow_down(const WideBundle<W>& bundle, const RigidMotion<W>& rigid, bool turns,
-                           Mask<W> lanes, Wide<W> energy, Wide<W> left) {
-  const Wide<W> inner = energy - rigid.energy, kept = left - rigid.energy, zero(0.0f);
-  const Wide<W> share = sqrt(keep((inner > zero) & (kept > zero), kept / inner));
+GYRE_INLINE void scale_inner_motion(const WideBundle<W>& bundle, const RigidMotion<W>& rigid, bool rotates,
+                                    Mask<W> lanes, Wide<W> energy, Wide<W> left) {
+  const Wide<W> inner = energy - rigid.energy, remaining = left - rigid.energy, zero(0.0f);
+  const Wide<W> share = sqrt(keep((inner > zero) & (remaining > zero), remaining / inner));
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
     WideBody<W>& body = bundle.bodies[i];
     Vec3W<W> linear = rigid.linear;
-    if (turns) linear += cross(rigid.angular, body.center - rigid.center);
+    if (rotates) linear += cross(rigid.angular, body.center - rigid.center);
     body.linear = select<W>(lanes, linear + share * (body.linear - linear), body.linear);
     body.angular = select<W>(lanes, rigid.angular + share * (body.angular - rigid.angular), body.angular);
   }
 }
 
-// What follows does not begin with the impulses that gave too much, nor gives way under them.
+// Clears the impulses that added energy, so that no warm start or compliance uses them.
 template <int W>
-GYRE_INLINE void forget_impulses(const WideBundle<W>& bundle, Mask<W> lanes) {
+GYRE_INLINE void clear_impulses(const WideBundle<W>& bundle, Mask<W> lanes) {
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
-  const auto forget = [&](WideLimitAxis<W>& axis) {
+  const auto clear = [&](WideLimitAxis<W>& axis) {
     axis.low_impulse = keep(~lanes, axis.low_impulse);
     axis.high_impulse = keep(~lanes, axis.high_impulse);
   };
@@ -157,99 +160,103 @@ GYRE_INLINE void forget_impulses(const WideBundle<W>& bundle, Mask<W> lanes) {
     WideJoint<W>& joint = bundle.joints[n];
     joint.linear_impulse = select<W>(lanes, none, joint.linear_impulse);
     joint.angular_impulse = select<W>(lanes, none, joint.angular_impulse);
-    if (bundle.plain.nodes[n].has_twist) forget(joint.twist);
-    if (bundle.plain.nodes[n].has_swing) forget(joint.swing);
+    if (bundle.plain.nodes[n].has_twist) clear(joint.twist);
+    if (bundle.plain.nodes[n].has_swing) clear(joint.swing);
   }
 }
 
-// J: with which all bodies go back to where joints would have them, if they are far off and errors are taken back at `rate` (1/s); and of
-// what turns with a holder, what its way bends by in a sub-step of `h`.
+// J: the energy of all bodies while large errors are removed at `rate` (1/s); for a carried articulation,
+// plus that of its curved path in a sub-step of `h`.
 template <int W>
-GYRE_INLINE Wide<W> energy_of_errors(const WideBundle<W>& bundle, const CarrierMotion<W>& carriage,
-                                     float rate, float h) {
-  Wide<W> sum(0.0f), bent(0.0f);
+GYRE_INLINE Wide<W> energy_of_error_removal(const WideBundle<W>& bundle, const CarrierMotion<W>& carrier,
+                                            float rate, float h) {
+  Wide<W> sum(0.0f), carried(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
     const WideBody<W>& body = bundle.bodies[i];
-    const Wide<W> most = max(body.inertia.xx, max(body.inertia.yy, body.inertia.zz));
+    const Wide<W> largest = max(body.inertia.xx, max(body.inertia.yy, body.inertia.zz));
     sum += keep(body.inverse_mass > 0.0f, (kMaxErrors.point * kMaxErrors.point) / body.inverse_mass);
-    sum += (kMaxErrors.turn * kMaxErrors.turn) * most;
-    if (!carriage.moves) continue;
-    const Vec3W<W> geometric_stiffness = h * cross(carriage.angular, carriage.at(body) - carriage.linear);
-    bent += keep(body.inverse_mass > 0.0f, length_squared(geometric_stiffness) / body.inverse_mass);
+    sum += (kMaxErrors.rotation * kMaxErrors.rotation) * largest;
+    if (!carrier.moves) continue;
+    const Vec3W<W> velocity_change = h * cross(carrier.angular, carrier.at(body) - carrier.linear);
+    carried += keep(body.inverse_mass > 0.0f, length_squared(velocity_change) / body.inverse_mass);
   }
-  return (0.5f * rate * rate) * sum + 0.5f * bent;
+  return (0.5f * rate * rate) * sum + 0.5f * carried;
 }
 
-// Those in which a link is so light between others that it may be as fast as can be after any solution.
+// Lanes with a link so light between others that any solution may give it a huge speed.
 template <int W>
 GYRE_INLINE Mask<W> extreme_ratio_lanes(const WideBundle<W>& bundle) {
   return Wide<W>::load(bundle.plain.has_extreme_mass_ratio) > Wide<W>(0.0f);
 }
 
-// How energy is watched while a stage changes velocities, from its making to bound(). What joints gave in the sub-step so far is kept from
-// stage to stage. What they do not change, a linkage's motion as one rigid body, is told before where a link is light: of what has a billion
-// times its energy floats cannot tell it any more.
+// Measures the energy around a stage that changes velocities, from construction to limit_gain(). The gain of
+// a sub-step is passed on from stage to stage. With light links the rigid motion is recorded before the
+// stage: at a billion times its energy floats cannot tell it any more.
 template <int W>
 class EnergyLimiter {
  public:
-  // Of the first stage of a sub-step: in `lanes`.
+  // For the first stage of a sub-step, in `lanes`.
   __attribute__((noinline)) EnergyLimiter(const WideBundle<W>& bundle, Mask<W> lanes)
-      : bundle_(bundle), watched_(any(lanes) ? lanes & are_workless(bundle) : lanes) {
+      : bundle_(bundle), limited_(any(lanes) ? lanes & find_passive_lanes(bundle) : lanes) {
     Wide<W>(0.0f).store(bundle.plain.energy_gain);
-    keep(watched_, Wide<W>(1.0f)).store(bundle.plain.energy_gain + W);
-    tell();
+    keep(limited_, Wide<W>(1.0f)).store(bundle.plain.energy_gain + W);
+    record_energy();
   }
-  // Of a later one.
+  // For later stages.
   __attribute__((noinline)) explicit EnergyLimiter(const WideBundle<W>& bundle)
-      : bundle_(bundle), watched_(Wide<W>::load(bundle.plain.energy_gain + W) > Wide<W>(0.0f)) {
-    tell();
+      : bundle_(bundle), limited_(Wide<W>::load(bundle.plain.energy_gain + W) > Wide<W>(0.0f)) {
+    record_energy();
   }
-  // Before bodies move: leaves joints as much as there was, or as errors are taken back with at `rate` (1/s) in a sub-step of `h`, and
-  // takes the rest away.
-  void bound(float rate, float h) const { bound(kMaxEnergyGainAhead, kMaxEnergyGainAhead, rate, h); }
-  // Once they have: takes away what joints have given, if it is more than a little. Returns the lanes of which motion was changed.
-  Mask<W> remove_gain() const { return bound(kMaxEnergyGain, 0.0f, 0.0f, 0.0f); }
+  // Before bodies move: limits the gain to the existing energy, or to that of error removal at `rate` (1/s)
+  // in a sub-step of `h`.
+  void limit_gain(float rate, float h) const {
+    limit_gain(kMaxEnergyGainAhead, kMaxEnergyGainAhead, rate, h);
+  }
+  // After the move: removes the energy that joints added, if it is more than a little. Returns the changed
+  // lanes.
+  Mask<W> remove_gain() const { return limit_gain(kMaxEnergyGain, 0.0f, 0.0f, 0.0f); }
 
  private:
-  // Where joints have given more than `most` of what there was, leaves them what `left` says of that. (In one place: hardly anything is
-  // ever to be taken away.)
-  __attribute__((noinline)) Mask<W> bound(float most, float left, float rate, float h) const {
-    if (none(watched_)) return watched_;
+  // Where joints added more than `max_gain` of the energy before, leaves the share `left` of that. (Not
+  // inlined: there is hardly ever anything to remove.)
+  __attribute__((noinline)) Mask<W> limit_gain(float max_gain, float left, float rate, float h) const {
+    if (none(limited_)) return limited_;
     const Wide<W> zero(0.0f), own = max(energy_ - Wide<W>::load(bundle_.plain.energy_gain), zero);
-    const Wide<W> energy = kinetic_energy(bundle_, carriage_), energy_gain = energy - own;
-    Mask<W> slowed = watched_ & (energy_gain > zero) & (energy_gain > most * own);
-    Wide<W> kept = left * own;
+    const Wide<W> energy = kinetic_energy(bundle_, carrier_), energy_gain = energy - own;
+    Mask<W> slowed = limited_ & (energy_gain > zero) & (energy_gain > max_gain * own);
+    Wide<W> allowed = left * own;
     if (any(slowed) && rate > 0.0f) {
-      const Wide<W> least = energy_of_errors(bundle_, carriage_, rate, h);
-      slowed = slowed & (energy_gain > most * least);
-      kept = left * max(own, least);
+      const Wide<W> error_energy = energy_of_error_removal(bundle_, carrier_, rate, h);
+      slowed = slowed & (energy_gain > max_gain * error_energy);
+      allowed = left * max(own, error_energy);
     }
     if (any(slowed)) {
-      const bool turns = carriage_.moves || bundle_.plain.moving_count == bundle_.plain.body_count;
-      slow_down(bundle_, rigid_in(extreme_ratio_lanes(bundle_)), turns, slowed, energy, own + kept);
-      if (rate > 0.0f) forget_impulses(bundle_, slowed);
+      const bool rotates = carrier_.moves || bundle_.plain.moving_count == bundle_.plain.body_count;
+      scale_inner_motion(bundle_, rigid_in(extreme_ratio_lanes(bundle_)), rotates, slowed, energy,
+                         own + allowed);
+      if (rate > 0.0f) clear_impulses(bundle_, slowed);
     }
-    keep(watched_, select(slowed, kept, energy_gain)).store(bundle_.plain.energy_gain);
+    keep(limited_, select(slowed, allowed, energy_gain)).store(bundle_.plain.energy_gain);
     return slowed;
   }
-  void tell() {
-    if (none(watched_)) return;
-    carriage_ = carriage_of(bundle_);
-    energy_ = kinetic_energy(bundle_, carriage_);
-    if (any(watched_ & extreme_ratio_lanes(bundle_))) rigid_ = rigid_motion(bundle_, carriage_);
+  void record_energy() {
+    if (none(limited_)) return;
+    carrier_ = carrier_motion_of(bundle_);
+    energy_ = kinetic_energy(bundle_, carrier_);
+    if (any(limited_ & extreme_ratio_lanes(bundle_))) rigid_ = rigid_motion(bundle_, carrier_);
   }
-  // As it was before in these lanes, as it is in the others.
+  // The recorded motion in these lanes, the present one in others.
   RigidMotion<W> rigid_in(Mask<W> before) const {
-    const RigidMotion<W> now = rigid_motion(bundle_, carriage_);
+    const RigidMotion<W> now = rigid_motion(bundle_, carrier_);
     return {select<W>(before, rigid_.center, now.center), select<W>(before, rigid_.linear, now.linear),
             select<W>(before, rigid_.angular, now.angular), select(before, rigid_.energy, now.energy)};
   }
 
   const WideBundle<W>& bundle_;
-  Mask<W> watched_;
+  Mask<W> limited_;
   Wide<W> energy_{0.0f};
   RigidMotion<W> rigid_{};
-  CarrierMotion<W> carriage_{};
+  CarrierMotion<W> carrier_{};
 };
 
 }  // namespace GYRE_TARGET_NAMESPACE

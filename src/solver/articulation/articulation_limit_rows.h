@@ -1,58 +1,62 @@
-// What is known of the stops and servos of a bundle of linkages while solver/articulation/articulation_limits_kernel.h solves them, and how much room that takes.
+// Data of the limits and servos of a bundle in solver/articulation/articulation_limits_kernel.h, and their
+// size.
 #pragma once
 
-#include "solver/articulation/linkage_block.h"
+#include "solver/articulation/articulation_block.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// The stops at either end of an axis: x are the impulses found, beyond those that the axis has. Behind all of them stand the servos, whose
-// impulse is that of the low end, of either sign.
+// The limits at both ends of an axis; x are the impulses found beyond those of the axis. Servos follow the
+// limits; their impulse is that of the low end, of either sign.
 template <int W>
 struct WideLimit {
-  Wide<W> speed, low_asked, high_asked, low_x, high_x;
+  Wide<W> speed, low_bias, high_bias, low_x, high_x;
   Mask<W> low_on, high_on;
   WideLimitAxis<W>* axis;
   const LaneNode* node;
-  bool has_low;  // a swing has only the other one
-  // Lanes, a bit for each: that have it in question, and in which the ways between it and all others so marked are kept.
-  std::uint32_t in, kept;
-  bool has_response;        // it is known what an impulse makes of the linkage, in this part of the sub-step
-  bool has_reach;           // it is known which columns that impulse reaches
-  bool has_turns;           // the next are known, in this part of the sub-step
-  Vec3W<W> turn_a, turn_b;  // how an impulse of one turns its two bodies
-  Vec3W<W> kept_about;      // in a's axes: the axis for which ways are kept
+  bool has_low;  // a swing has only a high end
+  // Bits of lanes: in which it is active, and in which its Delassus entries with all others so marked are
+  // cached.
+  std::uint32_t active, cached;
+  bool has_response;        // the response is known in this half step
+  bool has_reach;           // the columns of its response are known
+  bool has_spins;           // the spins are known in this half step
+  Vec3W<W> spin_a, spin_b;  // spins of its two bodies for an impulse of one
+  Vec3W<W> cached_axis;     // in a's axes: the axis of the cached entries
 };
 
-// One end of a stop, in each lane another.
+// One end of a limit; each lane may hold another.
 template <int W>
 struct LimitSlot {
-  Wide<W> excess;       // rad/s: by how much its speed towards the inside is more than what is asked
+  Wide<W> excess;       // rad/s: speed towards the inside beyond the bias
   Wide<W> share;        // impulse for each rad/s of that, not positive
-  Wide<W> least, room;  // least: of the impulse, room: from there to where it is, both not positive
-  // Only in bundles with servos: how far it may grow; `room` is what has been given there, since bounds may be far beyond that.
-  Wide<W> most;
+  Wide<W> min_impulse, room;  // min_impulse: lower bound; room: from there to the present impulse; both not
+                              // positive
+  // Only in bundles with servos: upper bound; `room` is then the impulse so far, since bounds may be far
+  // beyond it.
+  Wide<W> max_impulse;
 };
 
-// For which slots of each lane the ways are laid out, and lanes, a bit for each, in which they have been found anew since. Up to
-// `cleared` slots there is nothing else.
+// The layout of Delassus entries by slots, and bits of lanes with newer entries. Slots up to `cleared` have
+// no other entries.
 template <int W>
 struct LimitDelassus {
   alignas(Wide<W>) std::uint32_t counts[W];
   std::uint32_t renewed, cleared;
 };
 
-constexpr float kMaxLimitImpulse = 3.0e38f;  // of an unbounded limit
+constexpr float kMaxLimitImpulse = 3.0e38f;  // no upper bound
 
-// As many slots stand in registers while they are swept.
-constexpr std::uint32_t kFewSlots = 8;
+// Number of slots that stay in registers during the iteration.
+constexpr std::uint32_t kRegisterSlots = 8;
 
 template <int W>
 constexpr std::size_t max_slots(const ArticulationBundle& bundle) {
-  return bundle.limit_count > kFewSlots / 2 ? 2 * std::size_t(bundle.limit_count) : kFewSlots;
+  return bundle.limit_count > kRegisterSlots / 2 ? 2 * std::size_t(bundle.limit_count) : kRegisterSlots;
 }
 
-// Of all stops together; what lies behind these words is aligned as vectors are.
+// Of all limits together; the data behind these words are aligned as vectors.
 constexpr std::size_t all_reach_words(const ArticulationBundle& bundle) {
   constexpr std::size_t kWords = 64 / sizeof(std::uint64_t);
   return (bundle.limit_count * reach_words(bundle.column_count) + kWords - 1) / kWords * kWords;

@@ -1,22 +1,22 @@
 #include "solver/articulation/articulation_limits.h"
 
-#include "solver/articulation/linkage_response.h"
+#include "solver/articulation/articulation_response.h"
 
 namespace gyre {
 
 namespace {
 
-constexpr float kCalm = 1.0e-4f;     // m/s or rad/s: less is left as it is
-constexpr int kRounds = 3;           // each looks for stops that were passed because others hold
-constexpr double kSettled = 1.0e-5;  // m/s or rad/s: impulses that change speeds by less stand
-constexpr int kSweeps = 100;
+constexpr float kSpeedTolerance = 1.0e-4f;  // m/s or rad/s: smaller violations stay
+constexpr int kRounds = 3;                  // each finds limits that are violated because others hold
+constexpr double kSettledSpeed = 1.0e-5;    // m/s or rad/s: smaller changes of speed end the iteration
+constexpr int kIterations = 100;
 
-// A stop at one end of an axis: it sees sign times the axis' speed.
+// A limit at one end of an axis: its speed is sign times that of the axis.
 struct LimitRow {
   std::uint32_t node = 0;
   AxisConstraint* axis = nullptr;
   float sign = 1.0f;
-  float asked = 0.0f;  // speed below which it holds
+  float bias = 0.0f;  // speed below which it acts
   float& impulse() const { return sign > 0.0f ? axis->axis.low_impulse : axis->axis.high_impulse; }
 };
 
@@ -33,56 +33,55 @@ class LimitSolve {
     for (int round = 0; round < kRounds; ++round) {
       if (count_ == kMaxLimits) count_ = 0;
       const std::size_t known = count_;
-      list_passed();
-      if (count_ == known && (round > 0 || !is_any_off())) return;
+      list_violated();
+      if (count_ == known && (round > 0 || !is_any_violated())) return;
       for (std::size_t c = known; c < count_; ++c)
         find_response(articulation_, solve_, rows_[c], columns_.at(c, row_count_));
       compute_delassus(articulation_, solve_, {rows_, count_}, columns_, known, matrix_[0], kMaxLimits);
       find_impulses();
-      direction();
+      apply();
     }
   }
 
  private:
-  // By how much the stop's speed is above what is asked.
-  float speed_of(const LimitRow& stop) const {
-    const float second_order_bias = bounds_.turn > 0.0f ? stop.axis->second_order_bias : 0.0f;
+  // Speed of the limit minus its bias.
+  float speed_of(const LimitRow& limit) const {
+    const float second_order_bias = bounds_.rotation > 0.0f ? limit.axis->second_order_bias : 0.0f;
     const float speed =
-        second_order_bias + axis_speed(articulation_.nodes[stop.node], stop.axis->row, solve_.bodies);
-    return stop.sign * speed - stop.asked;
+        second_order_bias + axis_speed(articulation_.nodes[limit.node], limit.axis->row, solve_.bodies);
+    return limit.sign * speed - limit.bias;
   }
 
-  // Those that are passed, or bear an impulse.
-  void list_passed() {
+  // Lists limits that are violated or have an impulse.
+  void list_violated() {
     const std::uint32_t nodes = std::uint32_t(articulation_.nodes.size());
     for (std::uint32_t k = 0; k < nodes && count_ < kMaxLimits; ++k) {
       const std::uint32_t n = (first_ + k) % nodes;
       const ArticulationNode& node = articulation_.nodes[n];
       for (AxisConstraint& x : solve_.work[node.work].axes) {
         if (!has_hard_limit(x) || !(x.mass > 0.0f)) continue;
-        const bool turns = x.row.push_b == Vec3{} && x.row.push_a == Vec3{};
-        const float least = turns ? -min(bounds_.turn, kMaxLimitError) : -bounds_.point;
-        if (x.has_low) consider({n, &x, 1.0f}, max(low_gap(x), least));
-        if (x.has_high) consider({n, &x, -1.0f}, max(high_gap(x), least));
+        const bool is_angular = x.row.linear_b == Vec3{} && x.row.linear_a == Vec3{};
+        const float lowest = is_angular ? -min(bounds_.rotation, kMaxLimitError) : -bounds_.point;
+        if (x.has_low) consider({n, &x, 1.0f}, max(low_gap(x), lowest));
+        if (x.has_high) consider({n, &x, -1.0f}, max(high_gap(x), lowest));
       }
-      if (count_ == kMaxLimits)
-        first_ = n;  // those of its stops that found no room come first in the next round
+      if (count_ == kMaxLimits) first_ = n;  // its other limits come first in the next round
     }
   }
-  void consider(LimitRow stop, float gap) {
+  void consider(LimitRow limit, float gap) {
     if (count_ == kMaxLimits) return;
     const float rate = gap > 0.0f ? 1.0f / solve_.settings.substep : solve_.settings.softness.bias_rate;
-    stop.asked = -rate * gap;
-    if (!(stop.impulse() > 0.0f) && !(speed_of(stop) < -kCalm)) return;
+    limit.bias = -rate * gap;
+    if (!(limit.impulse() > 0.0f) && !(speed_of(limit) < -kSpeedTolerance)) return;
     for (std::size_t c = 0; c < count_; ++c)
-      if (stops_[c].axis == stop.axis && stops_[c].sign == stop.sign) return;
-    rows_[count_] = {stop.node, &stop.axis->row, stop.sign};
-    stops_[count_++] = stop;
+      if (limits_[c].axis == limit.axis && limits_[c].sign == limit.sign) return;
+    rows_[count_] = {limit.node, &limit.axis->row, limit.sign};
+    limits_[count_++] = limit;
   }
-  bool is_any_off() const {
+  bool is_any_violated() const {
     for (std::size_t c = 0; c < count_; ++c) {
-      const float speed = speed_of(stops_[c]);
-      if (speed < -kCalm || (speed > kCalm && stops_[c].impulse() > 0.0f)) return true;
+      const float speed = speed_of(limits_[c]);
+      if (speed < -kSpeedTolerance || (speed > kSpeedTolerance && limits_[c].impulse() > 0.0f)) return true;
     }
     return false;
   }
@@ -90,40 +89,40 @@ class LimitSolve {
   void find_impulses() {
     double speed[kMaxLimits], low[kMaxLimits];
     for (std::size_t c = 0; c < count_; ++c) {
-      speed[c] = double(speed_of(stops_[c]));
-      low[c] = -double(stops_[c].impulse());
+      speed[c] = double(speed_of(limits_[c]));
+      low[c] = -double(limits_[c].impulse());
       impulses_[c] = 0.0;
     }
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
-      double most = 0.0;
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      double largest = 0.0;
       for (std::size_t c = 0; c < count_; ++c) {
         if (!(matrix_[c][c] > 0.0)) continue;
         const double now = max(low[c], impulses_[c] - speed[c] / matrix_[c][c]), by = now - impulses_[c];
         if (by == 0.0) continue;
         impulses_[c] = now;
         for (std::size_t d = 0; d < count_; ++d) speed[d] += matrix_[d][c] * by;
-        most = max(most, std::abs(by * matrix_[c][c]));
+        largest = max(largest, std::abs(by * matrix_[c][c]));
       }
-      if (most < kSettled) return;
+      if (largest < kSettledSpeed) return;
     }
   }
 
-  void direction() {
-    push_rows(articulation_, solve_, {rows_, count_}, {impulses_, count_}, speeds_);
+  void apply() {
+    apply_row_impulses(articulation_, solve_, {rows_, count_}, {impulses_, count_}, speeds_);
     for (std::size_t c = 0; c < count_; ++c)
-      if (impulses_[c] != 0.0) stops_[c].impulse() = max(0.0f, stops_[c].impulse() + float(impulses_[c]));
+      if (impulses_[c] != 0.0) limits_[c].impulse() = max(0.0f, limits_[c].impulse() + float(impulses_[c]));
   }
 
   const Articulation& articulation_;
   const ArticulationSolve& solve_;
   ErrorBounds bounds_;
   std::size_t row_count_;    // of the equations
-  ResponseColumns columns_;  // by stop
+  ResponseColumns columns_;  // by limit
   std::span<double> speeds_;
   std::size_t count_ = 0;
   std::uint32_t first_ = 0;  // node
-  // Of the first `count_` stops; what lies behind is not known.
-  LimitRow stops_[kMaxLimits];
+  // Valid for the first `count_` limits.
+  LimitRow limits_[kMaxLimits];
   ResponseRow rows_[kMaxLimits];
   double matrix_[kMaxLimits][kMaxLimits];
   double impulses_[kMaxLimits];

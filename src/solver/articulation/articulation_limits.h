@@ -1,10 +1,12 @@
-// Stops of the joints of a linkage (limits that do not give way), solved together with its equations.
+// Hard limits of an articulation, solved together with its equations.
 //
-// A sweep finds a stop's impulse as if two bodies were alone; where a whole limb hangs on them, it takes many, and the equations
-// that come after undo most of it. So what an impulse at each stop in question makes of all of the linkage, equations included, is found
-// from the factors that are there anyway (math/block_ldlt.h), and the impulses are those of the complementarity problem that is
-// left: no impulse pulls, no stop that bears one is left, none is passed. Sources: as of solver/articulation/articulation.h; R. W. Cottle, J.-S. Pang, R. E. Stone,
-// "The Linear Complementarity Problem", 1992 (projected Gauss-Seidel on its few rows).
+// An iteration finds the impulse of a limit as if two bodies were alone. With a whole limb on them it takes
+// many, and the equations that follow undo most of it. So the response of the whole articulation, equations
+// included, to an impulse at each active limit is found from the factors of the equations
+// (math/block_ldlt.h). The impulses then solve a small complementarity problem: no impulse is negative, no
+// limit with an impulse is left, none is violated. Sources: as of solver/articulation/articulation.h; R. W.
+// Cottle, J.-S. Pang, R. E. Stone, "The Linear Complementarity Problem", 1992 (projected Gauss-Seidel on its
+// few rows).
 #pragma once
 
 #include "solver/articulation/articulation.h"
@@ -12,16 +14,17 @@
 
 namespace gyre {
 
-// Stops that are solved together, at most: more take turns.
+// Largest number of limits that are solved together; more take turns.
 constexpr std::size_t kMaxLimits = 32;
 
 inline bool has_hard_limit(const AxisConstraint& axis) {
   return !axis.is_rod && axis.axis.limit_frequency <= 0.0f && (axis.has_low || axis.has_high);
 }
-// How many numbers solve_limits() needs for a linkage.
+// Size of the memory of solve_limits() for an articulation, in numbers.
 std::size_t limits_room(std::size_t rows, std::size_t bodies);
 
-// Changes velocities and impulses, so that stops hold and equations hold as they did. `bounds`: none where only the speed counts, not how they bend either.
+// Changes velocities and impulses so that limits hold, without violating equations. `bounds`: kNoErrors for
+// speeds only, without second-order bias.
 void solve_limits(const Articulation& articulation, const ArticulationSolve& solve, ErrorBounds bounds);
 
 }  // namespace gyre

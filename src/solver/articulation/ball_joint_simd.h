@@ -1,7 +1,7 @@
-// Ball joints that are swept, side by side: those of a colour share no moving body, so W of them are solved at once. For ball
-// joints on which nothing else acts, which are what nets and grids are made of; the others are solved one by one. The same
-// arithmetic as prepare_joint(), update_joint_bias(), warm_start_joint(), solve_joint() and accumulate_joint_impulses() of solver/joint/joint.h, so a lane has
-// the bits that the joint has alone.
+// Iterative ball joints side by side: joints of a colour share no movable body, so W of them are solved at
+// once. Only for ball joints on which nothing else acts, as in nets and grids; others are solved one by one.
+// The arithmetic is that of prepare_joint(), update_joint_bias(), warm_start_joint(), solve_joint() and
+// accumulate_joint_impulses() of solver/joint/joint.h, so a lane has the bits of a joint alone.
 #pragma once
 
 #include "solver/core/body_motion.h"
@@ -10,7 +10,7 @@
 
 namespace gyre {
 
-// A joint as one lane. The floats are in the order of the kernels'.
+// A joint as one lane, with floats in the order of the kernels'.
 struct LaneBall {
   Vec3 local_a, local_b;  // anchors from the centres of mass, body frames
   Vec3 offset;            // JointOffsets::offset
@@ -20,13 +20,14 @@ struct LaneBall {
   Vec3 error, second_order_bias;       // as JointConstraint
 };
 
-// What a lane has still to read of its bodies' inertia: nothing; once, as it stays; or each time, as it turns with them.
-constexpr std::int32_t kInertiaKnown = 0, kInertiaStays = 1, kInertiaTurns = 2;
+// How a lane reads the inertia of its bodies: not at all; once, as it is constant; or each time, as it
+// rotates.
+constexpr std::int32_t kInertiaKnown = 0, kInertiaConstant = 1, kInertiaRotates = 2;
 
-// Who it joins: motion records, or kNoBody; for writing kNoBody where nothing pushes the body.
+// Motion records of its bodies, or kNoBody; for writing kNoBody if the body is not movable.
 struct LaneBallBodies {
   std::int32_t read_a = kNoBody, read_b = kNoBody, write_a = kNoBody, write_b = kNoBody;
-  std::int32_t inertia = kInertiaStays;
+  std::int32_t inertia = kInertiaConstant;
 };
 
 struct BallArrays {
@@ -40,18 +41,18 @@ struct BallSettings {
   float rate = 0.0f, mass_scale = 1.0f, impulse_scale = 0.0f;
 };
 
-// The kernels of one CPU target, on blocks [begin, end). A block begins with the lanes' LaneBallBodies (all read_a, all read_b,
-// ...), then come the floats of LaneBall, W of each, from `first_float` bytes on.
+// The kernels of one CPU target, on blocks [begin, end). A block begins with the lanes' LaneBallBodies (all
+// read_a, all read_b, ...), followed at `first_float` bytes by the floats of LaneBall, W of each.
 struct BallKernels {
   int width;
   std::size_t block_bytes, first_float;
-  // Finds the motion records of all lanes, which then stay where they are. Comes first.
+  // Finds the motion records of all lanes, which must not move afterwards. Comes first.
   void (*locate)(void* blocks, int begin, int end, const BallArrays& arrays);
-  void (*place)(void* blocks, int begin, int end, const BallArrays& arrays);
-  void (*second_order_bias)(void* blocks, int begin, int end, const BallSettings& settings);
-  void (*warm)(void* blocks, int begin, int end);
+  void (*prepare)(void* blocks, int begin, int end, const BallArrays& arrays);
+  void (*update_bias)(void* blocks, int begin, int end, const BallSettings& settings);
+  void (*warm_start)(void* blocks, int begin, int end);
   void (*solve)(void* blocks, int begin, int end, const BallSettings& settings);
-  // Takes all speed away, and sums the impulses.
+  // Removes all speed, and sums the impulses.
   void (*relax)(void* blocks, int begin, int end);
 };
 

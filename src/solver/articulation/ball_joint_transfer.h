@@ -1,4 +1,4 @@
-// Between the records of joints and the lanes of ball joints side by side (solver/articulation/ball_joint_simd.h).
+// Copies ball joints between their records and the lanes of solver/articulation/ball_joint_simd.h.
 #pragma once
 
 #include "solver/articulation/ball_joint_simd.h"
@@ -6,15 +6,16 @@
 
 namespace gyre {
 
-// Whether it is a ball joint on which nothing else acts.
+// True for a ball joint on which nothing else acts.
 bool fits_ball_lane(const JointRecord& joint, const JointDetail* detail);
 
-// A block whose lanes join nothing.
+// A block without joints.
 void clear_balls(const BallKernels& kernels, void* blocks, int block);
-// `offset`: as in JointOffsets. `warm_scale`: of its impulse, if begin_joint() did not see to that. `turns`: the inertia of one of its bodies turns with it.
+// `offset`: as in JointOffsets. `warm_scale`: of its impulse, if begin_joint() has not scaled it.
+// `inertia_rotates`: the inertia of one of its bodies rotates with it.
 void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, const JointRecord& joint,
-                Vec3 offset, float warm_scale, bool turns, const BodyInertia* inertia);
-// Impulses and sums, back into the record.
+                Vec3 offset, float warm_scale, bool inertia_rotates, const BodyInertia* inertia);
+// Stores impulses and sums in the record.
 void finish_ball(const BallKernels& kernels, const void* blocks, int block, int lane, JointRecord& joint);
 
 }  // namespace gyre

@@ -1,8 +1,9 @@
-// The kernels of ball joints side by side (solver/articulation/ball_joint_simd.h), one template for every width.
+// The kernels of ball joints side by side (solver/articulation/ball_joint_simd.h), one template for every
+// width.
 #pragma once
 
+#include "solver/articulation/articulation_block.h"
 #include "solver/articulation/ball_joint_simd.h"
-#include "solver/articulation/linkage_block.h"
 
 #include <cstring>
 
@@ -15,51 +16,53 @@ struct BallInertia {
   Sym3W<W> inverse;
 };
 
-// Where motion records lie.
+// Addresses of motion records.
 template <int W>
 using RecordList = float* [W];
 
 template <int W>
 struct BallBlock {
   std::int32_t read_a[W], read_b[W], write_a[W], write_b[W], inertia[W];
-  // As LaneBall. Side by side what the same sweeps read: they wait for memory more than they compute.
+  // As LaneBall. Fields that the same loops read are neighbours: the loops wait for memory more than they
+  // compute.
   Vec3W<W> local_a, local_b, offset, total, from_a, from_b, impulse, error, second_order_bias;
   Mat3W<W> mass;  // of this sub-step: inverse of K
-  // The bodies' records, to be read (zeros for what has none), and where they are written: most blocks push all that they read, and
-  // have one list for both.
+  // The records of the bodies for reading (zeros for none), and for writing: most blocks write all that they
+  // read and have one list for both.
   RecordList<W> record_a, record_b;
   const RecordList<W>* written_a;
   const RecordList<W>* written_b;
-  // Those of the block itself, or of another that has the same: nets are mostly of equal bodies, and then one stays in the cache.
+  // Own inertia, or that of another block with the same: nets mostly have equal bodies, and then one stays in
+  // the cache.
   const BallInertia<W>* inertia_a;
   const BallInertia<W>* inertia_b;
 
   BallInertia<W> own_inertia_a, own_inertia_b;
-  RecordList<W> pushed_a, pushed_b;  // what nothing pushes is written to `nowhere`
+  RecordList<W> write_list_a, write_list_b;  // immovable bodies are written to `nowhere`
   alignas(64) float nowhere[kRecordFloats];
 };
 
 template <int W>
 GYRE_INLINE const RecordList<W>* locate_lanes(float* motion, const std::int32_t* read,
                                               const std::int32_t* write, float* nowhere,
-                                              RecordList<W>& record, RecordList<W>& pushed) {
-  // Nothing is written to what is only read.
+                                              RecordList<W>& record, RecordList<W>& write_list) {
+  // Read-only records are never written.
   locate_records<W>(motion, read, const_cast<float*>(kNoRecord), record);
   if (all(WideInt<W>::load_unaligned(read) == WideInt<W>::load_unaligned(write)) &&
       none(WideInt<W>::load_unaligned(read) < WideInt<W>(0)))
     return &record;
-  locate_records<W>(motion, write, nowhere, pushed);
-  return &pushed;
+  locate_records<W>(motion, write, nowhere, write_list);
+  return &write_list;
 }
 template <int W>
 void locate_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
   float* const motion = &arrays.motion->linear_velocity.x;
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
-    block.written_a =
-        locate_lanes<W>(motion, block.read_a, block.write_a, block.nowhere, block.record_a, block.pushed_a);
-    block.written_b =
-        locate_lanes<W>(motion, block.read_b, block.write_b, block.nowhere, block.record_b, block.pushed_b);
+    block.written_a = locate_lanes<W>(motion, block.read_a, block.write_a, block.nowhere, block.record_a,
+                                      block.write_list_a);
+    block.written_b = locate_lanes<W>(motion, block.read_b, block.write_b, block.nowhere, block.record_b,
+                                      block.write_list_b);
   }
 }
 
@@ -74,7 +77,7 @@ struct BallMotion {
     gather_columns<8, W>(block.record_b, kMotionLinear, c);
     linear_b = {c[0], c[1], c[2]}, angular_b = {c[3], c[4], c[5]};
   }
-  GYRE_INLINE void direction(const BallBlock<W>& block, Vec3W<W> p) {
+  GYRE_INLINE void apply_impulse(const BallBlock<W>& block, Vec3W<W> p) {
     const BallInertia<W>&a = *block.inertia_a, &b = *block.inertia_b;
     linear_a -= a.inverse_mass * p;
     angular_a -= a.inverse * cross(block.from_a, p);
@@ -102,15 +105,15 @@ alignas(64) constexpr float kNothing[kRecordFloats] = {};
 template <int W>
 struct BallSide {
   QuatW<W> orientation;
-  Vec3W<W> moved;
+  Vec3W<W> delta_position;
 
   GYRE_INLINE BallSide(const std::int32_t* indices, const RecordList<W>& records, const BallArrays& arrays) {
     alignas(16) static constexpr float kUnturned[4] = {0.0f, 0.0f, 0.0f, 1.0f};
     Wide<W> c[4];
     gather_vec4<1, W, 4>(&arrays.orientation->x, indices, kUnturned, 0, c);
     orientation = {c[0], c[1], c[2], c[3]};
-    gather_columns<4, W>(records, kMotionMoved, c);
-    moved = {c[0], c[1], c[2]};
+    gather_columns<4, W>(records, kMotionDeltaPosition, c);
+    delta_position = {c[0], c[1], c[2]};
   }
 };
 
@@ -127,7 +130,7 @@ template <int W>
 GYRE_INLINE bool are_same(const BallInertia<W>& a, const BallInertia<W>& b) {
   return std::memcmp(&a, &b, sizeof(BallInertia<W>)) == 0;
 }
-// `before`: the block before this one, if it may be looked at.
+// `before`: the block before this one, if it may be shared.
 template <int W>
 GYRE_INLINE void load_inertia(BallBlock<W>& block, const BallBlock<W>* before, const BallArrays& arrays) {
   const auto inertia = WideInt<W>::load_unaligned(block.inertia);
@@ -136,9 +139,9 @@ GYRE_INLINE void load_inertia(BallBlock<W>& block, const BallBlock<W>* before, c
   load_inertia<W>(block.read_b, arrays, block.own_inertia_b);
   block.inertia_a = &block.own_inertia_a;
   block.inertia_b = &block.own_inertia_b;
-  const auto turns = inertia & WideInt<W>(kInertiaTurns);
-  turns.store_unaligned(block.inertia);
-  if (any(turns != WideInt<W>(0))) return;
+  const auto rotates = inertia & WideInt<W>(kInertiaRotates);
+  rotates.store_unaligned(block.inertia);
+  if (any(rotates != WideInt<W>(0))) return;
   const bool may_share =
       before != nullptr && none(WideInt<W>::load_unaligned(before->inertia) != WideInt<W>(kInertiaKnown));
   if (may_share && are_same<W>(*block.inertia_a, *before->inertia_a)) block.inertia_a = before->inertia_a;
@@ -163,7 +166,7 @@ GYRE_INLINE Mat3W<W> inverse_by_cofactors(const Mat3W<W>& m) {
 }
 
 template <int W>
-void place_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
+void prepare_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     const BallSide<W> a(block.read_a, block.record_a, arrays), b(block.read_b, block.record_b, arrays);
@@ -171,7 +174,7 @@ void place_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
     const BallInertia<W>&inertia_a = *block.inertia_a, &inertia_b = *block.inertia_b;
     block.from_a = rotate(a.orientation, block.local_a);
     block.from_b = rotate(b.orientation, block.local_b);
-    block.error = block.offset + (b.moved - a.moved) + block.from_b - block.from_a;
+    block.error = block.offset + (b.delta_position - a.delta_position) + block.from_b - block.from_a;
     const Wide<W> m = inertia_a.inverse_mass + inertia_b.inverse_mass, zero(0.0f);
     const Mat3W<W> by_a = between_skews(block.from_a, inertia_a.inverse),
                    by_b = between_skews(block.from_b, inertia_b.inverse);
@@ -193,11 +196,11 @@ void update_ball_bias(void* blocks, int begin, int end, const BallSettings& sett
 }
 
 template <int W>
-void warm_balls(void* blocks, int begin, int end) {
+void warm_start_balls(void* blocks, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     BallMotion<W> pair(block);
-    pair.direction(block, block.impulse);
+    pair.apply_impulse(block, block.impulse);
     pair.store(block);
   }
 }
@@ -210,7 +213,7 @@ void solve_balls(void* blocks, int begin, int end, const BallSettings& s) {
     const Vec3W<W> speed = pair.point_velocity(block) + block.second_order_bias;
     const Vec3W<W> change =
         -s.mass_scale * (block.mass * (speed + s.rate * block.error)) - s.impulse_scale * block.impulse;
-    pair.direction(block, change);
+    pair.apply_impulse(block, change);
     block.impulse += change;
     pair.store(block);
   }
@@ -224,7 +227,7 @@ void relax_balls(void* blocks, int begin, int end) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     BallMotion<W> pair(block);
     const Vec3W<W> change = -(block.mass * (pair.point_velocity(block) + nothing));
-    pair.direction(block, change);
+    pair.apply_impulse(block, change);
     block.impulse += change;
     block.total += block.impulse;
     pair.store(block);
@@ -238,9 +241,9 @@ constexpr BallKernels ball_kernels() {
           sizeof(BallBlock<W>),
           offsetof(BallBlock<W>, local_a),
           locate_balls<W>,
-          place_balls<W>,
+          prepare_balls<W>,
           update_ball_bias<W>,
-          warm_balls<W>,
+          warm_start_balls<W>,
           solve_balls<W>,
           relax_balls<W>};
 }

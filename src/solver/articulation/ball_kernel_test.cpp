@@ -1,4 +1,4 @@
-// Ball joints side by side: the bits of each joint solved alone, at every width.
+// Ball joints side by side have the bits of each joint solved alone, at every width.
 #include "base/arena/arena.h"
 #include "math/rotation.h"
 #include "solver/articulation/ball_joint_transfer.h"
@@ -16,7 +16,7 @@ constexpr int kJoints = 11;  // no whole number of blocks at any width but one
 constexpr float kSubstep = 1.0f / 480.0f;
 const JointSettings kSettings{kSubstep, {40.0f, 0.96f, 0.04f}, true};
 
-// Pairs of bodies of their own, some joined to the world, one to a body that nothing pushes.
+// Pairs of bodies; some are joined to the world, one to an immovable body.
 struct Pairs {
   Arena arena;
   std::vector<BodyMotion> motion{std::size_t(2 * kJoints)};
@@ -36,7 +36,7 @@ struct Pairs {
     for (std::size_t i = 0; i < motion.size(); ++i) {
       motion[i].linear_velocity = vector(3.0f);
       motion[i].angular_velocity = vector(8.0f);
-      motion[i].moved = vector(0.01f);
+      motion[i].delta_position = vector(0.01f);
       orientation[i] = from_rotation_vector(vector(1.0f));
       if (i == 4) continue;
       motion[i].inverse_mass = inertia[i].inverse_mass = 1.0f + 0.5f * next();
@@ -86,16 +86,16 @@ void solve_side_by_side(Pairs& pairs, int width) {
                pairs.places[std::size_t(i)].offset, 1.0f, true, pairs.inertia.data());
   }
   kernels.locate(memory, 0, blocks, arrays);
-  kernels.place(memory, 0, blocks, arrays);
-  kernels.second_order_bias(memory, 0, blocks, settings);
-  kernels.warm(memory, 0, blocks);
+  kernels.prepare(memory, 0, blocks, arrays);
+  kernels.update_bias(memory, 0, blocks, settings);
+  kernels.warm_start(memory, 0, blocks);
   kernels.solve(memory, 0, blocks, settings);
   kernels.relax(memory, 0, blocks);
   for (int i = 0; i < kJoints; ++i)
     finish_ball(kernels, memory, i / kernels.width, i % kernels.width, pairs.records[std::size_t(i)]);
 }
 
-TEST(BallKernel, LanesHaveTheBitsOfJointsAlone) {
+TEST(BallKernel, LanesHaveTheBitsOfSingleJoints) {
   Pairs alone;
   const Pairs untouched;
   solve_alone(alone);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kTwist = offsetof(LaneJoint, twist) / sizeof(float);
 constexpr std::size_t kSwing = offsetof(LaneJoint, swing) / sizeof(float);
-// Floats of a lane that come out, and those of an axis.
+// Offsets of the results of a lane, and of an axis.
 constexpr std::size_t kImpulses = offsetof(LaneJoint, linear_impulse) / sizeof(float);
 constexpr std::size_t kAngularImpulse = offsetof(LaneJoint, angular_impulse) / sizeof(float);
 constexpr std::size_t kTotalLinear = offsetof(LaneJoint, total_linear) / sizeof(float);
@@ -25,9 +25,9 @@ constexpr std::size_t kLowGap = offsetof(LaneLimitAxis, low_gap) / sizeof(float)
 constexpr std::size_t kHighGap = offsetof(LaneLimitAxis, high_gap) / sizeof(float);
 constexpr std::size_t kFrictionImpulse = offsetof(LaneDrives, friction_impulse) / sizeof(float);
 constexpr std::size_t kDrivesTotal = offsetof(LaneDrives, total) / sizeof(float);
-constexpr std::size_t kServoMost = offsetof(LaneServo, most) / sizeof(float);
+constexpr std::size_t kServoMaxImpulse = offsetof(LaneServo, max_impulse) / sizeof(float);
 
-// A lane of a joint of a bundle, or of what drives it, and ranges of its floats.
+// A lane of a joint of a bundle, or of its drives, and ranges of its floats.
 class Lane {
  public:
   Lane(const ArticulationBundle& bundle, int lane, std::uint32_t node)
@@ -40,7 +40,7 @@ class Lane {
   }
   float* at(std::size_t number) const { return first_ + number * width_; }
   std::size_t width() const { return width_; }
-  // Each float by itself: what is written to memory in pieces and read from there as one waits for the pieces.
+  // Each float by itself: a vector read of memory that was written in pieces waits for the pieces.
   float number(std::size_t begin) const { return first_[begin * width_]; }
   Vec3 vector(std::size_t begin) const { return {number(begin), number(begin + 1), number(begin + 2)}; }
 
@@ -51,7 +51,7 @@ class Lane {
   std::size_t width_;
 };
 
-// A lane in the order of its floats.
+// Writes a lane in the order of its floats.
 class LaneWriter {
  public:
   LaneWriter(const Lane& lane, std::size_t begin) : to_(lane.at(begin)), width_(lane.width()) {}
@@ -83,17 +83,17 @@ bool fits_hinge(const JointRecord& joint, const JointDetail* detail, const LaneS
   return !has_spring(axis) && (detail == nullptr || !has_drive(*detail));
 }
 
-// Drives that push, and those of balls, have no lanes.
+// Linear drives, and drives of ball joints, have no lanes.
 bool fits_drives(JointKind kind, const JointDetail& detail, LaneNode& node) {
   node.has_drive = detail.drive.max_torque > 0.0f;
   node.has_friction = detail.friction > 0.0f;
   return !(detail.drive.max_force > 0.0f) && (kind == JointKind::cone || !node.has_drive);
 }
 
-// Stops of a cone about its twist and its swing; nothing else acts on an axis.
+// Limits of a cone about its twist and its swing; nothing else acts on an axis.
 bool fits_axis(const JointAxisRecord& axis, JointAxis index, const LaneStart& start, LaneNode& node) {
   const bool is_limited = axis.motion == AxisMotion::limited;
-  if (axis.motion == AxisMotion::locked || (start.limits_only ? !is_limited : !acts(axis))) return true;
+  if (axis.motion == AxisMotion::locked || (start.limits_only ? !is_limited : !is_active(axis))) return true;
   if (!is_limited || is_compliant(axis) || node.kind != JointKind::cone) return false;
   const bool is_driven = axis.motor_force > 0.0f || axis.friction > 0.0f || has_spring(axis);
   if (is_driven && !start.limits_only) return false;
@@ -142,15 +142,15 @@ void begin_drives(const Lane& lane, const LaneNode& node, const JointRecord& joi
 }
 
 void begin_servo(const Lane& lane, const JointAxisRecord& axis, const LaneStart& start) {
-  // It may have been stronger when it gave that, or the sub-step longer.
-  const float most = start.substep * axis.motor_force;
-  const float kept = clamp(start.warm_scale * axis.motor_impulse, -most, most);
-  LaneWriter(lane, 0) << axis.motor_position << 0.0f << kept << 0.0f << 0.0f;
-  LaneWriter(lane, kServoMost) << most << axis.motor_velocity
-                               << (axis.has_motor_target ? start.softness.bias_rate : 0.0f);
+  // The motor may have been stronger in the last step, or the sub-step longer.
+  const float max_impulse = start.substep * axis.motor_force;
+  const float impulse = clamp(start.warm_scale * axis.motor_impulse, -max_impulse, max_impulse);
+  LaneWriter(lane, 0) << axis.motor_position << 0.0f << impulse << 0.0f << 0.0f;
+  LaneWriter(lane, kServoMaxImpulse) << max_impulse << axis.motor_velocity
+                                     << (axis.has_motor_target ? start.softness.bias_rate : 0.0f);
 }
 
-// Where a hinge's limits are in a detail too, so is what else acts on its axis.
+// If a hinge has a detail, the results of its axis are stored there too.
 void finish_hinge(const Lane& from, const LaneNode& shape, const Lane* drives, const Lane* servo,
                   JointRecord& joint, JointDetail* detail) {
   if (shape.has_twist) finish_limit(from, kTwist, joint.low_impulse, joint.high_impulse);
@@ -221,9 +221,8 @@ void load_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, c
   if (!shape.has_swing) {
     writer << 0.0f << 0.0f;
   } else {
-    constexpr float kMinSwing = 1.0e-3f;  // rad
     const JointAxisRecord& swing = detail->axes[int(JointAxis::angular_y)];
-    writer << 1.0f / max(detail->swing_y, kMinSwing) << 1.0f / max(detail->swing_z, kMinSwing);
+    writer << 1.0f / max(detail->swing_y, kMinSwingLimit) << 1.0f / max(detail->swing_z, kMinSwingLimit);
     begin_limit(to, kSwing, swing.limits, swing.low_impulse, swing.high_impulse, start);
   }
   if (!shape.has_twist) return;
@@ -232,7 +231,7 @@ void load_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, c
   begin_limit(to, kTwist, twist.limits, twist.low_impulse, twist.high_impulse, start);
 }
 
-void forget_lane_impulses(const ArticulationBundle& bundle) {
+void clear_lane_impulses(const ArticulationBundle& bundle) {
   constexpr std::size_t kFloats =
       sizeof(LaneJoint::linear_impulse) / sizeof(float) + sizeof(LaneJoint::angular_impulse) / sizeof(float);
   const std::size_t width = std::size_t(bundle.kernels->width);
@@ -242,23 +241,24 @@ void forget_lane_impulses(const ArticulationBundle& bundle) {
       std::memset(joint + first * sizeof(float) * width, 0, count * sizeof(float) * width);
     };
     clear(kImpulses, kFloats);
-    for (const std::size_t axis : {kTwist, kSwing}) clear(axis + kAxisImpulses, 2);  // of both stops
+    for (const std::size_t axis : {kTwist, kSwing}) clear(axis + kAxisImpulses, 2);  // of both limits
   }
 }
 
 float find_lane_error(const ArticulationBundle& bundle, int lane) {
-  float most = 0.0f;
-  const auto add = [&](Vec3 v) { most = max(most, largest(absolute(v))); };
+  float largest_error = 0.0f;
+  const auto add = [&](Vec3 v) { largest_error = max(largest_error, largest(absolute(v))); };
   for (std::uint32_t n = 0; n < bundle.node_count; ++n) {
     const LaneNode& node = bundle.nodes[n];
     const Lane from(bundle, lane, n);
     add(from.vector(kError));
     if (node.kind == JointKind::hinge) add(from.vector(kAngularError));
     if (node.has_twist)
-      most = max(most, max(-from.number(kTwist + kLowGap), -from.number(kTwist + kHighGap)));
-    if (node.has_swing) most = max(most, -from.number(kSwing + kHighGap));
+      largest_error =
+          max(largest_error, max(-from.number(kTwist + kLowGap), -from.number(kTwist + kHighGap)));
+    if (node.has_swing) largest_error = max(largest_error, -from.number(kSwing + kHighGap));
   }
-  return most;
+  return largest_error;
 }
 
 void store_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,

@@ -1,15 +1,16 @@
-// The contact kernels: prepare, warm start, solve, project and finish, one template for every width. Lane i of a block
-// computes exactly what a block of width 1 would, so the width never changes a bit.
+// The contact kernels: prepare, warm start, solve, project and finish, one template for every width. Lane i
+// of a block computes exactly what a block of width 1 would, so the width never changes a bit.
 //
-// A manifold has up to four normal rows and one friction row triple at the centre of pressure: two tangents and the twist
-// about the normal, limited together by an ellipsoid (S. Goyal, A. Ruina, J. Papadopoulos, "Planar sliding with dry
-// friction", 1991; R. Howe, M. Cutkosky, 1996), which couples sliding with spinning as a patch of uniform pressure does.
-// Normal rows are soft springs (after E. Catto, "Soft Constraints", 2011) that stiffen with age and get used to their load:
-// docs/decisions/contact-softness.md. Overlap is taken back apart from velocities (contact_project.h).
-// The normal rows of a manifold are solved together: taken one after the other they would set every box rocking.
+// A manifold has up to four normal rows and one friction row triple at the centre of pressure: two tangents
+// and the twist about the normal. An ellipsoid bounds the three together (S. Goyal, A. Ruina, J.
+// Papadopoulos, "Planar sliding with dry friction", 1991; R. Howe, M. Cutkosky, 1996); it couples sliding
+// with spinning like a patch of uniform pressure. Normal rows are soft springs (after E. Catto, "Soft
+// Constraints", 2011) that stiffen with age and adapt to their mean load: docs/decisions/contact-softness.md.
+// Pushout removes penetration apart from velocities (contact_project.h). The normal rows of a manifold are
+// solved together: one after the other they would set every box rocking.
 //
-// Error of a point: s = separation + n . (moved_b - moved_a + turned_b x r_b - turned_a x r_a), first order on purpose: a
-// rolling ball's contact does not rise with the material that was there.
+// Separation of a point: s = separation + n . (delta_b - delta_a + rotation_b x r_b - rotation_a x r_a),
+// first order on purpose: the contact of a rolling ball does not rise with the material that was there.
 #pragma once
 
 #include "solver/contact/contact_pair.h"
@@ -17,29 +18,29 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// The fastest that springs take overlap back, as a share of the speed with which it is pushed apart: unlike that, theirs is
-// momentum.
+// The highest speed with which springs remove penetration, as a share of the pushout speed: unlike pushout,
+// springs add momentum.
 constexpr float kSpringSpeed = 0.125f;
-// By how many slops a point of a linked body must overlap (three tenths of the smaller body's inner radius) to be lost, and what share of its
-// impulse it loses in a second then: a head on the wrong side of somebody's chest cannot get back without passing it, and the neck would
-// press it on the chest ever harder.
-constexpr float kDeepPenetrationSlops = 750.0f, kLostLeak = 2.0f;
-// Projected sweeps over the points of a manifold in which some would pull.
-constexpr int kPullSweeps = 6;
+// Penetration in slops (three tenths of the inner radius of the smaller body) from which a point of a jointed
+// body is deep, and the share of its impulse that it then loses in a second. A head on the wrong side of a
+// chest cannot return without passing it, and the neck would press it on the chest ever harder.
+constexpr float kDeepPenetrationSlops = 750.0f, kDeepPenetrationLeak = 2.0f;
+// Projected iterations over the points of a manifold with tensile points.
+constexpr int kTensionIterations = 6;
 
 template <int W, bool kHasA>
 GYRE_INLINE void warm_start_block(ContactBlock<W>& block) {
   PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
   Wide<W> total = block.impulses[0];
-  Vec3W<W> turn_sum = total * block.points[0].arm;
+  Vec3W<W> angular_sum = total * block.points[0].arm;
   for (int k = 1; k < block.point_count; ++k) {
     total = total + block.impulses[k];
-    turn_sum = turn_sum + block.impulses[k] * block.points[k].arm;
+    angular_sum = angular_sum + block.impulses[k] * block.points[k].arm;
   }
-  push_normal<W>(block, pair, total, turn_sum);
-  direction<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2,
-               block.friction_from_a, block.friction_from_b, block.twist * block.normal);
-  if (block.rolls != 0) turn<W>(block, pair, block.aside->rolling);
+  apply_normal_impulse<W>(block, pair, total, angular_sum);
+  apply_impulse<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2,
+                   block.friction_from_a, block.friction_from_b, block.twist * block.normal);
+  if (block.has_rolling != 0) apply_angular_impulse<W>(block, pair, block.cold->rolling);
   store_pair<W>(block, pair);
 }
 
@@ -51,7 +52,8 @@ void warm_start_blocks(void* memory, int begin, int end) {
   }
 }
 
-// N s: less than this is no load. The square of its inverse is still a float; what dies away goes through all of them down to zero.
+// N s: below this there is no load. The square of its inverse is still a float; a load that dies away passes
+// all of them down to zero.
 constexpr float kMinLoad = 1.0e-18f;
 
 // Sum of the normal impulses of a manifold.
@@ -62,7 +64,7 @@ GYRE_INLINE Wide<W> normal_load(const ContactBlock<W>& block) {
   return load;
 }
 
-// Friction: the impulse that would stop the slip, pulled back into the ellipsoid of what the load allows.
+// Friction: the impulse that stops the slip, clamped to the ellipsoid of the load.
 template <int W, bool kHasA>
 GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pair) {
   const Wide<W> zero = Wide<W>(0.0f);
@@ -75,7 +77,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   }
   const Vec3W<W> slip = relative_velocity<W>(pair, block.friction_from_a, block.friction_from_b);
   Wide<W> v1 = dot(slip, block.tangent_1), v2 = dot(slip, block.tangent_2);
-  if (block.slips != 0) v1 = v1 - block.aside->surface_1, v2 = v2 - block.aside->surface_2;
+  if (block.has_surface_velocity != 0) v1 = v1 - block.cold->surface_1, v2 = v2 - block.cold->surface_2;
   const Wide<W> v3 = dot(relative_spin<W>(pair), block.normal);
 
   // Sticking: all three rows at once.
@@ -83,30 +85,35 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   Wide<W> f2 = block.friction_2 - (block.inverse_k12 * v1 + block.inverse_k22 * v2 + block.inverse_k23 * v3);
   Wide<W> f3 = block.twist - (block.inverse_k13 * v1 + block.inverse_k23 * v2 + block.inverse_k33 * v3);
 
-  // Where on its limit the impulse is: 1 on the ellipsoid. No load, no friction.
+  // Use of the limit: 1 is on the ellipsoid. Without load there is no friction.
   const auto was_sliding = Mask<W>::of_bits(block.slides);
   const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
-  const Wide<W> grip = select(was_sliding, block.dynamic_grip, block.inverse_friction) * per_load;
-  const Wide<W> twist_grip = select(was_sliding, block.dynamic_twist_grip, block.static_twist_grip) * per_load;
-  const Wide<W> use = (f1 * f1 + f2 * f2) * (grip * grip) + (f3 * f3) * (twist_grip * twist_grip);
+  const Wide<W> inverse_limit =
+      select(was_sliding, block.inverse_dynamic_friction, block.inverse_friction) * per_load;
+  const Wide<W> inverse_twist_limit =
+      select(was_sliding, block.inverse_dynamic_twist, block.inverse_static_twist) * per_load;
+  const Wide<W> use = (f1 * f1 + f2 * f2) * (inverse_limit * inverse_limit) +
+                      (f3 * f3) * (inverse_twist_limit * inverse_twist_limit);
   const auto sticks = (use <= one) | ~loaded;
 
   if (!all(sticks)) {
-    // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
-    const Wide<W> g1 = block.friction_1 - block.aside->slide_mass * v1;
-    const Wide<W> g2 = block.friction_2 - block.aside->slide_mass * v2;
-    const Wide<W> g3 = block.twist - block.aside->slide_mass * (block.aside->twist_radius * block.aside->twist_radius) * v3;
-    const Wide<W> slide_grip = block.dynamic_grip * per_load;
-    const Wide<W> slide_twist_grip = block.dynamic_twist_grip * per_load;
-    const Wide<W> reach = (g1 * g1 + g2 * g2) * (slide_grip * slide_grip) + (g3 * g3) * (slide_twist_grip * slide_twist_grip);
-    const Wide<W> scale = select(reach > one, one / sqrt(reach), one);
+    // Sliding: a step along the slip, equal in every direction, then clamped to the ellipsoid.
+    const Wide<W> g1 = block.friction_1 - block.cold->slide_mass * v1;
+    const Wide<W> g2 = block.friction_2 - block.cold->slide_mass * v2;
+    const Wide<W> g3 =
+        block.twist - block.cold->slide_mass * (block.cold->twist_radius * block.cold->twist_radius) * v3;
+    const Wide<W> inverse_slide_friction = block.inverse_dynamic_friction * per_load;
+    const Wide<W> inverse_slide_twist = block.inverse_dynamic_twist * per_load;
+    const Wide<W> use_of_limit = (g1 * g1 + g2 * g2) * (inverse_slide_friction * inverse_slide_friction) +
+                                 (g3 * g3) * (inverse_slide_twist * inverse_slide_twist);
+    const Wide<W> scale = select(use_of_limit > one, one / sqrt(use_of_limit), one);
     f1 = select(sticks, f1, g1 * scale);
     f2 = select(sticks, f2, g2 * scale);
     f3 = select(sticks, f3, g3 * scale);
   }
-  f1 = keep(grip > zero, f1);
-  f2 = keep(grip > zero, f2);
-  f3 = keep(twist_grip > zero, f3);
+  f1 = keep(inverse_limit > zero, f1);
+  f2 = keep(inverse_limit > zero, f2);
+  f3 = keep(inverse_twist_limit > zero, f3);
   block.slides = lane_bits<W>(~sticks);
 
   const Wide<W> d1 = f1 - block.friction_1;
@@ -115,127 +122,131 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   block.friction_1 = f1;
   block.friction_2 = f2;
   block.twist = f3;
-  direction<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a,
-               block.friction_from_b, d3 * block.normal);
+  apply_impulse<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a,
+                   block.friction_from_b, d3 * block.normal);
 }
 
-// Rolling friction: a torque against the relative turning, at most rolling_friction times the load.
+// Rolling friction: a torque against relative rotation, at most rolling_friction times the load.
 template <int W, bool kHasA>
 GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pair) {
   const Wide<W> zero = Wide<W>(0.0f);
   const Wide<W> one = Wide<W>(1.0f);
   const Vec3W<W> spin = relative_spin<W>(pair);
   const Vec3W<W> roll = spin - dot(spin, block.normal) * block.normal;
-  const Vec3W<W> target_speed = block.aside->rolling - block.aside->rolling_mass * roll;
-  const Wide<W> limit = block.aside->rolling_friction * normal_load<W>(block);
-  const Wide<W> size = sqrt(dot(target_speed, target_speed));
+  const Vec3W<W> target = block.cold->rolling - block.cold->rolling_mass * roll;
+  const Wide<W> limit = block.cold->rolling_friction * normal_load<W>(block);
+  const Wide<W> size = sqrt(dot(target, target));
   const Wide<W> scale = select(size > limit, limit / select(size > zero, size, one), one);
-  // A lane that does not roll must come out as from a block without this: also where `wanted` leaves a float's range.
-  const auto rolls = block.aside->rolling_friction > zero;
-  const Vec3W<W> bounded = scale * target_speed;
-  const Vec3W<W> next{select(rolls, bounded.x, zero), select(rolls, bounded.y, zero), select(rolls, bounded.z, zero)};
-  turn<W>(block, pair, next - block.aside->rolling);
-  block.aside->rolling = next;
+  // A lane without rolling friction must get the bits of a block without it, even where `target` overflows.
+  const auto has_rolling = block.cold->rolling_friction > zero;
+  const Vec3W<W> bounded = scale * target;
+  const Vec3W<W> next{select(has_rolling, bounded.x, zero), select(has_rolling, bounded.y, zero),
+                      select(has_rolling, bounded.z, zero)};
+  apply_angular_impulse<W>(block, pair, next - block.cold->rolling);
+  block.cold->rolling = next;
 }
 
-// The impulses of lanes in which some points would pull, by projected sweeps: into `next`, of the others nothing.
-// From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
+// Projected iterations for the impulses of lanes with tensile points, into `next`; other lanes stay. They
+// start from the accumulated impulses: the clamped answer of the block is too strong, and piles would shake.
 template <int W, int Count>
-GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& aside, const Wide<W>* residual,
-                                         const Wide<W>* kept, Mask<W> pulls, Wide<W>* next) {
+GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& cold, const Wide<W>* residual,
+                                         const Wide<W>* accumulated, Mask<W> tensile, Wide<W>* next) {
   const Wide<W> zero(0.0f), one(1.0f);
   Wide<W> tried[Count], change[Count];
   GYRE_UNROLL
   for (int i = 0; i < Count; ++i) {
-    tried[i] = max(kept[i], zero);
-    change[i] = tried[i] - kept[i];
+    tried[i] = max(accumulated[i], zero);
+    change[i] = tried[i] - accumulated[i];
   }
   GYRE_ROLLED
-  for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
-    auto stands = one > zero;
+  for (int iteration = 0; iteration < kTensionIterations; ++iteration) {
+    auto unchanged = one > zero;
     GYRE_UNROLL
     for (int i = 0; i < Count; ++i) {
       Wide<W> speed = residual[i];
       GYRE_UNROLL
-      for (int j = 0; j < Count; ++j) speed = speed + aside.k[packed(i, j)] * change[j];
-      const Wide<W> now = max(tried[i] - aside.relief[i] * speed, zero);
-      stands = stands & (now == tried[i]);
+      for (int j = 0; j < Count; ++j) speed = speed + cold.k[packed(i, j)] * change[j];
+      const Wide<W> now = max(tried[i] - cold.inverse_diagonal[i] * speed, zero);
+      unchanged = unchanged & (now == tried[i]);
       tried[i] = now;
-      change[i] = now - kept[i];
+      change[i] = now - accumulated[i];
     }
-    // What all of them left as it was, as where no point bears anything, the next sweep would not change either. What the others
-    // come to is not asked.
-    if (none(and_not(pulls, stands))) break;
+    // If an iteration changes nothing in these lanes, the next would not either. Other lanes do not matter.
+    if (none(and_not(tensile, unchanged))) break;
   }
   GYRE_UNROLL
-  for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
+  for (int i = 0; i < Count; ++i) next[i] = select(tensile, tried[i], next[i]);
 }
 
-// The normal rows of a manifold, solved together as a small complementarity problem: first as if all points pushed (which
-// treats them alike: no order, no rocking), then, where some would pull, by projected sweeps in the space of impulses.
-// Sprung: the spring draws its points to an overlap of `slop`, in both directions, and gives way to what it is not used to.
-// Not sprung: only approach stops, and under load the speed with which springs pushed goes.
+// The normal rows of a manifold, solved together as a small complementarity problem: first as if all points
+// were in compression (all alike: no order, no rocking), then, if some are tensile, by projected iterations
+// on the impulses. Soft: the spring draws its points to a penetration of `slop`, from both sides, and yields
+// to load beyond the mean. Rigid: only approach is stopped, and the speed from springs is removed under load.
 template <int W, bool kSprung, int Count, bool kHasA>
 GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
-  const NormalMotion<W> ways = normal_ways<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
-  const Wide<W> lost = Wide<W>(-kDeepPenetrationSlops) * block.slop;
-  const Wide<W> leak(1.0f / (1.0f + kLostLeak * substep));
-  Wide<W> residual[Count];  // speed that the row wants to lose
-  Wide<W> kept[Count];      // the impulse as it stands, less what the spring gives way
+  const NormalMotion<W> displacements = normal_displacements<W, kHasA>(block),
+                        speeds = normal_speeds<W>(block, pair);
+  const Wide<W> deep_separation = Wide<W>(-kDeepPenetrationSlops) * block.slop;
+  const Wide<W> leak(1.0f / (1.0f + kDeepPenetrationLeak * substep));
+  Wide<W> residual[Count];     // speed that the row removes
+  Wide<W> accumulated[Count];  // the accumulated impulse, minus the yield of the spring
   GYRE_UNROLL
   for (int i = 0; i < Count; ++i) {
     const PointBlock<W>& point = block.points[i];
-    const Wide<W> separation = point.separation + ways.at(point);
+    const Wide<W> separation = point.separation + displacements.at(point);
     const Wide<W> speed = speeds.at(point);
     const auto apart = separation > zero;
     if constexpr (kSprung) {
-      const Wide<W> asked = (separation + block.slop) * block.rate;
-      const Wide<W> fastest = zero - Wide<W>(kSpringSpeed) * block.push_speed;
-      const auto is_capped = asked < fastest;
-      residual[i] = speed + select(apart, separation * rate + block.slop * block.rate, max(asked, fastest));
-      // Where the speed is capped the impulse gives way less by the same share: the spring still bears its load.
-      const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, asked, one), one) : one;
-      // A point that parts ceases to give way by degrees.
+      const Wide<W> bias = (separation + block.slop) * block.rate;
+      const Wide<W> fastest = zero - Wide<W>(kSpringSpeed) * block.pushout_speed;
+      const auto is_capped = bias < fastest;
+      residual[i] = speed + select(apart, separation * rate + block.slop * block.rate, max(bias, fastest));
+      // Where the speed is capped, the yield shrinks by the same share: the spring still carries its load.
+      const Wide<W> share =
+          any(is_capped) ? select(is_capped, fastest / select(is_capped, bias, one), one) : one;
+      // The yield of a point fades while it separates.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
-      kept[i] =
-          block.impulses[i] - (block.compliance * near) * share * max(block.impulses[i] - point.held, zero);
-      if (block.linked != 0) {
-        kept[i] = select(Mask<W>::of_bits(block.linked) & (separation < lost), leak * kept[i], kept[i]);
+      accumulated[i] = block.impulses[i] -
+                       (block.compliance * near) * share * max(block.impulses[i] - point.mean_impulse, zero);
+      if (block.jointed != 0) {
+        accumulated[i] = select(Mask<W>::of_bits(block.jointed) & (separation < deep_separation),
+                                leak * accumulated[i], accumulated[i]);
       }
     } else {
-      // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
+      // A separated point may be released but never pulled: that would brake a body about to land.
       const Wide<W> excess = select(block.impulses[i] > zero, max(speed + separation * rate, zero), zero);
       residual[i] = select(apart, excess, speed);
-      kept[i] = block.impulses[i];
+      accumulated[i] = block.impulses[i];
     }
-    // A point that the lane does not have must stay out of the sums even where speeds leave a float's range: 0 times that
-    // would be no number, and a block of the lane's own would not have it.
+    // A missing point of a lane must stay out of the sums even where speeds overflow: 0 times infinity would
+    // not be a number, and a block of the lane alone would not have it.
     if (block.has_uneven_points != 0) residual[i] = keep(Mask<W>::of_bits(block.rows[i]), residual[i]);
   }
   Wide<W> next[Count];
-  auto pulls = one < zero;
+  auto tensile = one < zero;
   GYRE_UNROLL
   for (int i = 0; i < Count; ++i) {
     Wide<W> change = block.inverse_k[packed(i, 0)] * residual[0];
     GYRE_UNROLL
     for (int j = 1; j < Count; ++j) change = change + block.inverse_k[packed(i, j)] * residual[j];
-    const Wide<W> target_speed = kept[i] - change;
-    pulls = pulls | (target_speed < zero);
-    next[i] = max(target_speed, zero);
+    const Wide<W> target = accumulated[i] - change;
+    tensile = tensile | (target < zero);
+    next[i] = max(target, zero);
   }
-  if (Count > 1 && any(pulls)) iterate_manifold_points<W, Count>(*block.aside, residual, kept, pulls, next);
+  if (Count > 1 && any(tensile))
+    iterate_manifold_points<W, Count>(*block.cold, residual, accumulated, tensile, next);
   Wide<W> total = next[0] - block.impulses[0];
-  Vec3W<W> turn_sum = total * block.points[0].arm;
+  Vec3W<W> angular_sum = total * block.points[0].arm;
   block.impulses[0] = next[0];
   GYRE_UNROLL
   for (int i = 1; i < Count; ++i) {
     const Wide<W> change = next[i] - block.impulses[i];
     block.impulses[i] = next[i];
     total = total + change;
-    turn_sum = turn_sum + change * block.points[i].arm;
+    angular_sum = angular_sum + change * block.points[i].arm;
   }
-  push_normal<W>(block, pair, total, turn_sum);
+  apply_normal_impulse<W>(block, pair, total, angular_sum);
 }
 
 template <int W, bool kSprung, bool kHasA>
@@ -250,10 +261,10 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
   }
 }
 
-// Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
+// New contacts: friction has no load to bound it, so the normals are solved first once.
 template <int W>
 GYRE_INLINE void apply_new_contact_impulse(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
-  const auto fresh = block.aside->fresh > Wide<W>(0.0f);
+  const auto fresh = block.cold->fresh > Wide<W>(0.0f);
   const PairMotion<W> old = pair;
   Wide<W> impulses[kMaxManifoldPoints];
   for (int k = 0; k < block.point_count; ++k) impulses[k] = block.impulses[k];
@@ -275,19 +286,20 @@ GYRE_INLINE void apply_new_contact_impulse(ContactBlock<W>& block, PairMotion<W>
   pair.angular_b = select<W>(fresh, pair.angular_b, old.angular_b);
 }
 
-// What comes before friction and normals. A function of its own, which reads the bodies itself, so that all others may keep them in
-// registers. Few contacts come here, so those without a body A do so as if it were there.
+// The part before friction and normals. It is a function of its own that loads the bodies itself, so the
+// others may keep them in registers. Few contacts come here, so blocks without a body A are treated as if
+// they had one.
 template <int W>
 __attribute__((noinline)) PairMotion<W> begin_pair(ContactBlock<W>& block, float substep) {
   PairMotion<W> pair = load_pair<W>(block);
   if (block.has_fresh != 0) apply_new_contact_impulse<W>(block, pair, substep);
-  if (block.rolls != 0) solve_rolling<W>(block, pair);
+  if (block.has_rolling != 0) solve_rolling<W>(block, pair);
   return pair;
 }
 
-// What of it a block has in which no lane has a body A.
+// The part of a pair for blocks in which no lane has a body A.
 template <bool kHasA, int W>
-GYRE_INLINE PairMotion<W, kHasA> part_of(const PairMotion<W>& pair) {
+GYRE_INLINE PairMotion<W, kHasA> reduce_pair(const PairMotion<W>& pair) {
   if constexpr (kHasA) {
     return pair;
   } else {
@@ -295,7 +307,7 @@ GYRE_INLINE PairMotion<W, kHasA> part_of(const PairMotion<W>& pair) {
   }
 }
 
-// Whether nothing moves: to the bit, so that a block has one answer.
+// True if nothing moves, to the bit, so that a block has one answer.
 template <int W>
 GYRE_INLINE WideInt<W> all_bits(Vec3W<W> v) {
   return bit_pattern(v.x) | bit_pattern(v.y) | bit_pattern(v.z);
@@ -306,30 +318,30 @@ GYRE_INLINE bool is_still(const PairMotion<W, kHasA>& pair) {
   if constexpr (kHasA) bits = bits | all_bits<W>(pair.linear_a) | all_bits<W>(pair.angular_a);
   return all(bits == WideInt<W>(0));
 }
-// Nor has moved since the step began.
+// True if the bodies have not moved since the step began.
 template <int W, bool kHasA>
-GYRE_INLINE bool has_stayed(const ContactBlock<W>& block) {
-  const BodyWay<W> b(block.read_b);
-  WideInt<W> bits = all_bits<W>(b.moved) | all_bits<W>(b.turned);
+GYRE_INLINE bool is_undisplaced(const ContactBlock<W>& block) {
+  const BodyDisplacement<W> b(block.read_b);
+  WideInt<W> bits = all_bits<W>(b.delta_position) | all_bits<W>(b.delta_rotation);
   if constexpr (kHasA) {
-    const BodyWay<W> a(block.read_a);
-    bits = bits | all_bits<W>(a.moved) | all_bits<W>(a.turned);
+    const BodyDisplacement<W> a(block.read_a);
+    bits = bits | all_bits<W>(a.delta_position) | all_bits<W>(a.delta_rotation);
   }
   return all(bits == WideInt<W>(0));
 }
 
-// What a block without rolling friction carries from one sub-step to the next.
+// The impulses that a block without rolling friction keeps between sub-steps.
 template <int W>
-struct StandingImpulses {
+struct SavedImpulses {
   Wide<W> points[kMaxManifoldPoints], friction_1, friction_2, twist;
   std::uint32_t slides;
 
-  GYRE_INLINE void take(const ContactBlock<W>& block) {
+  GYRE_INLINE void save(const ContactBlock<W>& block) {
     for (int k = 0; k < block.point_count; ++k) points[k] = block.impulses[k];
     friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, slides = block.slides;
   }
   // To the bit.
-  GYRE_INLINE bool stand(const ContactBlock<W>& block) const {
+  GYRE_INLINE bool equal(const ContactBlock<W>& block) const {
     const auto change = [](Wide<W> a, Wide<W> b) { return bit_pattern(a) ^ bit_pattern(b); };
     WideInt<W> bits = change(friction_1, block.friction_1) | change(friction_2, block.friction_2) |
                       change(twist, block.twist);
@@ -338,19 +350,20 @@ struct StandingImpulses {
   }
 };
 
-// Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.
+// Normals come last, so that the final velocities close nowhere; an error of the slip does no harm.
 template <int W, bool kHasA>
 GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
-  const bool begins = (block.has_fresh | block.rolls) != 0;
-  PairMotion<W, kHasA> pair = begins ? part_of<kHasA>(begin_pair<W>(block, substep)) : load_pair<W, kHasA>(block);
-  const bool still = !begins && is_still<W>(pair) && has_stayed<W, kHasA>(block);
-  if (!still || block.idles == 0) {
-    StandingImpulses<W> standing;
-    if (still) standing.take(block);
+  const bool begins = (block.has_fresh | block.has_rolling) != 0;
+  PairMotion<W, kHasA> pair =
+      begins ? reduce_pair<kHasA>(begin_pair<W>(block, substep)) : load_pair<W, kHasA>(block);
+  const bool still = !begins && is_still<W>(pair) && is_undisplaced<W, kHasA>(block);
+  if (!still || block.is_settled == 0) {
+    SavedImpulses<W> saved;
+    if (still) saved.save(block);
     solve_friction<W>(block, pair);
     solve_normals<W, true>(block, pair, substep);
     store_pair<W>(block, pair);
-    block.idles = still && is_still<W>(pair) && standing.stand(block) ? 1 : 0;
+    block.is_settled = still && is_still<W>(pair) && saved.equal(block) ? 1 : 0;
   }
   for (int k = 0; k < block.point_count; ++k) block.totals[k] = block.totals[k] + block.impulses[k];
   block.total_1 = block.total_1 + block.friction_1;
@@ -361,7 +374,7 @@ template <int W>
 void solve_blocks(void* memory, int begin, int end, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
-    // A lane by itself saves too little for code of its own.
+    // A single lane saves too little for code of its own.
     if (W == 1 || blocks[i].has_a != 0) {
       solve_block<W, true>(blocks[i], substep);
     } else if constexpr (W > 1) {
@@ -370,14 +383,14 @@ void solve_blocks(void* memory, int begin, int end, float substep) {
   }
 }
 
-// Once, at the end of a step: so seldom that what has no body A is relaxed as if it were there.
+// Runs once at the end of a step, so blocks without body A are treated as if they had one.
 template <int W>
 GYRE_INLINE void relax_block(ContactBlock<W>& block, float substep) {
   PairMotion<W> pair = load_pair<W>(block);
   const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2;
   Wide<W> impulses[kMaxManifoldPoints];
   for (int k = 0; k < block.point_count; ++k) impulses[k] = block.impulses[k];
-  if (block.rolls != 0) solve_rolling<W>(block, pair);
+  if (block.has_rolling != 0) solve_rolling<W>(block, pair);
   solve_friction<W>(block, pair);
   solve_normals<W, false>(block, pair, substep);
   for (int k = 0; k < block.point_count; ++k) {

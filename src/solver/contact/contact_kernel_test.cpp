@@ -1,4 +1,4 @@
-// The contact kernels at the edge of what floats can say.
+// The contact kernels at the limits of floats.
 #include "base/arena/arena.h"
 #include "base/processor.h"
 #include "solver/kernels/solver_kernels.h"
@@ -12,7 +12,7 @@
 namespace gyre {
 namespace {
 
-// A ball on fixed ground, with a load from the step before; solved for a sub-step of a 240th of a second.
+// A ball on static ground, with a load from the last step; solved for a sub-step of a 240th of a second.
 BodyMotion touch(int width, float load) {
   const SolverKernels& kernels = select_kernels(width);
   Manifold manifold;
@@ -37,10 +37,10 @@ BodyMotion touch(int width, float load) {
   order[0] = 0;
   Arena arena;
   void* const block = arena.make<std::byte>(kernels.contacts.block_bytes).data();
-  void* const aside = arena.make<std::byte>(kernels.contacts.aside_bytes).data();
+  void* const cold = arena.make<std::byte>(kernels.contacts.cold_bytes).data();
   const ContactSettings settings{
       .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
-  kernels.contacts.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+  kernels.contacts.prepare(block, cold, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
   kernels.contacts.warm_start(block, 0, 1);
   kernels.contacts.solve(block, 0, 1, settings.substep);
   return motion;
@@ -51,46 +51,48 @@ bool is_finite(const BodyMotion& m) {
   return std::isfinite(sum);
 }
 
-// A load that died away was divided by: below 3e-39 that is infinite, and a ball that rolled out was frozen.
+// A kernel divided by a load that died away: below 3e-39 that is infinite, and a ball that rolled out froze.
 TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
   for (const int width : {0, 1, 4, 8, 16}) {
     for (float load = 1.0f; load > 0.0f; load *= 0.1f) {
       const BodyMotion motion = touch(width, load);
       ASSERT_TRUE(is_finite(motion)) << "width " << width << ", load " << load;
-      // Friction takes no more than the load allows: the ground stops the fall, 1e-3 N s, and what stood.
+      // Friction takes no more than the load allows: the ground stops the fall, 1e-3 N s, and the accumulated
+      // load.
       const float change = std::fabs(motion.linear_velocity.z - 0.2f);
       ASSERT_LE(change, 0.51f * (1e-3f + 2.0f * load)) << "width " << width << ", load " << load;
     }
   }
 }
 
-// Eight lanes that nobody asked for, on a processor that has sixteen, use its registers; asked for, they are those of any with AVX2.
-TEST(ContactKernel, EightLanesUseTheRegistersOfSixteenWhereNobodyAsksForThem) {
-  const SolverKernels &best = select_kernels(0), &asked = select_kernels(8);
+// With automatic width, eight lanes on a processor that has sixteen use its registers; with a set width they
+// are those of any AVX2.
+TEST(ContactKernel, AutomaticEightLanesUseTheRegistersOfSixteen) {
+  const SolverKernels &best = select_kernels(0), &chosen = select_kernels(8);
   if (max_lanes() < 16) {
     EXPECT_EQ(&best, &select_kernels(best.width));
     return;
   }
-  EXPECT_EQ(asked.width, 8);
+  EXPECT_EQ(chosen.width, 8);
   const SolverKernels& eight = best.width == 8 ? best : narrower_kernels(best);
   EXPECT_EQ(eight.width, 8);
-  EXPECT_NE(&eight, &asked);
+  EXPECT_NE(&eight, &chosen);
 }
 
-// A bone of 0.4 m on fixed ground, which its left end bears and where friction holds it. Then its right end does.
+// A bone of 0.4 m on static ground. First its left end carries the load and friction, then its right end.
 struct Bone {
   BodyMotion motion;
   BodyInertia inertia{.inverse = {.xx = 100.0f, .yy = 80.0f, .zz = 90.0f}, .inverse_mass = 1.0f};
   Arena arena;
   const SolverKernels& kernels;
   void* const block;
-  void* const aside;
+  void* const cold;
   AdvancedArms arms;
 
   explicit Bone(int width)
       : kernels(select_kernels(width)),
         block(arena.make<std::byte>(kernels.contacts.block_bytes).data()),
-        aside(arena.make<std::byte>(kernels.contacts.aside_bytes).data()) {
+        cold(arena.make<std::byte>(kernels.contacts.cold_bytes).data()) {
     motion.inverse_mass = 1.0f;
     Manifold manifold;
     manifold.count = arms.count = 2;
@@ -111,17 +113,18 @@ struct Bone {
     order[0] = 0;
     const ContactSettings settings{
         .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
-    kernels.contacts.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+    kernels.contacts.prepare(block, cold, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
     kernels.contacts.warm_start(block, 0, 1);
   }
   void follow() {
     const AdvancedArmsLane lane{0, &arms, nullptr, &inertia.inverse};
-    kernels.contacts.follow(block, 0, &lane, 1);
+    kernels.contacts.advance_points(block, 0, &lane, 1);
   }
   static constexpr Vec3 kFriction{0, 0, 1.2f};
 };
 
-// The same was given at one end and taken back at the other: a bone thrown on the ground left it with six times its energy.
+// The same impulse was given at one end and removed at the other: a bone thrown on the ground left it with
+// six times its energy.
 TEST(ContactKernel, FrictionGoesWhereTheLoadGoes) {
   for (const int width : {0, 1, 4, 8, 16}) {
     Bone bone(width);

@@ -1,4 +1,5 @@
-// The normal rows of blocks of contacts as a step begins: K and its inverse. Part of the kernels (contact_prepare.h).
+// K of the normal rows of contact blocks and its inverse, as a step begins. Part of the kernels
+// (contact_prepare.h).
 #pragma once
 
 #include "solver/contact/contact_pair.h"
@@ -13,9 +14,9 @@ GYRE_INLINE void mark_uneven_points(ContactBlock<W>& block) {
   block.has_uneven_points = missing != 0 ? 1 : 0;
 }
 
-// K of the normal rows and its inverse. Four points of a plane give rank 3 at most, so the inverse is of K with its
-// diagonal raised by a share: the impulses that no motion can tell apart then change least. Rows of points that a lane does
-// not have are those of the identity while Cholesky's factor is made, and 0 after.
+// K of the normal rows and its inverse. Four points of a plane give rank 3 at most, so the inverse is of K
+// with its diagonal raised by a share: impulses that no motion distinguishes then change least. Rows of
+// missing points are those of the identity in Cholesky's factor, and 0 after.
 template <int W, int Count>
 GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
   constexpr float kRegular = 0.02f;
@@ -26,17 +27,17 @@ GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exis
     const PointBlock<W>& point = block.points[i];
     const Vec3W<W> ia = block.inverse_inertia_a * (point.arm + block.arm_shift_a);
     const Vec3W<W> ib = block.inverse_inertia_b * (point.arm + block.arm_shift_b);
-    const Vec3W<W> turn = ia + ib;
+    const Vec3W<W> angular = ia + ib;
     const Wide<W> common = inverse_masses + (dot(block.arm_shift_a, ia) + dot(block.arm_shift_b, ib));
     const auto exists = point_exists[i] > zero;
     Wide<W> row[Count];
     for (int j = 0; j <= i; ++j) {
-      const Wide<W> k = common + dot(block.points[j].arm, turn);
-      block.aside->k[packed(j, i)] = row[j] = keep(exists & (point_exists[j] > zero), k);
+      const Wide<W> k = common + dot(block.points[j].arm, angular);
+      block.cold->k[packed(j, i)] = row[j] = keep(exists & (point_exists[j] > zero), k);
     }
     const Wide<W> own = row[i];
-    block.aside->relief[i] = keep(own > zero, one / select(own > zero, own, one));
-    block.rows[i] = lane_bits<W>(block.aside->relief[i] > zero);
+    block.cold->inverse_diagonal[i] = keep(own > zero, one / select(own > zero, own, one));
+    block.rows[i] = lane_bits<W>(block.cold->inverse_diagonal[i] > zero);
     for (int j = 0; j < i; ++j) {
       Wide<W> sum = row[j];
       for (int m = 0; m < j; ++m) sum = sum - l[packed(m, i)] * l[packed(m, j)];
@@ -63,7 +64,7 @@ GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exis
     }
   }
 }
-// In one place: it is as long as all the rest that asks for it.
+// Not inlined: it is as long as all of its callers together.
 template <int W>
 __attribute__((noinline)) void prepare_normals(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
   switch (block.point_count) {
@@ -75,7 +76,7 @@ __attribute__((noinline)) void prepare_normals(ContactBlock<W>& block, const Wid
     case 2:
       prepare_rows<W, 2>(block, point_exists);
       break;
-    case 3:  // of contacts that are followed
+    case 3:  // with moving points
       prepare_rows<W, 3>(block, point_exists);
       break;
     default:

@@ -1,5 +1,5 @@
-// Blocks of contacts side by side, and the pairs of bodies that they push: what a block holds, how velocities are read and written,
-// what an impulse does to them, and how points move against each other. Part of the kernels (contact_kernel.h).
+// Contact blocks and the pairs of bodies that they act on: their data, access to velocities, effect of
+// impulses, and relative motion of points. Part of the kernels (contact_kernel.h).
 #pragma once
 
 #include "math/wide_vec.h"
@@ -10,64 +10,69 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 template <int W>
 struct PointBlock {
-  Vec3W<W> arm;           // from a centre of mass to the point, times the normal: what a push along it turns
+  Vec3W<W> arm;           // from a centre of mass to the point, times the normal: the angular effect of an
+                          // impulse along the normal
   Wide<W> separation;     // as the step began
-  Wide<W> held;           // the load it is used to
+  Wide<W> mean_impulse;   // the mean normal impulse
 };
 
-// Place of row i, column j (either order) in a packed upper triangle, column by column (00 01 11 02 12 22 03 13 23 33): that of fewer
-// points is its beginning.
+// Index of row i, column j (either order) in a packed upper triangle, column by column (00 01 11 02 12 22 03
+// 13 23 33). The triangle of fewer points is its beginning.
 constexpr int packed(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
 
-// What of a block only some stages or lanes need.
+// Data of a block that only some stages or lanes need.
 template <int W>
 struct ContactBlockCold {
-  // Where something slides, or surfaces do.
-  Wide<W> slide_mass;     // scalar step for sliding, so that friction opposes the slip in every direction alike
+  // Used where contacts slide or surfaces move.
+  Wide<W> slide_mass;     // scalar step for sliding, so that friction opposes the slip equally in every
+                          // direction
   Wide<W> twist_radius;   // m: scale of the twist row beside the tangents
   Wide<W> surface_1, surface_2;
-  // Where points would pull: K = J M^-1 J^T of the normal rows, upper triangle; it and `relief` are 0 in rows of points that a lane does
-  // not have.
+  // Used where points are tensile: K = J M^-1 J^T of the normal rows, upper triangle. It and
+  // `inverse_diagonal` are 0 in rows of missing points.
   Wide<W> k[10];
-  Wide<W> relief[kMaxManifoldPoints];  // 1 / K_ii
-  // Where velocities go if not all bodies of a side are pushed: `nowhere` for those that are not.
+  Wide<W> inverse_diagonal[kMaxManifoldPoints];  // 1 / K_ii
+  // Targets of velocities if not all bodies of a side are movable: `nowhere` for those that are not.
   float* write_a[W];
   float* write_b[W];
   Wide<W> fresh;                   // 1 where no load is known yet
-  Wide<W> mobility_a, mobility_b;  // shares of the inverse masses that a push apart sees
+  Wide<W> mobility_a, mobility_b;  // shares of the inverse masses in pushout
   // Rolling friction.
   Wide<W> rolling_friction, rolling_mass;
   Vec3W<W> rolling;
   alignas(64) float nowhere[kRecordFloats];
 };
 
-// What all parts of a step read. Blocks of a large island do not fit into the caches and come anew in each part, as fast as the processor
-// foresees which lines will be asked for: three times as fast where there are no gaps between them.
+// Data that all stages read. Blocks of a large island do not fit into the caches and are loaded anew in each
+// stage, as fast as the prefetcher predicts the lines: three times as fast without gaps.
 template <int W>
 struct alignas(64) ContactBlock {
-  // Motion records of the bodies: zeros for what has none.
+  // Motion records of the bodies: zeros for none.
   float* read_a[W];
   float* read_b[W];
-  ContactBlockCold<W>* aside;
-  std::int32_t point_count = 0;  // the most of any lane; three are prepared as four, for each number is a kernel of its own
-  // Any lane has rolling friction; is fresh; has a surface that moves by itself; lacks a row that others have.
-  std::uint8_t rolls = 0, has_fresh = 0, slips = 0, has_uneven_points = 0;
-  std::int32_t idles = 0;        // solved where nothing moves, nor has in the step, it came out as it was: it will again
-  // Lanes, as bits: of which a body hangs on a joint; that have a body there; whose body is pushed; where friction was at its limit;
-  // that have a row for a point.
-  std::uint16_t linked = 0, has_a = 0, has_b = 0, pushes_a = 0, pushes_b = 0, slides = 0, rows[kMaxManifoldPoints] = {};
+  ContactBlockCold<W>* cold;
+  std::int32_t point_count = 0;  // the largest of any lane; three are prepared as four, because each number
+                                 // is a kernel of its own
+  // True if any lane has rolling friction; is fresh; has a surface velocity; misses a row that others have.
+  std::uint8_t has_rolling = 0, has_fresh = 0, has_surface_velocity = 0, has_uneven_points = 0;
+  std::int32_t is_settled = 0;  // a solve with resting bodies left all impulses unchanged, and so will
+                                // the next
+  // Lanes as bits: with a jointed body; with a body A, B; with a movable body A, B; with friction at its
+  // limit; with a row for a point.
+  std::uint16_t jointed = 0, has_a = 0, has_b = 0, movable_a = 0, movable_b = 0, slides = 0,
+                rows[kMaxManifoldPoints] = {};
   Vec3W<W> normal, tangent_1, tangent_2;
   // Friction at the centre of pressure.
   Vec3W<W> friction_from_a, friction_from_b;
   Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23, inverse_k33;  // of (tangent_1, tangent_2, twist)
-  // Inverse friction coefficients, static and dynamic, and the same of the twist (1/m): 0 where there is no friction.
-  Wide<W> inverse_friction, dynamic_grip, static_twist_grip, dynamic_twist_grip;
+  // Inverse friction coefficients, static and dynamic, and those of the twist (1/m): 0 without friction.
+  Wide<W> inverse_friction, inverse_dynamic_friction, inverse_static_twist, inverse_dynamic_twist;
   Wide<W> inverse_mass_a, inverse_mass_b;
   Sym3W<W> inverse_inertia_a, inverse_inertia_b;
-  Wide<W> rate, compliance, slop, push_speed;
-  // All points' arms on a body differ from `arm` by the same: one of these is zero, that of the body whose centre is nearer.
+  Wide<W> rate, compliance, slop, pushout_speed;
+  // Difference between all arms on a body and `arm`: zero for the body whose centre is nearer.
   Vec3W<W> arm_shift_a, arm_shift_b;
-  // Accumulated in this sub-step, and summed over the step.
+  // Impulses of this sub-step, and sums over the step.
   Wide<W> friction_1, friction_2, twist, total_1, total_2;
   Wide<W> impulses[kMaxManifoldPoints], totals[kMaxManifoldPoints];
   PointBlock<W> points[kMaxManifoldPoints];
@@ -80,7 +85,7 @@ GYRE_INLINE std::uint16_t lane_bits(Mask<W> mask) {
   return static_cast<std::uint16_t>(to_bits(mask));
 }
 
-// Velocities of the two bodies of each lane; of B alone where kHasA is false: in such a block no lane has an A, as where all lie on
+// Velocities of the two bodies of each lane; of B alone if kHasA is false, in blocks where all lanes lie on
 // the ground.
 template <int W, bool kHasA = true>
 struct PairMotion {
@@ -108,7 +113,7 @@ GYRE_INLINE PairMotion<W, kHasA> load_pair(const ContactBlock<W>& block) {
 
 template <int W>
 GYRE_INLINE void store_velocities(float* const (&records)[W], Vec3W<W> linear, Vec3W<W> angular) {
-  // Adding zero keeps -0 out of the state: lanes that have fewer points than their block add zeros of either sign.
+  // Adding zero keeps -0 out of the state: lanes with fewer points than their block add zeros of either sign.
   const Wide<W> zero(0.0f);
   const Wide<W> columns[6] = {linear.x + zero,  linear.y + zero,  linear.z + zero,
                               angular.x + zero, angular.y + zero, angular.z + zero};
@@ -117,14 +122,17 @@ GYRE_INLINE void store_velocities(float* const (&records)[W], Vec3W<W> linear, V
 template <int W, bool kHasA>
 GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
   if constexpr (kHasA)
-    store_velocities<W>(block.pushes_a == all_lanes(W) ? block.read_a : block.aside->write_a, pair.linear_a, pair.angular_a);
-  store_velocities<W>(block.pushes_b == all_lanes(W) ? block.read_b : block.aside->write_b, pair.linear_b, pair.angular_b);
+    store_velocities<W>(block.movable_a == all_lanes(W) ? block.read_a : block.cold->write_a, pair.linear_a,
+                        pair.angular_a);
+  store_velocities<W>(block.movable_b == all_lanes(W) ? block.read_b : block.cold->write_b, pair.linear_b,
+                      pair.angular_b);
 }
 
-// Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`), and the angular impulse `t` on B (and -t on A).
+// Applies the impulse `p` to B at `from_b` (and -p to A at `from_a`), and the angular impulse `t` to B (and
+// -t to A).
 template <int W, bool kHasA>
-GYRE_INLINE void direction(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p,
-                           Vec3W<W> from_a, Vec3W<W> from_b, Vec3W<W> t) {
+GYRE_INLINE void apply_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p,
+                               Vec3W<W> from_a, Vec3W<W> from_b, Vec3W<W> t) {
   if constexpr (kHasA) {
     pair.linear_a = pair.linear_a - block.inverse_mass_a * p;
     pair.angular_a = pair.angular_a - block.inverse_inertia_a * (cross(from_a, p) + t);
@@ -133,33 +141,38 @@ GYRE_INLINE void direction(const ContactBlock<W>& block, PairMotion<W, kHasA>& p
   pair.angular_b = pair.angular_b + block.inverse_inertia_b * (cross(from_b, p) + t);
 }
 
-// Adds an impulse `p` along the normal; `turn` is the sum of its parts times the arms of their points.
+// Applies an impulse `p` along the normal; `moment` is the sum of impulses times the arms of their points.
 template <int W, bool kHasA>
-GYRE_INLINE void push_normal(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Wide<W> p, Vec3W<W> turn) {
+GYRE_INLINE void apply_normal_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Wide<W> p,
+                                      Vec3W<W> moment) {
   if constexpr (kHasA) {
     pair.linear_a = pair.linear_a - (block.inverse_mass_a * p) * block.normal;
-    pair.angular_a = pair.angular_a - block.inverse_inertia_a * (turn + p * block.arm_shift_a);
+    pair.angular_a = pair.angular_a - block.inverse_inertia_a * (moment + p * block.arm_shift_a);
   }
   pair.linear_b = pair.linear_b + (block.inverse_mass_b * p) * block.normal;
-  pair.angular_b = pair.angular_b + block.inverse_inertia_b * (turn + p * block.arm_shift_b);
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * (moment + p * block.arm_shift_b);
 }
 
-// How much, along the normal, B's points move against A's: what is the same for all points, and what turns add for each.
+// Motion of B's points against A's along the normal: a common part, and a rotation that adds for each point.
 template <int W>
 struct NormalMotion {
   Wide<W> common;
-  Vec3W<W> turn;
+  Vec3W<W> rotation;
 
-  GYRE_INLINE Wide<W> at(const PointBlock<W>& point) const { return common + dot(turn, point.arm); }
+  GYRE_INLINE Wide<W> at(const PointBlock<W>& point) const { return common + dot(rotation, point.arm); }
 };
-// Of two bodies, and of one on what is not there.
+// For two bodies, and for one on the static world.
 template <int W>
-GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_a, Vec3W<W> turn_b) {
-  return {dot(way, block.normal) + (dot(turn_b, block.arm_shift_b) - dot(turn_a, block.arm_shift_a)), turn_b - turn_a};
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> displacement,
+                                          Vec3W<W> rotation_a, Vec3W<W> rotation_b) {
+  return {dot(displacement, block.normal) +
+              (dot(rotation_b, block.arm_shift_b) - dot(rotation_a, block.arm_shift_a)),
+          rotation_b - rotation_a};
 }
 template <int W>
-GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_b) {
-  return {dot(way, block.normal) + dot(turn_b, block.arm_shift_b), turn_b};
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> displacement,
+                                          Vec3W<W> rotation_b) {
+  return {dot(displacement, block.normal) + dot(rotation_b, block.arm_shift_b), rotation_b};
 }
 template <int W, bool kHasA>
 GYRE_INLINE NormalMotion<W> normal_speeds(const ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
@@ -170,31 +183,31 @@ GYRE_INLINE NormalMotion<W> normal_speeds(const ContactBlock<W>& block, const Pa
   }
 }
 
-// How far a body has moved and turned since the step began.
+// Displacement of a body since the step began.
 template <int W>
-struct BodyWay {
-  Vec3W<W> moved, turned;
-  GYRE_INLINE explicit BodyWay(float* const (&records)[W]) {
+struct BodyDisplacement {
+  Vec3W<W> delta_position, delta_rotation;
+  GYRE_INLINE explicit BodyDisplacement(float* const (&records)[W]) {
     Wide<W> columns[8];
-    gather_columns<8, W>(records, kMotionMoved, columns);
-    moved = {columns[0], columns[1], columns[2]};
-    turned = {columns[3], columns[4], columns[5]};
+    gather_columns<8, W>(records, kMotionDeltaPosition, columns);
+    delta_position = {columns[0], columns[1], columns[2]};
+    delta_rotation = {columns[3], columns[4], columns[5]};
   }
 };
 template <int W, bool kHasA>
-GYRE_INLINE NormalMotion<W> normal_ways(const ContactBlock<W>& block) {
-  const BodyWay<W> b(block.read_b);
+GYRE_INLINE NormalMotion<W> normal_displacements(const ContactBlock<W>& block) {
+  const BodyDisplacement<W> b(block.read_b);
   if constexpr (kHasA) {
-    const BodyWay<W> a(block.read_a);
-    return normal_motion<W>(block, b.moved - a.moved, a.turned, b.turned);
+    const BodyDisplacement<W> a(block.read_a);
+    return normal_motion<W>(block, b.delta_position - a.delta_position, a.delta_rotation, b.delta_rotation);
   } else {
-    return normal_motion<W>(block, b.moved, b.turned);
+    return normal_motion<W>(block, b.delta_position, b.delta_rotation);
   }
 }
 
-// Adds the angular impulse `t` on B (and -t on A).
+// Applies the angular impulse `t` to B (and -t to A).
 template <int W, bool kHasA>
-GYRE_INLINE void turn(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> t) {
+GYRE_INLINE void apply_angular_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> t) {
   if constexpr (kHasA) pair.angular_a = pair.angular_a - block.inverse_inertia_a * t;
   pair.angular_b = pair.angular_b + block.inverse_inertia_b * t;
 }
@@ -206,7 +219,7 @@ GYRE_INLINE Vec3W<W> relative_velocity(const PairMotion<W, kHasA>& pair, Vec3W<W
   if constexpr (kHasA) return velocity - (pair.linear_a + cross(pair.angular_a, from_a));
   return velocity;
 }
-// How fast B turns against A.
+// Angular velocity of B against A.
 template <int W, bool kHasA>
 GYRE_INLINE Vec3W<W> relative_spin(const PairMotion<W, kHasA>& pair) {
   if constexpr (kHasA) return pair.angular_b - pair.angular_a;

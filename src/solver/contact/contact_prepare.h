@@ -1,6 +1,6 @@
-// Fills contact blocks from manifolds as the step begins, and reads impulses back as it ends. Part of the kernels (one
-// template for every width); apart from contact_kernel.h because it runs once a step. Records are read and written four
-// floats at a time, W records side by side (math/wide_vec.h: Rows).
+// Fills contact blocks from manifolds at the beginning of a step, and stores impulses at its end. Part of the
+// kernels (one template for every width), apart from contact_kernel.h because it runs once a step. Records
+// are read and written four floats at a time, W records side by side (math/wide_vec.h: Rows).
 #pragma once
 
 #include "geometry/manifold/manifold_layout.h"
@@ -12,17 +12,16 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// The overlap that springs draw their points to, as a share of the size: loaded points then stay in touch.
-constexpr float kSpringSlop = 4.0e-4f;
-// How much of the lower body's mobility is denied to it where a contact faces straight up.
+// Share of the lower body's mobility that pushout removes where a contact faces straight up.
 constexpr float kLowerShare = 0.7f;
-// A point gets used to its load as a mean over its age: of at least the first time (s), of at most the second.
+// Bounds of the time over which the mean impulse of a point averages (s): the age of the load, at least the
+// first, at most the second.
 constexpr float kShortestMean = 0.5f;
 constexpr float kLongestMean = 1.0f;
 
-// A patch narrower than this share of the size does not brake spinning.
+// A patch narrower than this share of the size has no spinning friction.
 constexpr float kMinPatch = 1.0e-3f;
-// Friction coefficients beyond this count as this: their inverse must not vanish.
+// Friction coefficients are bounded by this, because their inverse must not vanish.
 constexpr float kMaxFriction = 1.0e6f;
 
 // ----------------------------------------------------------------------------------------------- records, side by side
@@ -32,26 +31,28 @@ constexpr int kInertiaMass = 4, kConstraintFriction = 0, kConstraintSize = 4, kC
               kConstraintKinds = 10;
 static_assert(offsetof(BodyInertia, inverse_mass) == 4 * kInertiaMass + 8);
 static_assert(offsetof(ContactConstraint, static_friction) == 4 * kConstraintFriction);
-static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize && offsetof(ContactConstraint, push_speed) == 4 * kConstraintSize + 4);
+static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize &&
+              offsetof(ContactConstraint, pushout_speed) == 4 * kConstraintSize + 4);
 static_assert(offsetof(ContactConstraint, surface_velocity) == 4 * kConstraintVelocity);
-// Bytes of one four: of the last float.
-static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 && offsetof(ContactConstraint, linked) == 4 * kConstraintKinds + 13);
+// Bytes in the last float of a group.
+static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 &&
+              offsetof(ContactConstraint, has_joint) == 4 * kConstraintKinds + 13);
 
-// The constraints and manifolds of a block's lanes. Lanes without a contact, and points that a lane does not have, read zeros
+// The constraints and manifolds of a block's lanes. Lanes without a contact, and missing points, read zeros
 // and are not written.
 template <int W>
 struct LaneRecords {
   const float* constraint[W];
   float* manifold[W];
-  float* point[W];  // the manifold, where a lane has the point that is worked on
+  float* point[W];  // the manifold, in lanes that have the present point
   float* nowhere;
   std::uint32_t lanes = 0;                  // bits
   std::uint32_t has_point[kMaxManifoldPoints];  // bits
-  int point_count = 0;                      // the most of any lane
+  int point_count = 0;                          // the largest of any lane
   Vec3W<W> normal;
   Wide<W> exists[kMaxManifoldPoints];  // 1 or 0
 
-  // Where the fours of point k begin in `point`. Points are worked on in rising order.
+  // Offset of point k in `point`. Points must be visited in rising order.
   GYRE_INLINE int begin_point(int k) {
     for (std::uint32_t without = lanes & ~has_point[k]; without != 0; without &= without - 1)
       point[__builtin_ctz(without)] = nowhere;
@@ -59,7 +60,7 @@ struct LaneRecords {
   }
 };
 
-// Manifolds lie anywhere in memory: those of the next block come while this one is worked on.
+// Manifolds lie anywhere in memory, so those of the next block are fetched during this one.
 template <int W>
 GYRE_INLINE void fetch_ahead(const ContactConstraint* constraints, const std::uint32_t* order) {
   for (int lane = 0; lane < W; ++lane) {
@@ -70,7 +71,7 @@ GYRE_INLINE void fetch_ahead(const ContactConstraint* constraints, const std::ui
   }
 }
 
-// `nowhere` is what lanes without a record read (zeros) and write.
+// Lanes without a record read (zeros) and write `nowhere`.
 template <int W>
 GYRE_INLINE LaneRecords<W> find_records(const ContactConstraint* constraints, const std::uint32_t* order,
                                         float (&nowhere)[80]) {
@@ -99,14 +100,14 @@ GYRE_INLINE LaneRecords<W> find_records(const ContactConstraint* constraints, co
 
 // --------------------------------------------------------------------------------------------------------- preparation
 
-// Lanes of one float, for those who look at single contacts.
+// Access to one lane, for solvers of single contacts.
 template <int W>
 void set_lane(Wide<W>& wide, int lane, float value) {
   wide.set(lane, value);
 }
 template <int W>
 float get_lane(const Wide<W>& wide, int lane) {
-  // Adding zero makes -0 from a lane that rested be the 0 that a narrower kernel would have.
+  // Adding zero turns -0 from a resting lane into the 0 of a narrower kernel.
   return wide[lane] + 0.0f;
 }
 template <int W>
@@ -136,9 +137,9 @@ GYRE_INLINE Vec3W<W> any_perpendicular(Vec3W<W> a) {
   return normalized<W>(cross(a, other));
 }
 
-// The centre of pressure and the patch's mean lever arm. Points weigh by the load they carried; where nothing bore load
-// yet, those that touch count. The share of lever arm: a uniform square's mean distance from its centre is 0.541 of its
-// corners', a uniform segment's half of its ends'. Returns the lever arm.
+// The centre of pressure and the mean lever arm of the patch, which is returned. Points have the load of the
+// last step as weight, or without load their nearness to touch. Factors of the lever arm: a uniform square's
+// mean distance from its centre is 0.541 of its corners', a uniform segment's half of its ends'.
 template <int W>
 GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>& records,
                                    const PointArms<W> (&arms)[kMaxManifoldPoints]) {
@@ -149,7 +150,7 @@ GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>&
   for (int k = 0; k < count; ++k) sum = sum + (weights[k] = block.impulses[k]);
   const auto bears = sum > Wide<W>(kMinLoad);
   if (!all(bears)) {
-    // A point counts less the farther it is above the lowest, in units of the manifold's extent.
+    // The weight of a point falls with its height above the lowest, in units of the manifold's extent.
     Wide<W> extent = zero, nearest = block.points[0].separation;
     for (int k = 1; k < count; ++k) {
       const auto exists = records.exists[k] > zero;
@@ -181,14 +182,14 @@ GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>&
   return select(records.exists[2] > zero, Wide<W>(0.541f), Wide<W>(0.5f)) * arm;
 }
 
-// What a lane's surfaces are like.
+// Surface parameters of the lanes.
 template <int W>
 struct SurfaceLanes {
   Wide<W> static_friction, dynamic_friction, rolling_friction, spinning_friction;
 };
 
-// Effective mass matrix of the friction rows, and its inverse into the block; the twist row is left out where it has no
-// lever arm (all of them where `twists` says so).
+// Effective mass matrix of the friction rows, and its inverse into the block. The twist row is left out
+// without lever arm. Returns K with all rows.
 template <int W>
 GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has_lever, Mask<W>& twists) {
   const Wide<W> zero(0.0f), one(1.0f);
@@ -220,56 +221,57 @@ GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has
   return all_rows;
 }
 
-// The friction rows: their masses and limits. `radius`: the patch's lever arm.
+// Prepares the friction rows: masses and limits. `radius`: the lever arm of the patch.
 template <int W>
 GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>& surface, Wide<W> radius, Wide<W> size) {
   const Wide<W> zero(0.0f), one(1.0f);
   const Wide<W> twist_static = surface.static_friction * radius + surface.spinning_friction;
   const Wide<W> twist_dynamic = surface.dynamic_friction * radius + surface.spinning_friction;
-  // Where one point bears all, the patch is as wide as rounding made it: that is no lever.
+  // Where one point carries all load, the patch is only as wide as rounding and has no lever arm.
   const auto is_patch = (radius > Wide<W>(kMinPatch) * size) | (surface.spinning_friction > zero);
   auto twists = one < zero;
   const Sym3W<W> k = prepare_friction_masses<W>(block, is_patch & (twist_static > zero), twists);
-  // The scale at which a twist of 1 rad/s slips like a metre per second; with it the largest eigenvalue of K is bounded by
-  // its trace, and the inverse of half of it is a safe common step.
+  // The scale at which a twist of 1 rad/s slips like a metre per second. With it the trace bounds the largest
+  // eigenvalue of K, and its inverse is a safe common step.
   const auto slides = surface.dynamic_friction > zero;
   const Wide<W> scale = select(twists & slides, twist_dynamic / select(slides, surface.dynamic_friction, one), radius);
   const Wide<W> bound = max(max(k.xx, k.yy) + absolute(k.xy), keep(twists, scale * scale * k.zz));
-  block.aside->twist_radius = keep(twists, scale);
-  block.aside->slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
-  const auto grip = [&](Wide<W> friction) {
+  block.cold->twist_radius = keep(twists, scale);
+  block.cold->slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
+  const auto inverse_or_zero = [&](Wide<W> friction) {
     return keep(friction > zero, one / select(friction > zero, min(friction, Wide<W>(kMaxFriction)), one));
   };
-  block.inverse_friction = grip(surface.static_friction);
-  block.dynamic_grip = grip(surface.dynamic_friction);
-  block.static_twist_grip = keep(twists, grip(twist_static));
-  block.dynamic_twist_grip = keep(twists, grip(twist_dynamic));
-  // Where the patch has shrunk to a point the twist of the last step is far beyond its limit: pulled back as one with the
-  // friction it would take that with it.
-  const Wide<W> most = twist_static * normal_load<W>(block);
-  block.twist = keep(twists, clamp(block.twist, zero - most, most));
+  block.inverse_friction = inverse_or_zero(surface.static_friction);
+  block.inverse_dynamic_friction = inverse_or_zero(surface.dynamic_friction);
+  block.inverse_static_twist = keep(twists, inverse_or_zero(twist_static));
+  block.inverse_dynamic_twist = keep(twists, inverse_or_zero(twist_dynamic));
+  // Where the patch has shrunk to a point, the twist of the last step is far beyond its limit. Clamped
+  // together with the friction it would take that with it.
+  const Wide<W> max_twist = twist_static * normal_load<W>(block);
+  block.twist = keep(twists, clamp(block.twist, zero - max_twist, max_twist));
 }
 
-// How soft the lanes' contacts are, and who gives way when overlap is pushed apart: what lies on top, as far as the contact
-// faces up. So a heap is freed from below in few passes, as if the lower body were much heavier (E. Guendelman, R. Bridson,
-// R. Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003, calls it shock propagation).
+// Softness of the contacts, and shares of mobility in pushout: the upper body yields, as far as the contact
+// faces up. So a heap is freed from below in few passes, as if the lower body were much heavier (E.
+// Guendelman, R. Bridson, R. Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003, call it shock
+// propagation).
 template <int W>
 GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W> age, Wide<W> size,
                                   const ContactSettings& settings) {
   const Wide<W> zero(0.0f), one(1.0f), aging(settings.aging);
-  const auto yields = ~rigid, both = Mask<W>::of_bits(block.pushes_a & block.pushes_b);
+  const auto yields = ~rigid, both = Mask<W>::of_bits(block.movable_a & block.movable_b);
   const Wide<W> youth = aging / (aging + age);
   block.rate = keep(yields, youth * Wide<W>(settings.rate));
-  block.slop = Wide<W>(kSpringSlop) * size;
+  block.slop = Wide<W>(float(kSpringSlop)) * size;
   const auto has_slop = block.slop > zero;
   block.compliance =
       keep(yields & has_slop, youth * Wide<W>(settings.compliance) / select(has_slop, block.slop, one));
   const Wide<W> rise = keep(both, Wide<W>(kLowerShare) * dot(block.normal, splat<W>(settings.up)));
-  block.aside->mobility_a = one - max(rise, zero);
-  block.aside->mobility_b = one + min(rise, zero);
+  block.cold->mobility_a = one - max(rise, zero);
+  block.cold->mobility_b = one + min(rise, zero);
 }
 
-// What friction, twist and rolling begin with.
+// Loads the initial impulses of friction, twist and rolling.
 template <int W>
 GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& records, const SurfaceLanes<W>& surface,
                                   const ContactSettings& settings, Wide<W>& age) {
@@ -284,16 +286,17 @@ GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& 
   block.slides = lane_bits<W>(bit_pattern(in[3]) != WideInt<W>(0));
   gather_columns<4, W>(records.manifold, kManifoldTwist, in);
   block.twist = warm * in[0];
-  block.aside->rolling_friction = surface.rolling_friction;
-  // A surface that ceased to brake rolling starts from nothing: otherwise it would depend on the lanes beside it whether
-  // the old impulse acts once more.
-  const auto rolls = surface.rolling_friction > zero;
-  block.aside->rolling = keep<W>(rolls, warm * Vec3W<W>{in[1], in[2], in[3]});
-  if (any(rolls)) block.rolls = 1;
+  block.cold->rolling_friction = surface.rolling_friction;
+  // A surface that ceased to have rolling friction starts from zero: otherwise the lanes beside it would
+  // decide whether the old impulse acts once more.
+  const auto has_rolling = surface.rolling_friction > zero;
+  block.cold->rolling = keep<W>(has_rolling, warm * Vec3W<W>{in[1], in[2], in[3]});
+  if (any(has_rolling)) block.has_rolling = 1;
   const Sym3W<W>& a = block.inverse_inertia_a;
   const Sym3W<W>& b = block.inverse_inertia_b;
-  const Wide<W> turning = (a.xx + a.yy + a.zz) + (b.xx + b.yy + b.zz);
-  block.aside->rolling_mass = keep(turning > zero, one / select(turning > zero, turning, one));
+  const Wide<W> angular_trace = (a.xx + a.yy + a.zz) + (b.xx + b.yy + b.zz);
+  block.cold->rolling_mass =
+      keep(angular_trace > zero, one / select(angular_trace > zero, angular_trace, one));
 }
 
 template <int W>
@@ -305,7 +308,8 @@ GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_
   inverse_mass = high[2];
 }
 
-// The records of one side's bodies: their motion, and their mass into the block. Returns which lanes have one, as bits.
+// Finds the motion records of one side's bodies and loads their mass into the block. Returns the lanes that
+// have one, as bits.
 template <int W>
 GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t ContactConstraint::* body,
                                     ContactBodies bodies, float* (&motion)[W], Wide<W>& inverse_mass,
@@ -313,23 +317,24 @@ GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t 
   const float* inertia[W];
   std::uint32_t has = 0;
   for (int lane = 0; lane < W; ++lane) {
-    // Never written: who has no record is not pushed.
+    // Never written: a missing record is not movable.
     motion[lane] = const_cast<float*>(kNoRecord);
     inertia[lane] = kNoRecord;
     if ((records.lanes >> lane & 1u) == 0) continue;
-    const std::int32_t place = reinterpret_cast<const ContactConstraint*>(records.constraint[lane])->*body;
-    if (place == kNoBody) continue;
+    const std::int32_t index = reinterpret_cast<const ContactConstraint*>(records.constraint[lane])->*body;
+    if (index == kNoBody) continue;
     has |= 1u << lane;
-    motion[lane] = &bodies.motion[place].linear_velocity.x;
-    inertia[lane] = &bodies.inertia[place].inverse.xx;
+    motion[lane] = &bodies.motion[index].linear_velocity.x;
+    inertia[lane] = &bodies.inertia[index].inverse.xx;
   }
   load_inertia<W>(inertia, inverse_mass, inverse_inertia);
   return static_cast<std::uint16_t>(has);
 }
 
-// Where the velocities of the bodies that are pushed go.
+// Finds the records to which velocities of movable bodies are written.
 template <int W>
-GYRE_INLINE void find_pushed(std::uint32_t pushes, float* const (&read)[W], float* nowhere, float* (&write)[W]) {
+GYRE_INLINE void find_write_records(std::uint32_t pushes, float* const (&read)[W], float* nowhere,
+                                    float* (&write)[W]) {
   for (int lane = 0; lane < W; ++lane)
     write[lane] = (pushes >> lane & 1u) != 0 ? read[lane] : nowhere;
 }
@@ -341,19 +346,19 @@ GYRE_INLINE void prepare_bodies(ContactBlock<W>& block, const LaneRecords<W>& re
   Sym3W<W>& b = block.inverse_inertia_b;
   block.has_a = find_side<W>(records, &ContactConstraint::body_a, bodies, block.read_a, block.inverse_mass_a, a);
   block.has_b = find_side<W>(records, &ContactConstraint::body_b, bodies, block.read_b, block.inverse_mass_b, b);
-  // Whatever pushes a body turns or moves it by a diagonal element.
-  block.pushes_a =
-      block.has_a & lane_bits<W>((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
-  block.pushes_b =
-      block.has_b & lane_bits<W>((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
-  find_pushed<W>(block.pushes_a, block.read_a, block.aside->nowhere, block.aside->write_a);
-  find_pushed<W>(block.pushes_b, block.read_b, block.aside->nowhere, block.aside->write_b);
+  // Any impulse moves or rotates a body by a diagonal element.
+  block.movable_a = block.has_a & lane_bits<W>((block.inverse_mass_a > zero) | (a.xx != zero) |
+                                               (a.yy != zero) | (a.zz != zero));
+  block.movable_b = block.has_b & lane_bits<W>((block.inverse_mass_b > zero) | (b.xx != zero) |
+                                               (b.yy != zero) | (b.zz != zero));
+  find_write_records<W>(block.movable_a, block.read_a, block.cold->nowhere, block.cold->write_a);
+  find_write_records<W>(block.movable_b, block.read_b, block.cold->nowhere, block.cold->write_b);
 }
 
-// Which body's centre the arms are measured from, and by how much they differ on the other. From the nearer one: the other
-// may be large or far away, and its arms rounded. What nothing moves has no arms at all.
+// Chooses the body from whose centre arms are measured, and their difference for the other. It is the nearer
+// one: the other may be large or far away, and its arms rounded. Static bodies have no arms.
 template <int W>
-GYRE_INLINE Mask<W> place_arms(ContactBlock<W>& block, const PointArms<W>& first) {
+GYRE_INLINE Mask<W> choose_arm_origin(ContactBlock<W>& block, const PointArms<W>& first) {
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
   const auto has_a = Mask<W>::of_bits(block.has_a), has_b = Mask<W>::of_bits(block.has_b);
@@ -371,8 +376,8 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   alignas(64) float nowhere[80] = {};
   LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
   block.point_count = records.point_count == 3 ? 4 : records.point_count;
-  block.rolls = block.has_fresh = 0;
-  block.idles = 0;
+  block.has_rolling = block.has_fresh = 0;
+  block.is_settled = 0;
   Wide<W> in[4];
   block.normal = records.normal;
   block.tangent_1 = any_perpendicular<W>(block.normal);
@@ -388,10 +393,10 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
     point.separation = in[3];
     gather_columns<4, W>(records.point, first + kPointB, in);
     arms[k].from_b = {in[0], in[1], in[2]};
-    if (k == 0) nearer_a = place_arms<W>(block, arms[0]);
+    if (k == 0) nearer_a = choose_arm_origin<W>(block, arms[0]);
     gather_columns<4, W>(records.point, first + kPointImpulse, in);
     block.impulses[k] = warm * in[0];
-    point.held = warm * in[2];
+    point.mean_impulse = warm * in[2];
     block.totals[k] = zero;
     point.arm = cross(select<W>(nearer_a, arms[k].from_a, arms[k].from_b), block.normal);
   }
@@ -399,41 +404,41 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const SurfaceLanes<W> surface{in[0], in[1], in[2], in[3]};
   gather_columns<4, W>(records.constraint, kConstraintSize, in);
   const Wide<W> size = in[0];
-  block.push_speed = in[1];
+  block.pushout_speed = in[1];
   gather_columns<4, W>(records.constraint, kConstraintVelocity, in);
   const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
-  // Not -0: what does not move by itself is left out, and that must be the same.
-  block.aside->surface_1 = dot(surface_velocity, block.tangent_1) + zero;
-  block.aside->surface_2 = dot(surface_velocity, block.tangent_2) + zero;
-  block.slips = any((block.aside->surface_1 != zero) | (block.aside->surface_2 != zero)) ? 1 : 0;
+  // Not -0: a surface at rest is left out, and that must give the same bits.
+  block.cold->surface_1 = dot(surface_velocity, block.tangent_1) + zero;
+  block.cold->surface_2 = dot(surface_velocity, block.tangent_2) + zero;
+  block.has_surface_velocity = any((block.cold->surface_1 != zero) | (block.cold->surface_2 != zero)) ? 1 : 0;
   block.total_1 = block.total_2 = zero;
   gather_columns<4, W>(records.constraint, kConstraintKinds, in);
   const WideInt<W> none(0), kinds = bit_pattern(in[3]);
   const Mask<W> rigid = (kinds & WideInt<W>(0xff)) != none;
-  block.linked = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
+  block.jointed = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
   Wide<W> age;
   prepare_impulses<W>(block, records, surface, settings, age);
-  block.aside->fresh = select(age > zero, zero, one);
-  if ((to_bits(block.aside->fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
+  block.cold->fresh = select(age > zero, zero, one);
+  if ((to_bits(block.cold->fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
   prepare_softness<W>(block, rigid, age, size, settings);
   prepare_friction<W>(block, surface, pressure_patch<W>(block, records, arms), size);
   prepare_normals<W>(block, records.exists);
 }
 
 template <int W>
-void prepare_blocks(void* memory, void* asides, int begin, int end, const ContactConstraint* constraints,
+void prepare_blocks(void* memory, void* cold_blocks, int begin, int end, const ContactConstraint* constraints,
                     const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
     if (i + 1 < end) fetch_ahead<W>(constraints, order + (i + 1) * W);
-    blocks[i].aside = static_cast<ContactBlockCold<W>*>(asides) + i;
+    blocks[i].cold = static_cast<ContactBlockCold<W>*>(cold_blocks) + i;
     prepare_block<W>(blocks[i], constraints, order + i * W, bodies, settings);
   }
 }
 
 // -------------------------------------------------------------------------------------------------------------- finish
 
-// Impulses back into the manifolds; the manifolds' age, and what their points are used to.
+// Stores impulses in the manifolds, and updates age and mean impulses.
 template <int W>
 void finish_block(const ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
                   const ContactSettings& settings) {
@@ -442,19 +447,19 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
   Wide<W> row[4];
   gather_columns<4, W>(records.manifold, kManifoldFriction, row);
-  // Of the whole step: what bore nothing just as it ended is no reason to forget all.
+  // The load of the whole step: a point unloaded just at its end keeps its history.
   Wide<W> load = zero;
   for (int k = 0; k < block.point_count; ++k) load = max(load, block.totals[k]);
   const Wide<W> age = keep(load > zero, row[0] + Wide<W>(settings.step));
   const Wide<W> mean = min(max(age, Wide<W>(kShortestMean)), Wide<W>(kLongestMean));
   const Wide<W> gain = min(Wide<W>(settings.step) / mean, one);
-  // Adding zero makes -0 from a lane that rested be the 0 that a narrower kernel would have.
+  // Adding zero turns -0 from a resting lane into the 0 of a narrower kernel.
   const Vec3W<W> none{zero, zero, zero};
   const Vec3W<W> friction = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2 + none;
   const Vec3W<W> total = block.total_1 * block.tangent_1 + block.total_2 * block.tangent_2 + none;
   const Wide<W> friction_row[4] = {age, friction.x, friction.y, friction.z};
   scatter_columns<4, W>(records.manifold, kManifoldFriction, friction_row);
-  const Vec3W<W> rolling = block.aside->rolling + none;
+  const Vec3W<W> rolling = block.cold->rolling + none;
   const Wide<W> twist_row[4] = {block.twist + zero, rolling.x, rolling.y, rolling.z};
   scatter_columns<4, W>(records.manifold, kManifoldTwist, twist_row);
   const Wide<W> slides = from_bit_pattern(to_int(Mask<W>::of_bits(block.slides)) & WideInt<W>(1));
@@ -464,8 +469,8 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
     const int first = records.begin_point(k) + kPointImpulse;
     gather_columns<4, W>(records.point, first, row);
     const Wide<W> impulse = block.impulses[k] + zero;
-    const Wide<W> held = keep(block.totals[k] > zero, row[2] + gain * (impulse - row[2]));
-    const Wide<W> point_row[4] = {impulse, row[1] + (block.totals[k] + zero), held, row[3]};
+    const Wide<W> mean_impulse = keep(block.totals[k] > zero, row[2] + gain * (impulse - row[2]));
+    const Wide<W> point_row[4] = {impulse, row[1] + (block.totals[k] + zero), mean_impulse, row[3]};
     scatter_columns<4, W>(records.point, first, point_row);
   }
 }
@@ -489,35 +494,35 @@ void read_block_impulse(const void* memory, int index, int lane, ContactImpulse&
   impulse.friction = get_lane(block.friction_1, lane) * get_lane(block.tangent_1, lane) +
                      get_lane(block.friction_2, lane) * get_lane(block.tangent_2, lane);
   impulse.twist = get_lane(block.twist, lane);
-  impulse.rolling = get_lane(block.aside->rolling, lane);
+  impulse.rolling = get_lane(block.cold->rolling, lane);
   impulse.friction_from_b = get_lane(block.friction_from_b, lane);
-  const float twist_grip = get_lane(block.static_twist_grip, lane);
-  impulse.twist_per_normal = twist_grip > 0.0f ? 1.0f / twist_grip : 0.0f;
+  const float inverse_twist_limit = get_lane(block.inverse_static_twist, lane);
+  impulse.twist_per_normal = inverse_twist_limit > 0.0f ? 1.0f / inverse_twist_limit : 0.0f;
 }
 
 template <int W>
 void write_block_impulse(void* memory, int index, int lane, const ContactImpulse& impulse) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
-  // The sums over the step count what stands in the end.
+  // The sums over the step count the final impulse.
   const auto replace = [lane](Wide<W>& present, Wide<W>& total, float value) {
     set_lane(total, lane, get_lane(total, lane) + (value - get_lane(present, lane)));
     set_lane(present, lane, value);
   };
-  block.idles = 0;
+  block.is_settled = 0;
   for (int k = 0; k < kMaxManifoldPoints; ++k) replace(block.impulses[k], block.totals[k], impulse.normal[k]);
   replace(block.friction_1, block.total_1, dot(impulse.friction, get_lane(block.tangent_1, lane)));
   replace(block.friction_2, block.total_2, dot(impulse.friction, get_lane(block.tangent_2, lane)));
   set_lane(block.twist, lane, impulse.twist);
-  set_lane(block.aside->rolling, lane, impulse.rolling);
+  set_lane(block.cold->rolling, lane, impulse.rolling);
   block.slides = static_cast<std::uint16_t>(block.slides & ~(1u << lane));
 }
 
 template <int W>
-void harden_block(void* memory, int index, int lane) {
+void make_block_rigid(void* memory, int index, int lane) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
   set_lane(block.rate, lane, 0.0f);
   set_lane(block.compliance, lane, 0.0f);
-  block.idles = 0;
+  block.is_settled = 0;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

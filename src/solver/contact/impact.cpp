@@ -4,10 +4,10 @@ namespace gyre {
 
 namespace {
 
-constexpr int kPasses = 24;       // over all contacts, until none is closing
-constexpr int kPointSweeps = 16;  // over the points of one manifold
+constexpr int kPasses = 24;           // over all contacts, until none closes
+constexpr int kPointIterations = 16;  // over the points of one manifold
 
-// The two bodies of a contact, with their velocities while a blow is worked out.
+// The two bodies of a contact during an impact.
 struct Bodies {
   BodyMotion* a;
   BodyMotion* b;
@@ -28,10 +28,10 @@ struct Bodies {
     if (a != nullptr) v -= a->linear_velocity + cross(a->angular_velocity, from_a);
     return v;
   }
-  Vec3 drift(Vec3 from_a, Vec3 from_b) const {
+  Vec3 displacement(Vec3 from_a, Vec3 from_b) const {
     Vec3 d;
-    if (b != nullptr) d += b->moved + cross(b->turned, from_b);
-    if (a != nullptr) d -= a->moved + cross(a->turned, from_a);
+    if (b != nullptr) d += b->delta_position + cross(b->delta_rotation, from_b);
+    if (a != nullptr) d -= a->delta_position + cross(a->delta_rotation, from_a);
     return d;
   }
   float inverse_mass(Vec3 direction, Vec3 from_a, Vec3 from_b) const {
@@ -39,7 +39,7 @@ struct Bodies {
     return inertia_a->inverse_mass + inertia_b->inverse_mass + dot(ja, inertia_a->inverse * ja) +
            dot(jb, inertia_b->inverse * jb);
   }
-  void direction(Vec3 p, Vec3 from_a, Vec3 from_b) {
+  void apply_impulse(Vec3 p, Vec3 from_a, Vec3 from_b) {
     if (a != nullptr && (inertia_a->inverse_mass > 0.0f || inertia_a->inverse != Sym3{})) {
       a->linear_velocity -= inertia_a->inverse_mass * p;
       a->angular_velocity -= inertia_a->inverse * cross(from_a, p);
@@ -51,29 +51,29 @@ struct Bodies {
   }
 };
 
-// Meets the targets of all struck points together: impulses >= 0, speed >= target, one of the two equal.
+// Solves for the targets of all hit points together: impulses >= 0, speed >= target, one of the two equal.
 void meet_targets(ImpactContact& contact, Bodies& bodies) {
   for (ImpactPoint& point : contact.points) point.impulse = 0.0f;
-  for (int sweep = 0; sweep < kPointSweeps; ++sweep) {
+  for (int iteration = 0; iteration < kPointIterations; ++iteration) {
     float change = 0.0f;
     for (int k = 0; k < contact.count; ++k) {
       ImpactPoint& point = contact.points[k];
-      if (!point.struck) continue;
+      if (!point.is_hit) continue;
       const float k_inverse = bodies.inverse_mass(contact.normal, point.from_a, point.from_b);
       if (!(k_inverse > 0.0f)) continue;
       const float speed = dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
       const float next = max(point.impulse + (point.target - speed) / k_inverse, 0.0f);
-      bodies.direction((next - point.impulse) * contact.normal, point.from_a, point.from_b);
+      bodies.apply_impulse((next - point.impulse) * contact.normal, point.from_a, point.from_b);
       change = max(change, absolute(next - point.impulse) * k_inverse);
       point.impulse = next;
     }
-    // Settled to a float's precision of the speeds at hand.
+    // Converged to the precision of floats.
     if (change <= 1.0e-6f * absolute(contact.points[0].target)) break;
   }
 }
 
-// Friction of the blow at its centre of pressure.
-void rub(ImpactContact& contact, Bodies& bodies) {
+// Friction of the impact at its centre of pressure.
+void apply_friction(ImpactContact& contact, Bodies& bodies) {
   float total = 0.0f;
   Vec3 from_a, from_b;
   for (int k = 0; k < contact.count; ++k) {
@@ -94,31 +94,32 @@ void rub(ImpactContact& contact, Bodies& bodies) {
   const Vec3 direction = slip / speed;
   const float k_inverse = bodies.inverse_mass(direction, from_a, from_b);
   if (!(k_inverse > 0.0f)) return;
-  bodies.direction(-min(speed / k_inverse, contact.friction * total) * direction, from_a, from_b);
+  bodies.apply_impulse(-min(speed / k_inverse, contact.friction * total) * direction, from_a, from_b);
 }
 
-// Whether the point meets within the sub-step and, if so, what speed it is to leave with.
+// True if the point touches within the sub-step. Sets its separating speed.
 bool apply_point_restitution(ImpactPoint& point, const ImpactContact& contact, const Bodies& bodies,
                              const ImpactSettings& settings) {
   const float closing = -dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
   if (!(closing > settings.threshold)) return false;
-  // Below the surface (a contact that was seen too late) the way back up counts like the way down.
-  const float separation = point.separation + dot(bodies.drift(point.from_a, point.from_b), contact.normal);
+  // Below the surface (a contact that was found too late) the way up counts like the way down.
+  const float separation =
+      point.separation + dot(bodies.displacement(point.from_a, point.from_b), contact.normal);
   if (closing * settings.substep < separation) return false;
-  const float start = closing - point.kick;  // u: before this sub-step's forces
-  const float half_kick = 0.5f * point.kick;
-  const float fall = 2.0f * point.kick / settings.substep * separation;  // 2 a s
-  const float energy = square(start + half_kick) + fall;
+  const float start = closing - point.force_speed;  // u: before the forces of this sub-step
+  const float half_force_speed = 0.5f * point.force_speed;
+  const float fall = 2.0f * point.force_speed / settings.substep * separation;  // 2 a s
+  const float energy = square(start + half_force_speed) + fall;
   if (!(energy > square(settings.threshold))) return false;
   const float leaving = square(contact.restitution) * energy;
-  if (leaving - fall >= square(half_kick)) {
-    point.target = max(std::sqrt(leaving - fall) - half_kick, 0.0f);
-    point.struck = true;
+  if (leaving - fall >= square(half_force_speed)) {
+    point.target = max(std::sqrt(leaving - fall) - half_force_speed, 0.0f);
+    point.is_hit = true;
   } else {
-    point.target = half_kick + std::sqrt(leaving);
+    point.target = half_force_speed + std::sqrt(leaving);
     point.pending = true;
   }
-  return point.struck;
+  return point.is_hit;
 }
 
 }  // namespace
@@ -146,7 +147,7 @@ void record_approach(std::span<ImpactContact> contacts, ContactBodies bodies) {
     const Bodies pair(contact, bodies);
     for (int k = 0; k < contact.count; ++k) {
       ImpactPoint& point = contact.points[k];
-      point.kick = -dot(pair.velocity(point.from_a, point.from_b), contact.normal);
+      point.force_speed = -dot(pair.velocity(point.from_a, point.from_b), contact.normal);
       point.pending = false;
     }
   }
@@ -154,27 +155,27 @@ void record_approach(std::span<ImpactContact> contacts, ContactBodies bodies) {
 
 void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
                        const ImpactSettings& settings) {
-  // What the forces added: closing speed now less closing speed before.
+  // Effect of the forces: closing speed now minus closing speed before.
   for (ImpactContact& contact : contacts) {
     const Bodies pair(contact, bodies);
     for (int k = 0; k < contact.count; ++k) {
       ImpactPoint& point = contact.points[k];
-      point.kick = -dot(pair.velocity(point.from_a, point.from_b), contact.normal) - point.kick;
+      point.force_speed = -dot(pair.velocity(point.from_a, point.from_b), contact.normal) - point.force_speed;
     }
   }
   for (int pass = 0; pass < kPasses; ++pass) {
     bool any = false;
     for (ImpactContact& contact : contacts) {
       Bodies pair(contact, bodies);
-      bool struck = false;
+      bool is_hit = false;
       for (int k = 0; k < contact.count; ++k) {
-        contact.points[k].struck = false;
-        if (apply_point_restitution(contact.points[k], contact, pair, settings)) struck = true;
+        contact.points[k].is_hit = false;
+        if (apply_point_restitution(contact.points[k], contact, pair, settings)) is_hit = true;
       }
-      if (!struck) continue;
+      if (!is_hit) continue;
       any = true;
       meet_targets(contact, pair);
-      rub(contact, pair);
+      apply_friction(contact, pair);
     }
     if (!any) break;
   }
@@ -186,14 +187,14 @@ void apply_delayed_restitution(std::span<ImpactContact> contacts, ContactBodies 
     bool pending = false;
     for (int k = 0; k < contact.count; ++k) {
       ImpactPoint& point = contact.points[k];
-      point.struck = point.pending;
+      point.is_hit = point.pending;
       pending = pending || point.pending;
       point.pending = false;
     }
     if (!pending) continue;
     Bodies pair(contact, bodies);
     meet_targets(contact, pair);
-    rub(contact, pair);
+    apply_friction(contact, pair);
   }
 }
 

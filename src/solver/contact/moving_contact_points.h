@@ -1,12 +1,16 @@
-// Takes the points of a contact along within the step: what rolls touches elsewhere in each sub-step, and what it weighs on
-// follows (rigid/solve/rolling_contacts.h says where). The lanes of a block that roll side by side. Part of the kernels.
+// Moves the points of a contact within the step: a rolling body touches elsewhere in each sub-step, and its
+// load follows (rigid/solve/rolling_contacts.h says where). The moving lanes of a block are handled side by
+// side. Part of the kernels.
 //
-// The impulses that stand go on acting, but at the new place: what they turn changes by
-//   I'^-1 (r' x p) - I^-1 (r x p)
-// without which they would turn the bodies as if the contact had stayed behind, or what friction was given at one end of a bone would be
-// taken back at the other, once the load lies there. They act where the contact is as the sub-step
-// begins, but the speeds that they bring about are those of its middle: so what the contact's own motion takes at the one end
-// it gives back at the other, as in the leapfrog scheme. With one arm for both, rolling would lose energy to the first order.
+// The accumulated impulses keep acting, but at the new points. Their angular effect changes by
+//
+// I'^-1 (r' x p) - I^-1 (r x p).
+//
+// Without this change they would act on the old contact, and friction given at one end of a bone would be
+// removed at the other, once the load lies there. Impulses act at the points of the beginning of the
+// sub-step, but speeds are measured at those of its middle. So the motion of the contact takes at one end
+// what it gives at the other, as in the leapfrog scheme; with one arm for both, rolling would lose energy to
+// first order.
 #pragma once
 
 #include "solver/contact/contact_prepare.h"
@@ -16,7 +20,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Where the arms lie in AdvancedArms, in floats.
+// Offsets of the arms in AdvancedArms, in floats.
 constexpr int kArmsMiddle = 0, kArmsBefore = 24, kArmsNow = 48, kArmsSeparation = 72, kArmsShares = 76;
 static_assert(offsetof(AdvancedArms, before) == 4 * kArmsBefore &&
               offsetof(AdvancedArms, now) == 4 * kArmsNow);
@@ -25,28 +29,28 @@ static_assert(offsetof(AdvancedArms, middle) == 0 &&
 static_assert(offsetof(AdvancedArms, friction_shares) == 4 * kArmsShares);
 static_assert(sizeof(PointArmPairs) == 4 * kArmsBefore && offsetof(PointArmPairs, from_b) == 48);
 
-// The lanes of a block that are followed. The others read zeros, and what is worked out for them is not kept.
+// The moving lanes of a block. Other lanes read zeros, and their results are discarded.
 template <int W>
 struct AdvancedArmsLanes {
   const float* arms[W];
   const float* inverse_a[W];
   const float* inverse_b[W];
-  std::uint32_t bits = 0, has_a = 0, has_b = 0;  // has_a: whose inertia is known
+  std::uint32_t bits = 0, has_a = 0, has_b = 0;  // has_a: lanes whose inertia is known
   Wide<W> counts{0.0f};
-  int point_count = 0;  // the most of any
+  int point_count = 0;  // the largest of any lane
 
   GYRE_INLINE AdvancedArmsLanes(const AdvancedArmsLane* lanes, int count) {
     alignas(64) static constexpr float kNoArms[sizeof(AdvancedArms) / sizeof(float)] = {};
     for (int i = 0; i < W; ++i) arms[i] = inverse_a[i] = inverse_b[i] = kNoArms;
     for (int i = 0; i < count; ++i) {
-      const AdvancedArmsLane& followed = lanes[i];
-      const int lane = followed.lane;
+      const AdvancedArmsLane& moving = lanes[i];
+      const int lane = moving.lane;
       bits |= 1u << lane;
-      arms[lane] = &followed.arms->middle.from_a[0].x;
-      if (followed.inverse_a != nullptr) inverse_a[lane] = &followed.inverse_a->xx, has_a |= 1u << lane;
-      if (followed.inverse_b != nullptr) inverse_b[lane] = &followed.inverse_b->xx, has_b |= 1u << lane;
-      counts.set(lane, float(followed.arms->count));
-      if (followed.arms->count > point_count) point_count = followed.arms->count;
+      arms[lane] = &moving.arms->middle.from_a[0].x;
+      if (moving.inverse_a != nullptr) inverse_a[lane] = &moving.inverse_a->xx, has_a |= 1u << lane;
+      if (moving.inverse_b != nullptr) inverse_b[lane] = &moving.inverse_b->xx, has_b |= 1u << lane;
+      counts.set(lane, float(moving.arms->count));
+      if (moving.arms->count > point_count) point_count = moving.arms->count;
     }
   }
   GYRE_INLINE Mask<W> has_point(int k) const { return counts > Wide<W>(float(k)); }
@@ -70,7 +74,8 @@ GYRE_INLINE PointArms<W> gather_arms(const AdvancedArmsLanes<W>& lanes, int set,
   return {gather_vector<W>(lanes.arms, set + 3 * k), gather_vector<W>(lanes.arms, set + 12 + 3 * k)};
 }
 
-// How the load is shared among the points: friction acts where the load does, or at the lowest point where nothing bears any.
+// Shares of the load among the points: friction acts where the load does, or at the lowest point without
+// load.
 template <int W>
 struct LoadShares {
   Mask<W> exists[kMaxManifoldPoints];
@@ -80,35 +85,35 @@ struct LoadShares {
     const Wide<W> zero(0.0f), one(1.0f);
     Wide<W> separations[kMaxManifoldPoints], load = zero;
     gather_columns<4, W>(lanes.arms, kArmsSeparation, separations);
-    Wide<W> least = separations[0];
+    Wide<W> lowest_separation = separations[0];
     for (int k = 0; k < lanes.point_count; ++k) {
       exists[k] = lanes.has_point(k);
-      least = select(exists[k], min(least, separations[k]), least);
+      lowest_separation = select(exists[k], min(lowest_separation, separations[k]), lowest_separation);
       load = load + keep(exists[k], block.impulses[k]);
     }
     const auto bears = load > zero;
     const Wide<W> divisor = select(bears, load, one);
     auto left = ~bears;
     for (int k = 0; k < lanes.point_count; ++k) {
-      const auto lowest = left & exists[k] & (separations[k] <= least);
+      const auto lowest = left & exists[k] & (separations[k] <= lowest_separation);
       left = left & ~lowest;
       shares[k] = select(bears, keep(exists[k], block.impulses[k] / divisor), keep(lowest, one));
     }
   }
 };
 
-// By which shares the friction that stands came to act; as the step begins it acts where the load does.
+// Shares with which the accumulated friction was applied; at the beginning of a step those of the load.
 template <int W>
-GYRE_INLINE void shares_before(const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& now,
-                               Wide<W> (&before)[kMaxManifoldPoints]) {
-  Wide<W> noted[kMaxManifoldPoints], sum(0.0f);
-  gather_columns<4, W>(lanes.arms, kArmsShares, noted);
-  for (int k = 0; k < lanes.point_count; ++k) sum = sum + noted[k];
+GYRE_INLINE void previous_shares(const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& now,
+                                 Wide<W> (&before)[kMaxManifoldPoints]) {
+  Wide<W> recorded[kMaxManifoldPoints], sum(0.0f);
+  gather_columns<4, W>(lanes.arms, kArmsShares, recorded);
+  for (int k = 0; k < lanes.point_count; ++k) sum = sum + recorded[k];
   for (int k = 0; k < lanes.point_count; ++k)
-    before[k] = select(sum > Wide<W>(0.0f), noted[k], now.shares[k]);
+    before[k] = select(sum > Wide<W>(0.0f), recorded[k], now.shares[k]);
 }
 
-// Where friction acts, added up point by point.
+// The arm of friction, accumulated point by point.
 template <int W>
 struct FrictionArms {
   Vec3W<W> from_a{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)}, from_b = from_a;
@@ -119,7 +124,7 @@ struct FrictionArms {
   }
 };
 
-// How the impulses that stand turn the two bodies about their centres of mass (N m s) with these arms.
+// Angular impulses of the accumulated impulses about the centres of mass (N m s) with these arms.
 template <int W>
 struct LaneTorques {
   Vec3W<W> a, b;
@@ -132,8 +137,8 @@ GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const Advanc
   FrictionArms<W> friction;
   for (int k = 0; k < lanes.point_count; ++k) friction.add(friction_shares[k], arms[k] = gather_arms<W>(lanes, set, k));
   const Vec3W<W> slide = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2;
-  const Vec3W<W> turn = block.twist * block.normal + block.aside->rolling;
-  LaneTorques<W> torques{cross(friction.from_a, slide) + turn, cross(friction.from_b, slide) + turn};
+  const Vec3W<W> torsion = block.twist * block.normal + block.cold->rolling;
+  LaneTorques<W> torques{cross(friction.from_a, slide) + torsion, cross(friction.from_b, slide) + torsion};
   for (int k = 0; k < lanes.point_count; ++k) {
     const Vec3W<W> direction = block.impulses[k] * block.normal;
     torques.a = select<W>(load.exists[k], torques.a + cross(arms[k].from_a, direction), torques.a);
@@ -143,14 +148,14 @@ GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const Advanc
 }
 
 template <int W>
-GYRE_INLINE void turn_body(float* record, int lane, const Vec3W<W>& change) {
+GYRE_INLINE void add_spin(float* record, int lane, const Vec3W<W>& change) {
   float* const spin = record + kMotionAngular;
   spin[0] += change.x[lane];
   spin[1] += change.y[lane];
   spin[2] += change.z[lane];
 }
 
-// What decides the masses, for all lanes of a block.
+// Copies the data that decide the masses.
 template <int W>
 GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
   to.has_a = from.has_a, to.has_b = from.has_b;
@@ -158,41 +163,41 @@ GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
   to.inverse_mass_a = from.inverse_mass_a, to.inverse_mass_b = from.inverse_mass_b;
 }
 
-// Takes over what became of the lanes that are followed.
+// Writes the moving lanes back into the block.
 template <int W>
-GYRE_INLINE void put_back(ContactBlock<W>& block, const ContactBlock<W>& moved,
-                          const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& load) {
-  const auto followed = Mask<W>::of_bits(lanes.bits);
+GYRE_INLINE void write_back(ContactBlock<W>& block, const ContactBlock<W>& updated,
+                            const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& load) {
+  const auto moving = Mask<W>::of_bits(lanes.bits);
   const auto put = [](Mask<W> where, auto& to, const auto& from) { to = select(where, from, to); };
   const auto put_vector = [](Mask<W> where, Vec3W<W>& to, const Vec3W<W>& from) { to = select<W>(where, from, to); };
-  put_vector(followed, block.friction_from_a, moved.friction_from_a);
-  put_vector(followed, block.friction_from_b, moved.friction_from_b);
-  put(followed, block.inverse_k11, moved.inverse_k11), put(followed, block.inverse_k12, moved.inverse_k12);
-  put(followed, block.inverse_k13, moved.inverse_k13), put(followed, block.inverse_k22, moved.inverse_k22);
-  put(followed, block.inverse_k23, moved.inverse_k23), put(followed, block.inverse_k33, moved.inverse_k33);
-  put_vector(followed, block.arm_shift_a, moved.arm_shift_a);
-  put_vector(followed, block.arm_shift_b, moved.arm_shift_b);
+  put_vector(moving, block.friction_from_a, updated.friction_from_a);
+  put_vector(moving, block.friction_from_b, updated.friction_from_b);
+  put(moving, block.inverse_k11, updated.inverse_k11), put(moving, block.inverse_k12, updated.inverse_k12);
+  put(moving, block.inverse_k13, updated.inverse_k13), put(moving, block.inverse_k22, updated.inverse_k22);
+  put(moving, block.inverse_k23, updated.inverse_k23), put(moving, block.inverse_k33, updated.inverse_k33);
+  put_vector(moving, block.arm_shift_a, updated.arm_shift_a);
+  put_vector(moving, block.arm_shift_b, updated.arm_shift_b);
   Wide<W> separations[kMaxManifoldPoints];
   gather_columns<4, W>(lanes.arms, kArmsSeparation, separations);
   for (int i = 0; i < lanes.point_count; ++i) {
-    put_vector(load.exists[i], block.points[i].arm, moved.points[i].arm);
+    put_vector(load.exists[i], block.points[i].arm, updated.points[i].arm);
     put(load.exists[i], block.points[i].separation, separations[i]);
-    put(load.exists[i], block.aside->relief[i], moved.aside->relief[i]);
-    block.rows[i] = lane_bits<W>(block.aside->relief[i] > Wide<W>(0.0f));
+    put(load.exists[i], block.cold->inverse_diagonal[i], updated.cold->inverse_diagonal[i]);
+    block.rows[i] = lane_bits<W>(block.cold->inverse_diagonal[i] > Wide<W>(0.0f));
     for (int j = i; j < lanes.point_count; ++j) {
-      put(load.exists[j], block.aside->k[packed(i, j)], moved.aside->k[packed(i, j)]);
-      put(load.exists[j], block.inverse_k[packed(i, j)], moved.inverse_k[packed(i, j)]);
+      put(load.exists[j], block.cold->k[packed(i, j)], updated.cold->k[packed(i, j)]);
+      put(load.exists[j], block.inverse_k[packed(i, j)], updated.inverse_k[packed(i, j)]);
     }
   }
 }
 
 template <int W>
-void follow_lanes(void* memory, int index, const AdvancedArmsLane* followed, int count) {
+void advance_points(void* memory, int index, const AdvancedArmsLane* moving, int count) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
-  const AdvancedArmsLanes<W> lanes(followed, count);
+  const AdvancedArmsLanes<W> lanes(moving, count);
   const LoadShares<W> load(block, lanes);
   Wide<W> friction_before[kMaxManifoldPoints];
-  shares_before<W>(lanes, load, friction_before);
+  previous_shares<W>(lanes, load, friction_before);
   const LaneTorques<W> before = torques_of<W>(block, lanes, load, friction_before, kArmsBefore),
                        now = torques_of<W>(block, lanes, load, load.shares, kArmsNow);
   const Vec3W<W> before_a = block.inverse_inertia_a * before.a, before_b = block.inverse_inertia_b * before.b;
@@ -203,37 +208,37 @@ void follow_lanes(void* memory, int index, const AdvancedArmsLane* followed, int
   };
   refresh(lanes.has_a, gather_tensor<W>(lanes.inverse_a), block.inverse_inertia_a);
   refresh(lanes.has_b, gather_tensor<W>(lanes.inverse_b), block.inverse_inertia_b);
-  const Vec3W<W> change_a = before_a - block.inverse_inertia_a * now.a,  // a gets the opposite
-                 change_b = block.inverse_inertia_b * now.b - before_b;
+  const Vec3W<W> change_a = before_a - block.inverse_inertia_a * now.a,  // A gets the opposite
+      change_b = block.inverse_inertia_b * now.b - before_b;
   for (int i = 0; i < count; ++i) {
-    const int lane = followed[i].lane;
-    turn_body<W>(block.aside->write_a[lane], lane, change_a);
-    turn_body<W>(block.aside->write_b[lane], lane, change_b);
-    for (int k = 0; k < lanes.point_count; ++k) followed[i].arms->friction_shares[k] = load.shares[k][lane];
+    const int lane = moving[i].lane;
+    add_spin<W>(block.cold->write_a[lane], lane, change_a);
+    add_spin<W>(block.cold->write_b[lane], lane, change_b);
+    for (int k = 0; k < lanes.point_count; ++k) moving[i].arms->friction_shares[k] = load.shares[k][lane];
   }
-  ContactBlockCold<W> aside;
-  ContactBlock<W> moved;
-  moved.aside = &aside;
-  copy_bodies<W>(block, moved);
-  moved.inverse_inertia_a = block.inverse_inertia_a, moved.inverse_inertia_b = block.inverse_inertia_b;
-  moved.point_count = lanes.point_count;
+  ContactBlockCold<W> cold;
+  ContactBlock<W> updated;
+  updated.cold = &cold;
+  copy_bodies<W>(block, updated);
+  updated.inverse_inertia_a = block.inverse_inertia_a, updated.inverse_inertia_b = block.inverse_inertia_b;
+  updated.point_count = lanes.point_count;
   const PointArms<W> first = gather_arms<W>(lanes, kArmsMiddle, 0);
-  const auto nearer_a = place_arms<W>(moved, first);
+  const auto nearer_a = choose_arm_origin<W>(updated, first);
   FrictionArms<W> friction;
   Wide<W> exists[kMaxManifoldPoints];
   for (int k = 0; k < lanes.point_count; ++k) {
     exists[k] = keep(load.exists[k], Wide<W>(1.0f));
     const PointArms<W> arms = k == 0 ? first : gather_arms<W>(lanes, kArmsMiddle, k);
     friction.add(load.shares[k], arms);
-    moved.points[k].arm = cross(select<W>(nearer_a, arms.from_a, arms.from_b), block.normal);
+    updated.points[k].arm = cross(select<W>(nearer_a, arms.from_a, arms.from_b), block.normal);
   }
-  moved.friction_from_a = friction.from_a, moved.friction_from_b = friction.from_b;
+  updated.friction_from_a = friction.from_a, updated.friction_from_b = friction.from_b;
   auto twists = nearer_a;
-  prepare_friction_masses<W>(moved, block.aside->twist_radius > Wide<W>(0.0f), twists);
-  prepare_normals<W>(moved, exists);
-  put_back<W>(block, moved, lanes, load);
+  prepare_friction_masses<W>(updated, block.cold->twist_radius > Wide<W>(0.0f), twists);
+  prepare_normals<W>(updated, exists);
+  write_back<W>(block, updated, lanes, load);
   mark_uneven_points<W>(block);
-  block.idles = 0;
+  block.is_settled = 0;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

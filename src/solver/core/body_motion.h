@@ -1,5 +1,5 @@
-// The 64-byte record of a body that every solver reads and writes: one cache line, sixteen floats, so that wide kernels
-// gather it with plain transposes. The solver does not know who owns the records.
+// The 64-byte record of a body that every solver reads and writes. It is one cache line of sixteen floats, so
+// wide kernels gather it with plain transposes. The solver does not know who owns the records.
 #pragma once
 
 #include <gyre/math.h>
@@ -12,36 +12,36 @@ struct alignas(64) BodyMotion {
   Vec3 linear_velocity;   // m/s, of the centre of mass, world frame
   Vec3 angular_velocity;  // rad/s, world frame
   float inverse_mass = 0.0f;  // 1/kg; 0 for fixed and kinematic bodies
-  float pushed = 0.0f;        // m: the farthest that overlap pushed a point of the body in this step
-  Vec3 moved;   // m, of the centre of mass since the step began
-  Vec3 turned;  // rad, rotation vector since the step began (sum of the sub-steps')
+  float pushout = 0.0f;       // m: the largest pushout of a point of the body in this step
+  Vec3 delta_position;        // m, of the centre of mass since the step began
+  Vec3 delta_rotation;        // rad, rotation vector since the step began: the sum over the sub-steps
   float spare_1 = 0.0f;
   float spare_2 = 0.0f;
 };
 static_assert(sizeof(BodyMotion) == 64);
 
-// For a body that leaves the bodies that are moved. `moved` and `turned` too: joints to it read them, nobody clears them
-// any more as the step begins, and a snapshot does not keep them.
-inline void stop(BodyMotion& motion) {
+// Clears the record of a body that ceases to move. The displacement is cleared too: joints still read it, no
+// step clears it any more, and snapshots do not store it.
+inline void clear_motion(BodyMotion& motion) {
   motion.linear_velocity = motion.angular_velocity = {};
-  motion.moved = motion.turned = {};
-  motion.pushed = 0.0f;
+  motion.delta_position = motion.delta_rotation = {};
+  motion.pushout = 0.0f;
 }
 
-// m/s, world frame, of the point of the body that is at `from_center` from its centre of mass (world axes).
+// m/s, world frame: velocity of the point at `from_center` from the centre of mass (world axes).
 inline Vec3 point_velocity(const BodyMotion& motion, Vec3 from_center) {
   return motion.linear_velocity + cross(motion.angular_velocity, from_center);
 }
 
-// Columns of the record, as wide kernels see them.
+// Columns of the record for the wide kernels.
 constexpr int kMotionFloats = 16;
 constexpr int kMotionLinear = 0;
 constexpr int kMotionAngular = 3;
-constexpr int kMotionPushed = 7;
-constexpr int kMotionMoved = 8;
-constexpr int kMotionTurned = 11;
+constexpr int kMotionPushout = 7;
+constexpr int kMotionDeltaPosition = 8;
+constexpr int kMotionDeltaRotation = 11;
 
-// World-frame inverse inertia, kept beside the record because only preparation reads it.
+// Inverse inertia in the world frame. It has a record of its own because only preparation reads it.
 struct BodyInertia {
   Sym3 inverse;                 // 1/(kg m^2), world axes
   float inverse_mass = 0.0f;
@@ -49,9 +49,9 @@ struct BodyInertia {
 };
 static_assert(sizeof(BodyInertia) == 32);
 
-// "No body": the fixed world, which has no record.
+// The static world, which has no record.
 constexpr std::int32_t kNoBody = -1;
-// None of things that are numbered without a sign; of bodies, kNoBody.
+// "None" for unsigned indices; for bodies, kNoBody.
 constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
 }  // namespace gyre

@@ -1,47 +1,64 @@
-// How much of what is wrong with a joint is taken back at once, and how much of its bend is asked for: of linkages one by one and side by
-// side alike.
+// Constants of the solver that several rooms share: bounds of the errors that a step removes, fades of the
+// second-order bias, and slop of contacts.
 #pragma once
 
 namespace gyre {
 
-// What a joint does not allow is taken back as if it were no more than this.
+// Larger errors of a joint count as these.
 struct ErrorBounds {
   float point;  // m
-  float turn;   // rad
+  float rotation;  // rad
 };
 
-// Bodies that are joined, or let go by what held them, far from where the joint would have them do not strike out.
+// The bounds keep bodies calm that are joined, or released, far from where the joint wants them.
 constexpr ErrorBounds kMaxErrors{0.1f, 0.2f};
-// Before contacts are solved: they answer what is taken back as if it were a load, and keep that answer. Of small errors they must,
-// or a rope would slip round a drum by what it gives; but limbs that are wedged in a heap pressed each other with tons.
+// Bounds before contacts are solved. Contacts answer the removal of errors like a load and keep that answer.
+// Small errors must be removed there, or a rope would slip round a drum by its compliance. Large errors must
+// not: limbs wedged in a heap pressed each other with tons.
 constexpr ErrorBounds kErrorsBeforeContacts{0.5e-3f, 5.0e-3f};
 constexpr ErrorBounds kNoErrors{0.0f, 0.0f};
-// rad. What a stop that turns is passed by is taken back as if it were no more than this: slower than what joints do not allow, since its axis
-// turns meanwhile, and of what it gives some is kept then.
+// rad. Larger violations of an angular limit count as this. They are removed more slowly than other errors,
+// because the axis of the limit rotates meanwhile and part of the removal speed stays.
 constexpr float kMaxLimitError = 0.1f;
 
-// rad. Bodies that turn by less than the first in a sub-step do so along a straight line; of those that turn by more than the second, the
-// rows ask for less and less of the bend: a whip's end then loses energy instead of gaining it.
+// rad. Bodies that rotate less than kMinBiasAngle in a sub-step get no second-order bias. Beyond
+// kMaxBiasAngle the bias fades: the end of a whip then loses energy instead of gaining it.
 constexpr float kMinBiasAngle = 1.0e-4f, kMaxBiasAngle = 0.3f;
-// Bend that is not asked for, or that two solutions do not find, opens the joint in each sub-step anew. Errors of joints whose bodies
-// turn by more than this (rad) are taken back the faster for it: wholly in a sub-step where they turn by far more.
-constexpr float kCalmTurn = 0.15f;
-// Bodies that turn by less than this in a part need not have lost what speed errors gave them before the next part asks for their bend.
-constexpr float kStraightTurn = 0.05f;
+// rad. Bias that is faded out, or that two solves do not find, opens the joint anew in each sub-step. Joints
+// whose bodies rotate further than this remove errors faster, up to the whole error in one sub-step.
+constexpr float kFastErrorAngle = 0.15f;
+// rad. Bodies that rotate less than this in a half step may keep the speed that removed errors until the next
+// half step computes their bias.
+constexpr float kSlowRotation = 0.05f;
 
-// What joints that do no work may give in a sub-step, of the energy of motion that there was, before all of it is taken away: what the bend
-// beyond the second order gives and takes in turn in a smooth swing is less. Until bodies have moved it may be more, since what the bend
-// asks for goes away after that.
+// Energy that passive joints may add in a sub-step, as a share of the kinetic energy before, until the energy
+// limiter removes all of it. Beyond the second order, the bias adds and removes less than this in a smooth
+// swing. Before bodies have moved the share may be larger, because the speed from the bias disappears after
+// the move.
 constexpr float kMaxEnergyGain = 1.0e-2f, kMaxEnergyGainAhead = 1.0f;
 
-// Motors that hold a place or a speed without a frequency of their own give way by this share of what would move them freely, where they are
-// solved with the equations of their linkage: ten times as much as those, which motors in conflict are not to break.
-constexpr float kMotorGive = 1.0e-3f;
+// Compliance of a motor without a frequency of its own that is solved with the equations of its articulation,
+// as a share of the compliance of the free axis. It is ten times that of the equations, so motors in conflict
+// do not break them.
+constexpr float kMotorCompliance = 1.0e-3f;
 
-// Stops of a cone's twist rest where 1 + cos(swing) is less, from 143 degrees on: a limb that points straight back has no twist, and near
-// there it changes by any amount at once.
+// The twist limits of a cone are inactive where 1 + cos(swing) is below this, from 143 degrees on. A limb
+// that points straight back has no twist, and near there the twist jumps.
 constexpr float kMinTwistReported = 0.2f;
-// Of stops that cannot be reached.
-constexpr float kAway = 1.0e9f;  // rad
+// rad. Smaller swing limits of a cone count as this.
+constexpr float kMinSwingLimit = 1.0e-3f;
+// Gap of a limit that cannot be reached.
+constexpr float kUnreachable = 1.0e9f;  // rad
+
+// Tension in a joint is left alone up to this value of h^2 k / I. Semi-implicit Euler is stable up to 4.
+constexpr float kGeometricStiffnessThreshold = 1.0f;
+
+// Penetration to which the springs of contacts draw loaded points, as a share of the contact's size: loaded
+// points then stay in touch.
+constexpr double kSpringSlop = 4.0e-4;
+// Penetration that pushout leaves: as a multiple of kSpringSlop, and as a share of the size.
+constexpr double kPushoutSlopFactor = 1.5, kPushoutSlop = 6.0e-4;
+// Share of the penetration beyond the slop that pushout removes in a step.
+constexpr double kPushoutShare = 0.4;
 
 }  // namespace gyre

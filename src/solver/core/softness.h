@@ -1,6 +1,5 @@
-// Soft constraints: how much of a position error a sub-step takes back, and how the impulse gives way, from a frequency
-// and a damping ratio. The constraint then behaves like an implicit spring-damper on the effective mass, stable at any
-// stiffness.
+// Soft constraints: coefficients of a row from a frequency and a damping ratio. The row then behaves like an
+// implicit spring and damper on the effective mass and is stable at any stiffness.
 //
 // Source: E. Catto, "Soft Constraints", GDC 2011, in the form that keeps the rigid effective mass.
 #pragma once
@@ -10,9 +9,9 @@
 namespace gyre {
 
 struct Softness {
-  float bias_rate = 0.0f;      // 1/s: speed asked for per metre of error
+  float bias_rate = 0.0f;      // 1/s: bias per metre of error
   float mass_scale = 1.0f;     // share of the rigid impulse
-  float impulse_scale = 0.0f;  // share of the accumulated impulse that gives way
+  float impulse_scale = 0.0f;  // share of the accumulated impulse that the row yields
 };
 
 inline Softness make_softness(float frequency, float damping_ratio, float h) {

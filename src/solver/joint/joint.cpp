@@ -12,10 +12,10 @@ Quat orientation_of(std::int32_t body, const JointBodies& bodies) {
   return body == kNoBody ? Quat{} : bodies.orientation[body];
 }
 
-// How far the anchors part in h by the turning of their arms and of the slide, over h: what the rows, being linear, do not
-// see. Asking the rows for the opposite makes the end of the sub-step, not its beginning, meet the joint, as in SHAKE
-// (J.-P. Ryckaert, G. Ciccotti, H. Berendsen, 1977); with the rows taken anew before velocities relax (RATTLE: H. Andersen,
-// 1983) a swinging pendulum keeps its energy.
+// The second-order bias of a joint: how far the anchors part in h by the rotation of their arms and of the
+// slide, over h, beyond the linear rows. With its opposite as bias, the end of the sub-step instead of its
+// beginning meets the joint, as in SHAKE (J.-P. Ryckaert, G. Ciccotti, H. Berendsen, 1977). Since relaxation
+// takes the rows at the new pose (RATTLE: H. Andersen, 1983), a swinging pendulum keeps its energy.
 Vec3 second_order_bias_of(const JointPair& pair, const JointConstraint& work, bool slides, float h) {
   Vec3 second_order_bias = cross(pair.angular_b, cross(pair.angular_b, work.from_b)) -
               cross(pair.angular_a, cross(pair.angular_a, work.from_a));
@@ -27,11 +27,11 @@ void prepare_ball(const JointPair& pair, JointConstraint& work) {
   work.linear_mass = inverse(point_matrix(pair, work.from_a, work.from_b));
 }
 
-// The axis of a hinge, slider or distance joint, if anything acts along or about it.
-AxisConstraint* only_axis(JointConstraint& work) { return work.axes.empty() ? nullptr : &work.axes[0]; }
+// The axis of a hinge, slider or distance joint, if anything acts on it.
+AxisConstraint* single_axis(JointConstraint& work) { return work.axes.empty() ? nullptr : &work.axes[0]; }
 
-void place_line_axis(JointConstraint& work, const JointPair& pair, const JointSettings& settings) {
-  AxisConstraint* const x = only_axis(work);
+void prepare_line_axis(JointConstraint& work, const JointPair& pair, const JointSettings& settings) {
+  AxisConstraint* const x = single_axis(work);
   if (x == nullptr) return;
   x->row = {work.axis, work.axis, cross(work.from_a, work.axis), cross(work.from_b, work.axis)};
   x->axis.position = work.position;
@@ -44,16 +44,16 @@ void prepare_hinge(JointRecord& joint, const JointPair& pair, JointConstraint& w
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
   work.perpendicular_2 = axes_a.z;
-  work.angular_error = clamp_length(cross(work.axis, axis_b), kMaxErrors.turn);
-  if (settings.swept) {
+  work.angular_error = clamp_length(cross(work.axis, axis_b), kMaxErrors.rotation);
+  if (settings.iterative) {
     prepare_ball(pair, work);
     const Mat3 k = to_matrix(pair.inverse_inertia_a()) + to_matrix(pair.inverse_inertia_b());
     work.angular_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
   }
-  // The twist of b's frame in a's, unwrapped by staying near the last value.
+  // The twist of b's frame in a's, unwrapped to stay near the last value.
   const Quat twist = conjugate(work.frame_a) * work.frame_b;
   work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), joint.position);
-  AxisConstraint* const x = only_axis(work);
+  AxisConstraint* const x = single_axis(work);
   if (x == nullptr) return;
   x->row = {{}, {}, work.axis, work.axis};
   x->axis.position = work.position;
@@ -66,22 +66,24 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointConstraint& 
   work.perpendicular_1 = axes_a.y;
   work.perpendicular_2 = axes_a.z;
   work.position = joint.position = dot(work.error, work.axis);
-  // The rows act at b's anchor: the arm of a reaches to where b's anchor is now.
+  // The rows act at b's anchor, so the arm of a ends there.
   work.from_a += work.error;
-  work.along = work.position * work.axis;
-  work.error -= work.along;
-  work.angular_error = clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.turn);
-  if (settings.swept) {
+  work.free_offset = work.position * work.axis;
+  work.error -= work.free_offset;
+  work.angular_error =
+      clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.rotation);
+  if (settings.iterative) {
     const Mat3 k = point_matrix(pair, work.from_a, work.from_b);
     work.linear_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
     work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
   }
-  place_line_axis(work, pair, settings);
+  prepare_line_axis(work, pair, settings);
 }
 
-void prepare_fixed(const JointPair& pair, JointConstraint& work, bool swept) {
-  work.angular_error = clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.turn);
-  if (!swept) return;
+void prepare_fixed(const JointPair& pair, JointConstraint& work, bool iterative) {
+  work.angular_error =
+      clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.rotation);
+  if (!iterative) return;
   prepare_ball(pair, work);
   work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
 }
@@ -89,36 +91,37 @@ void prepare_fixed(const JointPair& pair, JointConstraint& work, bool swept) {
 void prepare_distance(JointRecord& joint, const JointPair& pair, JointConstraint& work, const JointSettings& settings) {
   work.axis = normalized(work.error, rotate(Quat{}, {0, 1, 0}));
   work.position = joint.position = length(work.error);
-  place_line_axis(work, pair, settings);
+  prepare_line_axis(work, pair, settings);
 }
 
 void solve_axes(const JointConstraint& work, JointPair& pair, const JointSettings& settings, bool soft) {
   if (work.drive != nullptr) solve_drive(work, pair, settings);
   for (AxisConstraint& x : work.axes) solve_axis(x, pair, settings, soft);
 }
-void warm_axes(const JointConstraint& work, JointPair& pair, bool rods) {
+void warm_start_axes(const JointConstraint& work, JointPair& pair, bool rods) {
   for (const AxisConstraint& x : work.axes) {
-    if (rods || !x.is_rod) push_axis(x.row, axis_impulse(x.axis), pair);
+    if (rods || !x.is_rod) apply_axis_impulse(x.row, axis_impulse(x.axis), pair);
   }
-  if (work.drive != nullptr) warm_drive(work, pair);
+  if (work.drive != nullptr) warm_start_drive(work, pair);
 }
 bool has_axes(const JointConstraint& work) { return !work.axes.empty() || work.drive != nullptr; }
 
-void solve_turn_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings, bool soft) {
-  const Vec3 change = row_change(work.angular_mass, pair.turning(), work.angular_error, joint.angular_impulse,
-                                 settings.softness, soft);
-  pair.turn(change);
+void solve_angular_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair,
+                        const JointSettings& settings, bool soft) {
+  const Vec3 change = row_change(work.angular_mass, pair.relative_spin(), work.angular_error,
+                                 joint.angular_impulse, settings.softness, soft);
+  pair.apply_angular_impulse(change);
   joint.angular_impulse += change;
 }
 
 void solve_point_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings, bool soft) {
   const Vec3 speed = pair.point_velocity(work.from_a, work.from_b) + (soft ? work.second_order_bias : Vec3{});
   const Vec3 change = row_change(work.linear_mass, speed, work.error, joint.linear_impulse, settings.softness, soft);
-  pair.direction(change, work.from_a, work.from_b);
+  pair.apply_impulse(change, work.from_a, work.from_b);
   joint.linear_impulse += change;
 }
 
-bool keeps_axis_in_record(JointKind kind) {
+bool stores_axis_in_record(JointKind kind) {
   return kind == JointKind::hinge || kind == JointKind::slider || kind == JointKind::distance;
 }
 
@@ -131,35 +134,35 @@ void scale_impulses(JointAxisRecord& axis, float scale) {
   axis.total = 0.0f;
 }
 
-// What acts no longer gives nothing: its last impulse must not go on.
-void forget_what_ended(JointAxisRecord& axis) {
+// Clears impulses of parts that no longer act.
+void clear_inactive_impulses(JointAxisRecord& axis) {
   if (!(axis.motor_force > 0.0f)) axis.motor_impulse = 0.0f;
   if (!has_spring(axis)) axis.spring_impulse = 0.0f;
   if (!(axis.friction > 0.0f)) axis.friction_impulse = 0.0f;
   if (axis.motion != AxisMotion::limited) axis.low_impulse = axis.high_impulse = 0.0f;
 }
-void forget_what_ended(JointDetail& detail) {
+void clear_inactive_impulses(JointDetail& detail) {
   if (!(detail.drive.max_force > 0.0f)) detail.drive_force_impulse = {};
   if (!(detail.drive.max_torque > 0.0f)) detail.drive_torque_impulse = {};
   if (!(detail.friction > 0.0f)) detail.friction_impulse = {};
 }
 
-// An axis on which something acts.
+// Prepares an axis on which something acts.
 void begin_axis(AxisConstraint& x, JointAxis index, const JointAxisRecord& axis, float warm_scale) {
   x = {};
   x.axis = axis;
-  forget_what_ended(x.axis);
+  clear_inactive_impulses(x.axis);
   scale_impulses(x.axis, warm_scale);
   x.index = index;
   x.has_low = x.has_high = axis.motion == AxisMotion::limited;
 }
 
-// The axes on which anything acts.
+// Prepares all axes on which anything acts.
 void begin_axes(const JointRecord& joint, JointConstraint& work, float warm_scale, Arena& arena) {
-  if (keeps_axis_in_record(joint.kind)) {
+  if (stores_axis_in_record(joint.kind)) {
     const JointAxis index = joint.kind == JointKind::hinge ? JointAxis::angular_x : JointAxis::linear_x;
     const JointAxisRecord axis = axis_of_record(joint, work.detail, index);
-    if (joint.kind != JointKind::distance && !acts(axis)) return;
+    if (joint.kind != JointKind::distance && !is_active(axis)) return;
     work.axes = arena.make<AxisConstraint>(1);
     begin_axis(work.axes[0], index, axis, warm_scale);
     if (joint.kind != JointKind::distance) return;
@@ -171,7 +174,7 @@ void begin_axes(const JointRecord& joint, JointConstraint& work, float warm_scal
   if (work.detail == nullptr) return;
   const auto acts_on = [&](int i) {
     const JointAxisRecord& axis = work.detail->axes[i];
-    return axis.motion != AxisMotion::locked && acts(axis);
+    return axis.motion != AxisMotion::locked && is_active(axis);
   };
   std::size_t count = 0;
   for (int i = 0; i < kJointAxisCount; ++i) count += acts_on(i) ? 1 : 0;
@@ -184,32 +187,44 @@ void begin_axes(const JointRecord& joint, JointConstraint& work, float warm_scal
   adjust_axes(joint, work.axes);
 }
 
-void prepare_kind(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places,
-                const JointSettings& settings) {
+void prepare_kind(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                  const JointOffsets& offsets, const JointSettings& settings) {
   switch (joint.kind) {
     case JointKind::ball:
-      if (settings.swept) prepare_ball(pair, work);
+      if (settings.iterative) prepare_ball(pair, work);
       break;
     case JointKind::cone:
-      if (settings.swept) prepare_ball(pair, work);
+      if (settings.iterative) prepare_ball(pair, work);
       prepare_cone(joint, work, pair, settings);
       break;
     case JointKind::hinge: prepare_hinge(joint, pair, work, settings); break;
     case JointKind::slider: prepare_slider(joint, pair, work, settings); break;
-    case JointKind::fixed: prepare_fixed(pair, work, settings.swept); break;
+    case JointKind::fixed:
+      prepare_fixed(pair, work, settings.iterative);
+      break;
     case JointKind::distance: prepare_distance(joint, pair, work, settings); break;
     case JointKind::universal:
     case JointKind::six_dof:
-    case JointKind::wheel: place_six_axes(joint, work, pair, settings); break;
-    case JointKind::gear: place_gear(joint, work); break;
-    case JointKind::rack_and_pinion: place_rack(joint, work, pair, places); break;
-    case JointKind::pulley: place_pulley(joint, work, pair, places, settings); break;
-    case JointKind::path: place_path(joint, work, pair, settings); break;
+    case JointKind::wheel:
+      prepare_six_axes(joint, work, pair, settings);
+      break;
+    case JointKind::gear:
+      prepare_gear(joint, work);
+      break;
+    case JointKind::rack_and_pinion:
+      prepare_rack(joint, work, pair, offsets);
+      break;
+    case JointKind::pulley:
+      prepare_pulley(joint, work, pair, offsets, settings);
+      break;
+    case JointKind::path:
+      prepare_path(joint, work, pair, settings);
+      break;
     case JointKind::mouse:
     case JointKind::motor: break;
   }
-  if (work.drive != nullptr) place_drive(work, pair, settings);
-  if (work.rows != nullptr && settings.swept) prepare_rows(*work.rows, pair);
+  if (work.drive != nullptr) prepare_drive(work, pair, settings);
+  if (work.rows != nullptr && settings.iterative) prepare_rows(*work.rows, pair);
 }
 
 }  // namespace
@@ -294,7 +309,7 @@ void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPo
   work.path = path;
   begin_axes(joint, work, warm_scale, arena);
   if (detail == nullptr) return;
-  forget_what_ended(*detail);
+  clear_inactive_impulses(*detail);
   for (float& impulse : detail->row_impulses) impulse *= warm_scale;
   if (has_rows(joint.kind)) {
     work.rows = arena.make<JointRows>(1).data();
@@ -308,20 +323,20 @@ void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPo
   *work.drive = {};
 }
 
-void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& places, const JointBodies& bodies,
-                 const JointSettings& settings) {
+void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& offsets,
+                   const JointBodies& bodies, const JointSettings& settings) {
   const JointPair pair(joint, bodies);
   const Quat orientation_a = orientation_of(joint.body_a, bodies);
   const Quat orientation_b = orientation_of(joint.body_b, bodies);
   work.from_a = rotate(orientation_a, joint.local_anchor_a);
   work.from_b = rotate(orientation_b, joint.local_anchor_b);
-  work.error = places.offset + pair.moved() + work.from_b - work.from_a;
-  const bool is_turned_freely = joint.kind == JointKind::ball || joint.kind == JointKind::distance;
-  if (!is_turned_freely || work.drive != nullptr) {
+  work.error = offsets.offset + pair.relative_displacement() + work.from_b - work.from_a;
+  const bool rotates_freely = joint.kind == JointKind::ball || joint.kind == JointKind::distance;
+  if (!rotates_freely || work.drive != nullptr) {
     work.frame_a = orientation_a * joint.local_frame_a;
     work.frame_b = orientation_b * joint.local_frame_b;
   }
-  prepare_kind(joint, work, pair, places, settings);
+  prepare_kind(joint, work, pair, offsets, settings);
 }
 
 void update_joint_bias(const JointRecord& joint, JointConstraint& work, const JointBodies& bodies,
@@ -329,7 +344,7 @@ void update_joint_bias(const JointRecord& joint, JointConstraint& work, const Jo
   const JointPair pair(joint, bodies);
   const bool slides = joint.kind == JointKind::slider || has_rows(joint.kind);
   work.second_order_bias = second_order_bias_of(pair, work, slides, settings.substep);
-  if (joint.kind == JointKind::pulley) bend_pulley(work, pair, settings.substep);
+  if (joint.kind == JointKind::pulley) update_pulley_bias(work, pair, settings.substep);
   if (joint.kind != JointKind::distance) return;
   const Vec3 speed = pair.point_velocity(work.from_a, work.from_b);
   const Vec3 across = speed - dot(speed, work.axis) * work.axis;
@@ -341,12 +356,12 @@ void update_joint_bias(const JointRecord& joint, JointConstraint& work, const Jo
 void warm_start_joint(const JointRecord& joint, const JointConstraint& work, const JointBodies& bodies) {
   JointPair pair(joint, bodies);
   if (work.rows != nullptr) {
-    warm_rows(*work.rows, *work.detail, pair);
+    warm_start_rows(*work.rows, *work.detail, pair);
   } else {
-    pair.direction(joint.linear_impulse, work.from_a, work.from_b);
-    if (joint.angular_impulse != Vec3{}) pair.turn(joint.angular_impulse);
+    pair.apply_impulse(joint.linear_impulse, work.from_a, work.from_b);
+    if (joint.angular_impulse != Vec3{}) pair.apply_angular_impulse(joint.angular_impulse);
   }
-  warm_axes(work, pair, true);
+  warm_start_axes(work, pair, true);
   pair.store();
 }
 
@@ -360,7 +375,7 @@ void solve_joint(JointRecord& joint, const JointConstraint& work, const JointBod
     case JointKind::hinge:
     case JointKind::slider:
     case JointKind::fixed:
-      solve_turn_rows(joint, work, pair, settings, soft);
+      solve_angular_rows(joint, work, pair, settings, soft);
       solve_point_rows(joint, work, pair, settings, soft);
       break;
     default:
@@ -372,7 +387,7 @@ void solve_joint(JointRecord& joint, const JointConstraint& work, const JointBod
 void warm_start_joint_axes(const JointRecord& joint, const JointConstraint& work, const JointBodies& bodies) {
   if (!has_axes(work)) return;
   JointPair pair(joint, bodies);
-  warm_axes(work, pair, false);  // rods are equations
+  warm_start_axes(work, pair, false);  // rods are equations
   pair.store();
 }
 
@@ -385,7 +400,7 @@ void solve_joint_axes(JointRecord& joint, const JointConstraint& work, const Joi
 }
 
 void accumulate_joint_impulses(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies) {
-  if (work.rows != nullptr) gather_rows(joint, work);
+  if (work.rows != nullptr) sum_row_impulses(joint, work);
   joint.total_linear += joint.linear_impulse;
   joint.total_angular += joint.angular_impulse;
   if (!has_axes(work)) return;
@@ -393,17 +408,17 @@ void accumulate_joint_impulses(JointRecord& joint, const JointConstraint& work, 
   for (AxisConstraint& x : work.axes) {
     const float along = axis_impulse(x.axis);
     x.axis.total += along;
-    joint.total_linear += along * x.row.push_b;
-    joint.total_angular += along * (x.row.arm_b - cross(work.from_b, x.row.push_b));
+    joint.total_linear += along * x.row.linear_b;
+    joint.total_angular += along * (x.row.angular_b - cross(work.from_b, x.row.linear_b));
     x.speed_before = axis_speed(x.row, pair);
   }
-  if (work.drive != nullptr) sum_drive(joint, *work.detail);
+  if (work.drive != nullptr) accumulate_drive(joint, *work.detail);
 }
 
 void finish_joint(JointRecord& joint, const JointConstraint& work) {
   for (const AxisConstraint& x : work.axes) {
     if (work.detail != nullptr) work.detail->axes[int(x.index)] = x.axis;
-    if (!keeps_axis_in_record(joint.kind)) continue;
+    if (!stores_axis_in_record(joint.kind)) continue;
     joint.low_impulse = x.axis.low_impulse;
     joint.high_impulse = x.axis.high_impulse;
     joint.motor_impulse = x.axis.motor_impulse;
@@ -411,14 +426,14 @@ void finish_joint(JointRecord& joint, const JointConstraint& work) {
   }
 }
 
-void forget_impulses(JointRecord& joint) {
+void clear_impulses(JointRecord& joint) {
   joint.linear_impulse = joint.angular_impulse = {};
   joint.low_impulse = joint.high_impulse = joint.motor_impulse = joint.spring_impulse = 0.0f;
   joint.position = 0.0f;
   joint.total_linear = joint.total_angular = {};
 }
 
-void forget_impulses(JointDetail& detail) {
+void clear_impulses(JointDetail& detail) {
   for (JointAxisRecord& axis : detail.axes) {
     axis.low_impulse = axis.high_impulse = axis.motor_impulse = axis.spring_impulse = axis.friction_impulse = 0.0f;
     axis.position = axis.total = 0.0f;

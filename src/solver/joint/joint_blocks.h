@@ -1,8 +1,8 @@
-// The blocks that joints are made of: a point (three linear rows), a turn (up to three angular rows), and single rows
-// along or about an axis. Each has K = J M^-1 J^T, its inverse, and an impulse that is applied to both bodies.
+// The blocks of joints: a point (three linear rows), a rotation (up to three angular rows), and single rows
+// along or about an axis. Each has K = J M^-1 J^T, its inverse, and an impulse on both bodies.
 //
-// Notation: v = linear, w = angular velocity; r = anchor from the centre of mass. J of a point: v_b + w_b x r_b - v_a -
-// w_a x r_a. Source: E. Catto, "Iterative Dynamics with Temporal Coherence", 2005.
+// Notation: v = linear, w = angular velocity; r = anchor from the centre of mass. J of a point: v_b + w_b x
+// r_b - v_a - w_a x r_a. Source: E. Catto, "Iterative Dynamics with Temporal Coherence", 2005.
 #pragma once
 
 #include "solver/core/error_bounds.h"
@@ -10,7 +10,7 @@
 
 namespace gyre {
 
-// The two bodies of a joint while it is solved: velocities in, velocities out.
+// The two bodies of a joint during its solve.
 class JointPair {
  public:
   JointPair(const JointRecord& joint, const JointBodies& bodies) {
@@ -26,42 +26,44 @@ class JointPair {
     }
   }
 
-  // Writes the velocities of the bodies that can be pushed. Adding zero keeps -0 out of the state.
+  // Writes the velocities of movable bodies. Adding zero keeps -0 out of the state.
   void store() {
-    if (a_ != nullptr && movable(*inertia_a_)) write(*a_, linear_a, angular_a);
-    if (b_ != nullptr && movable(*inertia_b_)) write(*b_, linear_b, angular_b);
+    if (a_ != nullptr && is_movable(*inertia_a_)) write(*a_, linear_a, angular_a);
+    if (b_ != nullptr && is_movable(*inertia_b_)) write(*b_, linear_b, angular_b);
   }
 
   float inverse_mass_a() const { return inertia_a_->inverse_mass; }
   float inverse_mass_b() const { return inertia_b_->inverse_mass; }
   const Sym3& inverse_inertia_a() const { return inertia_a_->inverse; }
   const Sym3& inverse_inertia_b() const { return inertia_b_->inverse; }
-  Vec3 moved() const { return (b_ != nullptr ? b_->moved : Vec3{}) - (a_ != nullptr ? a_->moved : Vec3{}); }
+  Vec3 relative_displacement() const {
+    return (b_ != nullptr ? b_->delta_position : Vec3{}) - (a_ != nullptr ? a_->delta_position : Vec3{});
+  }
 
-  Vec3 moved_a() const { return a_ != nullptr ? a_->moved : Vec3{}; }
-  Vec3 moved_b() const { return b_ != nullptr ? b_->moved : Vec3{}; }
+  Vec3 displacement_a() const { return a_ != nullptr ? a_->delta_position : Vec3{}; }
+  Vec3 displacement_b() const { return b_ != nullptr ? b_->delta_position : Vec3{}; }
 
-  // The impulse p on B at r_b, and -p on A at r_a.
-  void direction(Vec3 p, Vec3 r_a, Vec3 r_b) {
+  // Applies the impulse p to B at r_b, and -p to A at r_a.
+  void apply_impulse(Vec3 p, Vec3 r_a, Vec3 r_b) {
     linear_a -= inverse_mass_a() * p;
     angular_a -= inverse_inertia_a() * cross(r_a, p);
     linear_b += inverse_mass_b() * p;
     angular_b += inverse_inertia_b() * cross(r_b, p);
   }
-  void turn(Vec3 t) {
+  void apply_angular_impulse(Vec3 t) {
     angular_a -= inverse_inertia_a() * t;
     angular_b += inverse_inertia_b() * t;
   }
   Vec3 point_velocity(Vec3 r_a, Vec3 r_b) const {
     return linear_b + cross(angular_b, r_b) - linear_a - cross(angular_a, r_a);
   }
-  Vec3 turning() const { return angular_b - angular_a; }
+  Vec3 relative_spin() const { return angular_b - angular_a; }
 
   Vec3 linear_a, angular_a, linear_b, angular_b;
 
  private:
   static constexpr BodyInertia kImmovable{};
-  static bool movable(const BodyInertia& inertia) {
+  static bool is_movable(const BodyInertia& inertia) {
     return inertia.inverse_mass > 0.0f || inertia.inverse != Sym3{};
   }
   static void read(const BodyMotion& motion, Vec3& linear, Vec3& angular) {
@@ -80,7 +82,7 @@ class JointPair {
   const BodyInertia* inertia_b_ = &kImmovable;
 };
 
-// [r] S [r]: products with the zeros of [r] left out, the others in the order of whole matrices.
+// [r] S [r]: products with zeros of [r] are left out, the others stand in the order of whole matrices.
 inline Mat3 between_skews(Vec3 r, const Sym3& s) {
   const Mat3 m = to_matrix(s);
   return {cross(r, r.z * m.y - r.y * m.z), cross(r, r.x * m.z - r.z * m.x), cross(r, r.y * m.x - r.x * m.y)};
@@ -101,27 +103,27 @@ inline float axis_matrix(const JointPair& pair, Vec3 axis, Vec3 r_a, Vec3 r_b) {
 }
 
 // K of a row about `axis`.
-inline float turn_matrix(const JointPair& pair, Vec3 axis) {
+inline float angular_matrix(const JointPair& pair, Vec3 axis) {
   return dot(axis, pair.inverse_inertia_a() * axis) + dot(axis, pair.inverse_inertia_b() * axis);
 }
 
-// The angle, which is known up to whole turns, that is nearest to another.
+// The angle, known up to whole turns, that is nearest to `near`.
 inline float unwrapped(float angle, float near) {
   return angle + 2.0f * kPi * std::floor((near - angle) / (2.0f * kPi) + 0.5f);
 }
 
 inline float inverse_or_zero(float k) { return k > 0.0f ? 1.0f / k : 0.0f; }
 
-inline Vec3 clamp_length(Vec3 v, float most) {
+inline Vec3 clamp_length(Vec3 v, float max_length) {
   const float size = length(v);
-  return size > most ? (most / size) * v : v;
+  return size > max_length ? (max_length / size) * v : v;
 }
 inline float clamped_error(const JointRow& row, ErrorBounds bounds = kMaxErrors) {
-  const float most = row.direction == Vec3{} ? bounds.turn : bounds.point;
-  return clamp(row.error, -most, most);
+  const float bound = row.direction == Vec3{} ? bounds.rotation : bounds.point;
+  return clamp(row.error, -bound, bound);
 }
 
-// K restricted to the plane of two unit vectors, inverted there and zero along the rest: m = P (P^T K P)^-1 P^T.
+// K restricted to the plane of two unit vectors and inverted there: m = P (P^T K P)^-1 P^T.
 inline Mat3 inverse_in_plane(const Mat3& k, Vec3 u, Vec3 v) {
   const float kuu = dot(u, k * u), kvv = dot(v, k * v), kuv = dot(u, k * v);
   const float det = kuu * kvv - kuv * kuv;
@@ -133,27 +135,26 @@ inline Mat3 inverse_in_plane(const Mat3& k, Vec3 u, Vec3 v) {
   return {u.x * wu + v.x * wv, u.y * wu + v.y * wv, u.z * wu + v.z * wv};
 }
 
-// The change of an accumulated impulse that meets `speed` = 0 (plus bias), soft or rigid.
+// The change of an accumulated impulse that brings `speed` plus bias to zero, soft or rigid.
 inline Vec3 row_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, const Softness& soft,
                        bool is_soft) {
   if (!is_soft) return -(mass * speed);
   return -soft.mass_scale * (mass * (speed + soft.bias_rate * error)) - soft.impulse_scale * impulse;
 }
 
-// A one-sided row: distance `gap` left before the stop, closing speed -speed. Returns the change of `impulse` (>= 0).
+// A one-sided row at distance `gap` from its limit. Returns the change of `impulse` (>= 0).
 inline float limit_impulse_change(float mass, float speed, float gap, float impulse,
                                   const JointSettings& settings, bool is_soft) {
-  float target_speed = 0.0f;
+  float target = 0.0f;
   if (gap > 0.0f) {
-    target_speed = impulse - mass * (speed + gap / settings.substep);
+    target = impulse - mass * (speed + gap / settings.substep);
   } else if (is_soft) {
     const Softness& soft = settings.softness;
-    target_speed =
-        impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * impulse;
+    target = impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * impulse;
   } else {
-    target_speed = impulse - mass * speed;
+    target = impulse - mass * speed;
   }
-  return max(target_speed, 0.0f) - impulse;
+  return max(target, 0.0f) - impulse;
 }
 
 }  // namespace gyre

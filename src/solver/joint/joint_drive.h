@@ -1,5 +1,5 @@
-// Drives of a joint to a pose, and friction against all of its turning: three rows at once, each impulse held within a
-// ball rather than a box, so that no direction is stronger than another.
+// Pose drives of a joint, and friction against all of its rotation. Three rows are solved at once. Their
+// impulse is bounded by a ball instead of a box, so no direction is stronger than another.
 #pragma once
 
 #include "solver/joint/joint.h"
@@ -7,9 +7,9 @@
 namespace gyre {
 
 bool has_drive(const JointDetail& detail);
-void place_drive(const JointConstraint& work, const JointPair& pair, const JointSettings& settings);
-void warm_drive(const JointConstraint& work, JointPair& pair);
+void prepare_drive(const JointConstraint& work, const JointPair& pair, const JointSettings& settings);
+void warm_start_drive(const JointConstraint& work, JointPair& pair);
 void solve_drive(const JointConstraint& work, JointPair& pair, const JointSettings& settings);
-void sum_drive(JointRecord& joint, const JointDetail& detail);
+void accumulate_drive(JointRecord& joint, const JointDetail& detail);
 
 }  // namespace gyre

@@ -8,8 +8,9 @@ namespace gyre {
 
 namespace {
 
-// Near what the twist of a cone is told: the nearer way round to its stops, if these are less than a turn apart; otherwise as it was last.
-float near_twist(const JointRecord& joint, const JointDetail* detail) {
+// The angle near which the twist of a cone is unwrapped: the middle of its limits if these are less than a
+// turn apart, else the last twist.
+float twist_reference(const JointRecord& joint, const JointDetail* detail) {
   if (detail == nullptr) return joint.position;
   const JointAxisRecord& axis = detail->axes[int(JointAxis::angular_x)];
   const Limits& l = axis.limits;
@@ -17,23 +18,24 @@ float near_twist(const JointRecord& joint, const JointDetail* detail) {
   return is_near ? 0.5f * (l.low + l.high) : joint.position;
 }
 
-// 1 + cos(swing): how well the twist of a cone is told from its swing.
-float twist_told(Quat frame_a, Quat frame_b) {
+// 1 + cos(swing): near zero the swing leaves the twist undefined.
+float twist_certainty(Quat frame_a, Quat frame_b) {
   return 1.0f + dot(rotate(frame_a, {1, 0, 0}), rotate(frame_b, {1, 0, 0}));
 }
 
 // ------------------------------------------------------------------------------------------------------ Cardan angles
 
-// The rotation from a's frame to b's as turns about x, then y, then z: the axes about which they turn, world, and the angles.
+// The rotation from a's frame to b's as rotations about x, then y, then z: their axes (world) and angles.
 struct Cardan {
   Vec3 axes[3];
   float angles[3];  // y within a quarter turn
 
-  // d angle / dt = dual . (w_b - w_a): across the other two axes. Where x and z nearly fall together it stays finite.
+  // d angle / dt = dual . (w_b - w_a); the dual vector is normal to the other two axes. It stays finite where
+  // x and z nearly coincide.
   Vec3 dual(int i) const {
-    constexpr float kLeast = 0.05f;
+    constexpr float kMinDot = 0.05f;
     const Vec3 across = cross(axes[(i + 1) % 3], axes[(i + 2) % 3]);
-    return across / max(dot(axes[i], across), kLeast);
+    return across / max(dot(axes[i], across), kMinDot);
   }
 };
 
@@ -59,28 +61,29 @@ int add_row(JointRows& rows, const JointRow& row) {
 JointRow point_row(const JointConstraint& work, Vec3 direction, float error) {
   return {direction, cross(work.from_a, direction), cross(work.from_b, direction), error};
 }
-JointRow turn_row(Vec3 axis, float error) { return {{}, axis, axis, error}; }
+JointRow angular_row(Vec3 axis, float error) { return {{}, axis, axis, error}; }
 
-// The error of the locked angles as a rotation, to first order.
-Vec3 locked_turn(const JointDetail& detail, const Cardan& c, const Vec3 (&axes)[3]) {
+// The error of the locked angles as a rotation vector, to first order.
+Vec3 locked_rotation_error(const JointDetail& detail, const Cardan& c, const Vec3 (&axes)[3]) {
   Vec3 error;
   for (int i = 0; i < 3; ++i) {
     if (!is_locked(detail, 3 + i)) continue;
-    const float hold = detail.axes[3 + i].hold;
-    error += (unwrapped(c.angles[i], hold) - hold) * axes[i];
+    const float locked = detail.axes[3 + i].locked_position;
+    error += (unwrapped(c.angles[i], locked) - locked) * axes[i];
   }
   return error;
 }
 
-// Rows that hold the locked angles: across the axes that are free. An orthonormal basis that turns with the bodies.
-void add_locked_turns(const JointDetail& detail, const JointConstraint& work, const Cardan& c,
-                      JointRows& rows) {
+// Adds rows for the locked angles, normal to the free axes. They are an orthonormal basis that rotates with
+// the bodies.
+void add_locked_rotation_rows(const JointDetail& detail, const JointConstraint& work, const Cardan& c,
+                              JointRows& rows) {
   int free_axes[3], free_count = 0;
   for (int i = 0; i < 3; ++i) {
     if (!is_locked(detail, 3 + i)) free_axes[free_count++] = i;
   }
-  const Vec3 error = locked_turn(detail, c, c.axes);
-  const auto add = [&](Vec3 axis) { add_row(rows, turn_row(axis, dot(axis, error))); };
+  const Vec3 error = locked_rotation_error(detail, c, c.axes);
+  const auto add = [&](Vec3 axis) { add_row(rows, angular_row(axis, dot(axis, error))); };
   if (free_count == 0) {
     const Mat3 frame = to_matrix(work.frame_a);
     for (const Vec3 axis : {frame.x, frame.y, frame.z}) add(axis);
@@ -96,8 +99,8 @@ void add_locked_turns(const JointDetail& detail, const JointConstraint& work, co
   }
 }
 
-void place_axis_work(AxisConstraint& x, const AxisRow& row, float position, const JointPair& pair,
-                     const JointSettings& settings) {
+void prepare_axis_row(AxisConstraint& x, const AxisRow& row, float position, const JointPair& pair,
+                      const JointSettings& settings) {
   x.row = row;
   x.axis.position = position;
   prepare_axis(x, pair, settings);
@@ -107,27 +110,27 @@ AxisRow point_axis(const JointConstraint& work, Vec3 direction) {
   return {direction, direction, cross(work.from_a, direction), cross(work.from_b, direction)};
 }
 
-// An angle that a float tells within a turn, told over many.
-double over_turns(float angle, float near) {
+// An angle known within a turn, unwrapped in double.
+double unwrap_in_double(float angle, float near) {
   return double(angle) +
          2.0 * kPiDouble * std::floor((double(near) - double(angle)) / (2.0 * kPiDouble) + 0.5);
 }
 
-// How far a frame has turned about its own x since it stood as `reference`.
-double turned_about_x(Quat reference, Quat frame, float near) {
-  const Quat turn = conjugate(reference) * frame;
-  return over_turns(2.0f * atan2(turn.x, turn.w), near);
+// The rotation of a frame about its own x since it was `reference`.
+double rotation_about_x(Quat reference, Quat frame, float near) {
+  const Quat rotation = conjugate(reference) * frame;
+  return unwrap_in_double(2.0f * atan2(rotation.x, rotation.w), near);
 }
 
 float gear_error(const JointDetail& detail, Quat frame_a, Quat frame_b) {
-  const double a = turned_about_x(detail.reference_a, frame_a, detail.axes[3].position);
-  const double b = turned_about_x(detail.reference_b, frame_b, detail.axes[4].position);
+  const double a = rotation_about_x(detail.reference_a, frame_a, detail.axes[3].position);
+  const double b = rotation_about_x(detail.reference_b, frame_b, detail.axes[4].position);
   return float(a + double(detail.ratio) * b);
 }
 
 float rack_error(const JointDetail& detail, const RowPose& pose) {
-  const double a = turned_about_x(detail.reference_a, pose.frame_a, detail.axes[3].position);
-  const float along = dot(pose.centers, rotate(pose.frame_b, {1, 0, 0}));
+  const double a = rotation_about_x(detail.reference_a, pose.frame_a, detail.axes[3].position);
+  const float along = dot(pose.center_offset, rotate(pose.frame_b, {1, 0, 0}));
   return float(double(along) - double(detail.start) - double(detail.ratio) * a);
 }
 
@@ -135,41 +138,40 @@ float rack_error(const JointDetail& detail, const RowPose& pose) {
 
 PathCurve curve_of(const JointConstraint& work) { return {work.path, work.detail->path_closed}; }
 
-// What a curve is at a place, in the world.
+// The frame of a curve at a parameter.
 struct PathFrame {
-  Mat3 axes;      // x along it
-  Quat turn;      // joint's frame on a from the curve's
+  Mat3 axes;      // x along the curve
+  Quat rotation;  // joint's frame on a from the curve's frame
   Vec3 position;  // in the joint's frame on a
-  Vec3 bending;   // rad/m: how its frame turns along it, world
+  Vec3 bending;   // rad/m: rotation of the frame along the curve, world
 };
-PathFrame path_frame_at(const JointConstraint& work, float place, Quat frame_a) {
+PathFrame path_frame_at(const JointConstraint& work, float parameter, Quat frame_a) {
   const PathCurve curve = curve_of(work);
-  const PathSample s = sample_path(curve, place);
+  const PathSample s = sample_path(curve, parameter);
   PathFrame f;
-  f.turn = path_frame(curve, place);
-  f.axes = to_matrix(frame_a * f.turn);
+  f.rotation = path_frame(curve, parameter);
+  f.axes = to_matrix(frame_a * f.rotation);
   f.position = s.position;
   const float speed = length(s.first);
   if (speed > 0.0f) f.bending = rotate(frame_a, cross(s.first, s.second) / (speed * speed * speed));
   return f;
 }
 
-Vec3 path_turn_error(const JointDetail& detail, const RowPose& pose, const PathFrame& f) {
+Vec3 path_rotation_error(const JointDetail& detail, const RowPose& pose, const PathFrame& f) {
   Quat target = pose.frame_a;
   if (detail.path_orientation == PathOrientation::following)
-    target = pose.frame_a * (f.turn * conjugate(detail.reference_a));
+    target = pose.frame_a * (f.rotation * conjugate(detail.reference_a));
   return to_rotation_vector(pose.frame_b * conjugate(target));
 }
 
 // -------------------------------------------------------------------------------------------------------------- cones
 
-// The stop of a swing: where it is, and the axis about which it is nearest.
+// The swing limit of a cone: the distance to it, and the axis about which it is nearest.
 struct SwingLimit {
   float gap = 1.0e9f;  // rad
-  Vec3 axis;           // world; turning about it brings the stop nearer
+  Vec3 axis;           // world; rotation about it approaches the limit
 };
 SwingLimit find_swing_limit(const JointDetail& detail, Quat frame_a, Quat frame_b) {
-  constexpr float kMinSwing = 1.0e-3f;
   const Mat3 a = to_matrix(frame_a);
   const Vec3 x_b = rotate(frame_b, {1, 0, 0});
   const Vec3 about = cross(a.x, x_b);
@@ -179,8 +181,9 @@ SwingLimit find_swing_limit(const JointDetail& detail, Quat frame_a, Quat frame_
     return angle > 1.0f ? SwingLimit{min(detail.swing_y, detail.swing_z) - angle, a.y} : SwingLimit{};
   const Vec3 along = about / sine;  // the axis of the swing, in a's y z plane
   const float cy = dot(along, a.y), cz = dot(along, a.z);
-  const float ly = max(detail.swing_y, kMinSwing), lz = max(detail.swing_z, kMinSwing);
-  // f = |swing / limits| = 1 at the stop; its change with the angle, and with the direction times the angle.
+  const float ly = max(detail.swing_y, kMinSwingLimit), lz = max(detail.swing_z, kMinSwingLimit);
+  // f = |swing / limits| = 1 at the limit; its derivatives by the angle, and by the direction times the
+  // angle.
   const float share = std::sqrt(square(cy / ly) + square(cz / lz));
   const float across = cy * cz * (1.0f / square(lz) - 1.0f / square(ly)) / share;
   const Vec3 raw = share * along + (across * angle / sine) * cross(x_b, along);
@@ -190,15 +193,15 @@ SwingLimit find_swing_limit(const JointDetail& detail, Quat frame_a, Quat frame_
 
 }  // namespace
 
-// ------------------------------------------------------------------------------------------------------------- placing
+// ------------------------------------------------------------------------------------------------------------- preparation
 
 Vec3 angle_axis(Quat frame_a, Quat frame_b, int angle) { return cardan_of(frame_a, frame_b).dual(angle); }
 
 // Half-way between the axes of a and b.
 Vec3 twist_axis(Quat frame_a, Quat frame_b) {
-  constexpr float kLeast = 0.05f;
+  constexpr float kMinDot = 0.05f;
   const Vec3 x_a = rotate(frame_a, {1, 0, 0}), x_b = rotate(frame_b, {1, 0, 0});
-  return (x_a + x_b) / max(1.0f + dot(x_a, x_b), kLeast);
+  return (x_a + x_b) / max(1.0f + dot(x_a, x_b), kMinDot);
 }
 
 void adjust_axes(const JointRecord& joint, std::span<AxisConstraint> axes) {
@@ -208,35 +211,35 @@ void adjust_axes(const JointRecord& joint, std::span<AxisConstraint> axes) {
   }
 }
 
-void place_six_axes(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                    const JointSettings& settings) {
+void prepare_six_axes(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                      const JointSettings& settings) {
   JointDetail& detail = *work.detail;
   const Mat3 frame = to_matrix(work.frame_a);
   const Vec3 linear[3] = {frame.x, frame.y, frame.z};
-  const Vec3 apart = work.error;
-  work.from_a += apart;  // the rows act at b's anchor
-  work.along = {};
+  const Vec3 anchor_offset = work.error;
+  work.from_a += anchor_offset;  // the rows act at b's anchor
+  work.free_offset = {};
   JointRows& rows = *work.rows;
   rows.count = 0;
   for (int i = 0; i < 3; ++i) {
-    const float place = dot(apart, linear[i]);
-    detail.axes[i].position = place;
+    const float position = dot(anchor_offset, linear[i]);
+    detail.axes[i].position = position;
     if (is_locked(detail, i)) {
-      add_row(rows, point_row(work, linear[i], place - detail.axes[i].hold));
+      add_row(rows, point_row(work, linear[i], position - detail.axes[i].locked_position));
     } else {
-      work.along += place * linear[i];
+      work.free_offset += position * linear[i];
     }
   }
-  work.error = apart - work.along;
+  work.error = anchor_offset - work.free_offset;
   const Cardan c = cardan_of(work.frame_a, work.frame_b);
   for (int i = 0; i < 3; ++i)
     detail.axes[3 + i].position = unwrapped(c.angles[i], detail.axes[3 + i].position);
-  add_locked_turns(detail, work, c, rows);
+  add_locked_rotation_rows(detail, work, c, rows);
   for (AxisConstraint& x : work.axes) {
     const int i = int(x.index);
     const Vec3 dual = i >= 3 ? c.dual(i - 3) : Vec3{};
-    place_axis_work(x, i < 3 ? point_axis(work, linear[i]) : AxisRow{{}, {}, dual, dual},
-                    detail.axes[i].position, pair, settings);
+    prepare_axis_row(x, i < 3 ? point_axis(work, linear[i]) : AxisRow{{}, {}, dual, dual},
+                     detail.axes[i].position, pair, settings);
   }
   work.position = joint.position = detail.axes[int(main_axis(joint.kind))].position;
 }
@@ -244,79 +247,85 @@ void place_six_axes(JointRecord& joint, JointConstraint& work, const JointPair& 
 void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair,
                   const JointSettings& settings) {
   const Quat twist = conjugate(work.frame_a) * work.frame_b;
-  work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), near_twist(joint, work.detail));
+  work.position = joint.position =
+      unwrapped(2.0f * atan2(twist.x, twist.w), twist_reference(joint, work.detail));
   if (work.detail == nullptr) return;
   work.detail->axes[3].position = joint.position;
   for (AxisConstraint& x : work.axes) {
     if (x.index == JointAxis::angular_x) {
       const Vec3 about = twist_axis(work.frame_a, work.frame_b);
-      x.slack = twist_told(work.frame_a, work.frame_b) < kMinTwistReported ? kAway : 0.0f;
-      place_axis_work(x, {{}, {}, about, about}, joint.position, pair, settings);
+      x.slack = twist_certainty(work.frame_a, work.frame_b) < kMinTwistReported ? kUnreachable : 0.0f;
+      prepare_axis_row(x, {{}, {}, about, about}, joint.position, pair, settings);
     } else {
-      const SwingLimit stop = find_swing_limit(*work.detail, work.frame_a, work.frame_b);
+      const SwingLimit limit = find_swing_limit(*work.detail, work.frame_a, work.frame_b);
       x.axis.limits = {};
-      place_axis_work(x, {{}, {}, stop.axis, stop.axis}, -stop.gap, pair, settings);
+      prepare_axis_row(x, {{}, {}, limit.axis, limit.axis}, -limit.gap, pair, settings);
     }
   }
 }
 
-void place_gear(JointRecord& joint, JointConstraint& work) {
+void prepare_gear(JointRecord& joint, JointConstraint& work) {
   JointDetail& detail = *work.detail;
   JointRow row;
   row.error = gear_error(detail, work.frame_a, work.frame_b);
-  row.arm_a = -rotate(work.frame_a, {1, 0, 0});
-  row.arm_b = detail.ratio * rotate(work.frame_b, {1, 0, 0});
-  detail.axes[3].position = float(turned_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
-  detail.axes[4].position = float(turned_about_x(detail.reference_b, work.frame_b, detail.axes[4].position));
+  row.angular_a = -rotate(work.frame_a, {1, 0, 0});
+  row.angular_b = detail.ratio * rotate(work.frame_b, {1, 0, 0});
+  detail.axes[3].position =
+      float(rotation_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
+  detail.axes[4].position =
+      float(rotation_about_x(detail.reference_b, work.frame_b, detail.axes[4].position));
   work.position = joint.position = detail.axes[3].position;
   work.rows->count = 0;
   add_row(*work.rows, row);
 }
 
-void place_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                const JointOffsets& places) {
+void prepare_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                  const JointOffsets& offsets) {
   JointDetail& detail = *work.detail;
-  const Vec3 centers = places.offset + pair.moved();
+  const Vec3 center_offset = offsets.offset + pair.relative_displacement();
   work.from_a += work.error;  // to b's anchor
   const Vec3 along = rotate(work.frame_b, {1, 0, 0}), about = rotate(work.frame_a, {1, 0, 0});
   JointRow row;
-  row.error = rack_error(detail, {{}, centers, work.frame_a, work.frame_b});
-  // The teeth meet at the rim: where it moves along the rack.
+  row.error = rack_error(detail, {{}, center_offset, work.frame_a, work.frame_b});
+  // The teeth meet at the rim, where it moves along the rack.
   const Vec3 rim = detail.ratio * cross(along, about);
   row.direction = along;
-  row.arm_a = detail.ratio * about;
-  row.arm_b = cross(rim - centers, along);
-  detail.axes[3].position = float(turned_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
+  row.angular_a = detail.ratio * about;
+  row.angular_b = cross(rim - center_offset, along);
+  detail.axes[3].position =
+      float(rotation_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
   work.position = joint.position = detail.axes[3].position;
   work.rows->count = 0;
   add_row(*work.rows, row);
 }
 
-void place_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                  const JointOffsets& places, const JointSettings& settings) {
+void prepare_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                    const JointOffsets& offsets, const JointSettings& settings) {
   const float ratio = work.detail->ratio;
-  const Vec3 a = pair.moved_a() + work.from_a - places.ground_a,
-             b = pair.moved_b() + work.from_b - places.ground_b;
+  const Vec3 a = pair.displacement_a() + work.from_a - offsets.ground_a,
+             b = pair.displacement_b() + work.from_b - offsets.ground_b;
   const float length_a = length(a), length_b = length(b);
-  const Vec3 way_a = normalized(a, {0, -1, 0}), way_b = normalized(b, {0, -1, 0});
+  const Vec3 direction_a = normalized(a, {0, -1, 0}), direction_b = normalized(b, {0, -1, 0});
   work.perpendicular_1 = a;
   work.perpendicular_2 = b;
   work.position = joint.position = length_a + ratio * length_b;
   work.detail->axes[0].position = work.position;
   for (AxisConstraint& x : work.axes) {
-    const AxisRow row{-way_a, ratio * way_b, cross(work.from_a, -way_a), cross(work.from_b, ratio * way_b)};
-    place_axis_work(x, row, work.position, pair, settings);
+    const AxisRow row{-direction_a, ratio * direction_b, cross(work.from_a, -direction_a),
+                      cross(work.from_b, ratio * direction_b)};
+    prepare_axis_row(x, row, work.position, pair, settings);
   }
 }
 
-void bend_pulley(JointConstraint& work, const JointPair& pair, float h) {
+void update_pulley_bias(JointConstraint& work, const JointPair& pair, float h) {
   const auto side = [h](Vec3 rope, Vec3 velocity, Vec3 spin, Vec3 arm) {
     const float size = length(rope);
-    const Vec3 way = normalized(rope, {0, -1, 0});
+    const Vec3 direction = normalized(rope, {0, -1, 0});
     const Vec3 speed = velocity + cross(spin, arm);
-    const Vec3 across = speed - dot(speed, way) * way;
+    const Vec3 across = speed - dot(speed, direction) * direction;
     return 0.5f * h *
-           (dot(cross(spin, cross(spin, arm)), way) + (size > 0.0f ? length_squared(across) / size : 0.0f));
+           (dot(cross(spin, cross(spin, arm)), direction) +
+            (size > 0.0f ? length_squared(across) / size : 0.0f));
   };
   for (AxisConstraint& x : work.axes) {
     x.second_order_bias =
@@ -325,15 +334,15 @@ void bend_pulley(JointConstraint& work, const JointPair& pair, float h) {
   }
 }
 
-void place_path(JointRecord& joint, JointConstraint& work, const JointPair& pair,
-                const JointSettings& settings) {
+void prepare_path(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                  const JointSettings& settings) {
   JointDetail& detail = *work.detail;
-  const Vec3 apart = work.error;
-  const Vec3 local = rotate_inverse(work.frame_a, apart);
+  const Vec3 anchor_offset = work.error;
+  const Vec3 local = rotate_inverse(work.frame_a, anchor_offset);
   const PathCurve curve = curve_of(work);
-  detail.path_place = nearest_on_path(curve, local, detail.path_place);
-  const PathFrame f = path_frame_at(work, detail.path_place, work.frame_a);
-  work.from_a += apart;
+  detail.path_parameter = nearest_on_path(curve, local, detail.path_parameter);
+  const PathFrame f = path_frame_at(work, detail.path_parameter, work.frame_a);
+  work.from_a += anchor_offset;
   JointRows& rows = *work.rows;
   rows.count = 0;
   const Vec3 off = rotate(work.frame_a, local - f.position);
@@ -341,24 +350,24 @@ void place_path(JointRecord& joint, JointConstraint& work, const JointPair& pair
   add_row(rows, point_row(work, f.axes.z, dot(off, f.axes.z)));
   work.axis = f.axes.x;
   work.error = off;
-  work.along = apart - off;
+  work.free_offset = anchor_offset - off;
   if (detail.path_orientation != PathOrientation::free) {
-    const Vec3 error = path_turn_error(detail, {apart, {}, work.frame_a, work.frame_b}, f);
+    const Vec3 error = path_rotation_error(detail, {anchor_offset, {}, work.frame_a, work.frame_b}, f);
     const bool follows = detail.path_orientation == PathOrientation::following;
     for (const Vec3 axis : {f.axes.x, f.axes.y, f.axes.z}) {
-      JointRow row = turn_row(axis, dot(axis, error));
+      JointRow row = angular_row(axis, dot(axis, error));
       if (follows) {
         row.direction = -dot(axis, f.bending) * f.axes.x;
-        row.arm_a += cross(work.from_a, row.direction);
-        row.arm_b += cross(work.from_b, row.direction);
+        row.angular_a += cross(work.from_a, row.direction);
+        row.angular_b += cross(work.from_b, row.direction);
       }
       add_row(rows, row);
     }
   }
-  work.position = joint.position = path_length(curve, detail.path_place) - detail.start;
+  work.position = joint.position = path_length(curve, detail.path_parameter) - detail.start;
   detail.axes[0].position = work.position;
   for (AxisConstraint& x : work.axes)
-    place_axis_work(x, point_axis(work, f.axes.x), work.position, pair, settings);
+    prepare_axis_row(x, point_axis(work, f.axes.x), work.position, pair, settings);
 }
 
 // ---------------------------------------------------------------------------------------------------------------- rows
@@ -375,15 +384,16 @@ void measure_rows(const JointRecord& joint, const JointConstraint& work, const R
       errors[0] = rack_error(detail, pose);
       return;
     case JointKind::path: {
-      const Vec3 local = rotate_inverse(pose.frame_a, pose.apart);
+      const Vec3 local = rotate_inverse(pose.frame_a, pose.anchor_offset);
       const PathFrame f =
-          path_frame_at(work, nearest_on_path(curve_of(work), local, detail.path_place), pose.frame_a);
+          path_frame_at(work, nearest_on_path(curve_of(work), local, detail.path_parameter), pose.frame_a);
       const Vec3 off = rotate(pose.frame_a, local - f.position);
       errors[0] = dot(off, f.axes.y);
       errors[1] = dot(off, f.axes.z);
       if (rows.count == 2) return;
-      const Vec3 turn = path_turn_error(detail, pose, f);
-      errors[2] = dot(turn, f.axes.x), errors[3] = dot(turn, f.axes.y), errors[4] = dot(turn, f.axes.z);
+      const Vec3 rotation = path_rotation_error(detail, pose, f);
+      errors[2] = dot(rotation, f.axes.x), errors[3] = dot(rotation, f.axes.y),
+      errors[4] = dot(rotation, f.axes.z);
       return;
     }
     default:
@@ -393,12 +403,13 @@ void measure_rows(const JointRecord& joint, const JointConstraint& work, const R
   const Vec3 linear[3] = {frame.x, frame.y, frame.z};
   int n = 0;
   for (int i = 0; i < 3; ++i) {
-    if (is_locked(detail, i)) errors[n++] = dot(pose.apart, linear[i]) - detail.axes[i].hold;
+    if (is_locked(detail, i))
+      errors[n++] = dot(pose.anchor_offset, linear[i]) - detail.axes[i].locked_position;
   }
-  // Along the axes of the rows as they are, so that the rows tell how the error changes.
+  // Errors along the axes of the present rows, so that they match the linear rows.
   const Cardan now = cardan_of(work.frame_a, work.frame_b), later = cardan_of(pose.frame_a, pose.frame_b);
-  const Vec3 turn = locked_turn(detail, later, now.axes);
-  for (; n < rows.count; ++n) errors[n] = dot(rows.rows[n].arm_a, turn);
+  const Vec3 rotation = locked_rotation_error(detail, later, now.axes);
+  for (; n < rows.count; ++n) errors[n] = dot(rows.rows[n].angular_a, rotation);
 }
 
 void prepare_rows(JointRows& rows, const JointPair& pair) {
@@ -406,22 +417,23 @@ void prepare_rows(JointRows& rows, const JointPair& pair) {
   const int n = rows.count;
   for (int i = 0; i < n; ++i) {
     const JointRow& row = rows.rows[i];
-    const Vec3 spin_a = pair.inverse_inertia_a() * row.arm_a, spin_b = pair.inverse_inertia_b() * row.arm_b;
+    const Vec3 spin_a = pair.inverse_inertia_a() * row.angular_a,
+               spin_b = pair.inverse_inertia_b() * row.angular_b;
     for (int j = 0; j <= i; ++j) {
       const JointRow& other = rows.rows[j];
       rows.factors[i * n + j] = double(inverse_mass * dot(row.direction, other.direction) +
-                                       dot(spin_a, other.arm_a) + dot(spin_b, other.arm_b));
+                                       dot(spin_a, other.angular_a) + dot(spin_b, other.angular_b));
     }
   }
   factor_ldlt(std::span<double>(rows.factors, std::size_t(n * n)), n);
 }
 
-void push_row(const JointRow& row, float impulse, JointPair& pair) {
-  push_axis({row.direction, row.direction, row.arm_a, row.arm_b}, impulse, pair);
+void apply_row_impulse(const JointRow& row, float impulse, JointPair& pair) {
+  apply_axis_impulse({row.direction, row.direction, row.angular_a, row.angular_b}, impulse, pair);
 }
 
-void warm_rows(const JointRows& rows, const JointDetail& detail, JointPair& pair) {
-  for (int i = 0; i < rows.count; ++i) push_row(rows.rows[i], detail.row_impulses[i], pair);
+void warm_start_rows(const JointRows& rows, const JointDetail& detail, JointPair& pair) {
+  for (int i = 0; i < rows.count; ++i) apply_row_impulse(rows.rows[i], detail.row_impulses[i], pair);
 }
 
 void iterate_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair,
@@ -430,30 +442,30 @@ void iterate_rows(JointRecord& joint, const JointConstraint& work, JointPair& pa
   JointDetail& detail = *work.detail;
   const std::size_t n = std::size_t(rows.count);
   const Softness& s = settings.softness;
-  const bool bends = soft && joint.kind != JointKind::gear && joint.kind != JointKind::rack_and_pinion;
+  const bool has_bias = soft && joint.kind != JointKind::gear && joint.kind != JointKind::rack_and_pinion;
   double x[kJointAxisCount];
   for (int i = 0; i < rows.count; ++i) {
     const JointRow& row = rows.rows[i];
-    float speed = axis_speed({row.direction, row.direction, row.arm_a, row.arm_b}, pair);
-    if (bends) speed += dot(row.direction, work.second_order_bias);
+    float speed = axis_speed({row.direction, row.direction, row.angular_a, row.angular_b}, pair);
+    if (has_bias) speed += dot(row.direction, work.second_order_bias);
     x[i] = double(soft ? speed + s.bias_rate * clamped_error(row) : speed);
   }
   solve_ldlt(std::span<const double>(rows.factors, n * n), rows.count, std::span<double>(x, n));
   for (int i = 0; i < rows.count; ++i) {
     const float change =
         soft ? -s.mass_scale * float(x[i]) - s.impulse_scale * detail.row_impulses[i] : -float(x[i]);
-    push_row(rows.rows[i], change, pair);
+    apply_row_impulse(rows.rows[i], change, pair);
     detail.row_impulses[i] += change;
   }
 }
 
-void gather_rows(JointRecord& joint, const JointConstraint& work) {
+void sum_row_impulses(JointRecord& joint, const JointConstraint& work) {
   joint.linear_impulse = joint.angular_impulse = {};
   for (int i = 0; i < work.rows->count; ++i) {
     const JointRow& row = work.rows->rows[i];
     const float impulse = work.detail->row_impulses[i];
     joint.linear_impulse += impulse * row.direction;
-    joint.angular_impulse += impulse * (row.arm_b - cross(work.from_b, row.direction));
+    joint.angular_impulse += impulse * (row.angular_b - cross(work.from_b, row.direction));
   }
 }
 

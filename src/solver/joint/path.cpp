@@ -13,25 +13,25 @@ int piece_count(const PathCurve& path) {
   return int(path.closed ? path.points.size() : path.points.size() - 1);
 }
 
-// A closed curve's places repeat; an open one goes on straight beyond its ends.
-Piece piece_at(const PathCurve& path, float place) {
+// Parameters of a closed curve are periodic; an open curve is straight beyond its ends.
+Piece piece_at(const PathCurve& path, float parameter) {
   const int count = piece_count(path);
-  if (path.closed) place -= float(count) * std::floor(place / float(count));
-  const int number = clamp(int(std::floor(place)), 0, count - 1);
-  return {number, place - float(number)};
+  if (path.closed) parameter -= float(count) * std::floor(parameter / float(count));
+  const int number = clamp(int(std::floor(parameter)), 0, count - 1);
+  return {number, parameter - float(number)};
 }
 
 Vec3 point_at(const PathCurve& path, int i) {
   const int count = int(path.points.size());
   if (path.closed) return path.points[std::size_t((i + count) % count)].position;
-  // Beyond the ends the first and last pieces are mirrored.
+  // The end pieces are mirrored beyond the ends.
   if (i < 0) return 2.0f * path.points[0].position - path.points[1].position;
   if (i >= count)
     return 2.0f * path.points[std::size_t(count - 1)].position - path.points[std::size_t(count - 2)].position;
   return path.points[std::size_t(i)].position;
 }
 
-// Knots by the square root of distance: then no piece has a cusp or a loop, however the points are spaced.
+// Knots by the square root of distance: no piece has a cusp or a loop, however the points are spaced.
 float knot(Vec3 from, Vec3 to) { return std::sqrt(distance(from, to)); }
 
 PathSample sample_piece(const PathCurve& path, Piece piece) {
@@ -56,24 +56,23 @@ PathSample sample_piece(const PathCurve& path, Piece piece) {
   return s;
 }
 
-// The length of a part of a piece, by Gauss and Legendre with five points.
+// The length of a piece up to `to`, by Gauss-Legendre quadrature with five nodes.
 float length_of(const PathCurve& path, int number, float to) {
-  constexpr float kPlaces[5] = {0.046910077f, 0.23076534f, 0.5f, 0.76923466f, 0.95308992f};
+  constexpr float kNodes[5] = {0.046910077f, 0.23076534f, 0.5f, 0.76923466f, 0.95308992f};
   constexpr float kWeights[5] = {0.11846344f, 0.23931433f, 0.28444445f, 0.23931433f, 0.11846344f};
   float sum = 0.0f;
-  for (int i = 0; i < 5; ++i)
-    sum += kWeights[i] * length(sample_piece(path, {number, to * kPlaces[i]}).first);
+  for (int i = 0; i < 5; ++i) sum += kWeights[i] * length(sample_piece(path, {number, to * kNodes[i]}).first);
   return to * sum;
 }
 
-// `up` carried from one place of the curve to another.
+// Transports `up` from one sample of the curve to another.
 Vec3 carry(const PathSample& from, const PathSample& to, Vec3 up) {
-  const Vec3 way = to.position - from.position;
+  const Vec3 offset = to.position - from.position;
   const Vec3 t0 = normalized(from.first), t1 = normalized(to.first);
-  const float c = length_squared(way);
+  const float c = length_squared(offset);
   if (!(c > 0.0f)) return up;
-  const Vec3 up_mirrored = up - (2.0f / c * dot(way, up)) * way;
-  const Vec3 t_mirrored = t0 - (2.0f / c * dot(way, t0)) * way;
+  const Vec3 up_mirrored = up - (2.0f / c * dot(offset, up)) * offset;
+  const Vec3 t_mirrored = t0 - (2.0f / c * dot(offset, t0)) * offset;
   const Vec3 second = t1 - t_mirrored;
   const float c2 = length_squared(second);
   const Vec3 carried =
@@ -81,7 +80,7 @@ Vec3 carry(const PathSample& from, const PathSample& to, Vec3 up) {
   return normalized(carried - dot(carried, t1) * t1, any_perpendicular(t1));
 }
 
-constexpr int kCarrySteps = 8;  // a piece
+constexpr int kCarrySteps = 8;  // per piece
 
 Vec3 carry_over_piece(const PathCurve& path, int number, Vec3 up) {
   PathSample from = sample_piece(path, {number, 0.0f});
@@ -95,16 +94,16 @@ Vec3 carry_over_piece(const PathCurve& path, int number, Vec3 up) {
 
 }  // namespace
 
-PathSample sample_path(const PathCurve& path, float place) {
-  return sample_piece(path, piece_at(path, place));
+PathSample sample_path(const PathCurve& path, float parameter) {
+  return sample_piece(path, piece_at(path, parameter));
 }
 
-Quat path_frame(const PathCurve& path, float place) {
-  const Piece piece = piece_at(path, place);
+Quat path_frame(const PathCurve& path, float parameter) {
+  const Piece piece = piece_at(path, parameter);
   const PathSample start = sample_piece(path, {piece.number, 0.0f}), here = sample_piece(path, piece);
   const Vec3 x = normalized(here.first);
   const std::size_t count = path.points.size();
-  // Carried from the point before, and turned to what the next one has by its share.
+  // `up` is transported from the point before, and rotated towards that of the next point in proportion.
   const Vec3 up = path.points[std::size_t(piece.number)].up;
   const Vec3 end_up = path.points[(std::size_t(piece.number) + 1) % count].up;
   const Vec3 carried = carry(start, here, up);
@@ -117,9 +116,9 @@ Quat path_frame(const PathCurve& path, float place) {
   return from_matrix({x, y, cross(x, y)});
 }
 
-float path_length(const PathCurve& path, float place) {
-  const Piece piece = piece_at(path, place);
-  const float rounds = path.closed ? std::floor(place / path.end()) : 0.0f;
+float path_length(const PathCurve& path, float parameter) {
+  const Piece piece = piece_at(path, parameter);
+  const float rounds = path.closed ? std::floor(parameter / path.end()) : 0.0f;
   const std::size_t last = path.points.size() - 1;
   const float whole =
       path.closed ? path.points[last].along + length_of(path, int(last), 1.0f) : path.points[last].along;
@@ -130,30 +129,30 @@ float path_length(const PathCurve& path, float place) {
 }
 
 float nearest_on_path(const PathCurve& path, Vec3 p, float from) {
-  float place = from;
+  float parameter = from;
   for (int i = 0; i < 4; ++i) {
-    const PathSample s = sample_path(path, place);
+    const PathSample s = sample_path(path, parameter);
     const Vec3 off = p - s.position;
     const float slope = length_squared(s.first);
-    // Newton's step for the distance; Gauss and Newton's where that would climb.
+    // Newton's step for the distance; Gauss-Newton where that would climb.
     const float curved = slope - dot(off, s.second);
     const float step = dot(off, s.first) / (curved > 0.25f * slope ? curved : slope);
     if (!is_finite(step)) return from;
-    place += clamp(step, -1.0f, 1.0f);
+    parameter += clamp(step, -1.0f, 1.0f);
   }
-  return place;
+  return parameter;
 }
 
 float nearest_on_path(const PathCurve& path, Vec3 p) {
-  float best = 0.0f, least = length_squared(p - sample_path(path, 0.0f).position);
+  float best = 0.0f, closest = length_squared(p - sample_path(path, 0.0f).position);
   const int samples = 8 * piece_count(path);
   for (int i = 1; i <= samples; ++i) {
-    const float place = float(i) / 8.0f;
-    const float far = length_squared(p - sample_path(path, place).position);
-    if (far < least) least = far, best = place;
+    const float parameter = float(i) / 8.0f;
+    const float far = length_squared(p - sample_path(path, parameter).position);
+    if (far < closest) closest = far, best = parameter;
   }
-  const float place = nearest_on_path(path, p, best);
-  return path.closed ? place : clamp(place, 0.0f, path.end());
+  const float parameter = nearest_on_path(path, p, best);
+  return path.closed ? parameter : clamp(parameter, 0.0f, path.end());
 }
 
 void finish_path(std::span<PathPoint> points, bool closed) {
@@ -167,7 +166,7 @@ void finish_path(std::span<PathPoint> points, bool closed) {
     points[i].up = carry_over_piece(path, int(i) - 1, points[i - 1].up);
   }
   if (!closed) return;
-  // What is missing once around is shared out.
+  // The twist missing after one round is spread over the curve.
   const int last = int(points.size()) - 1;
   const Vec3 around = carry_over_piece(path, last, points[std::size_t(last)].up);
   const float missing = atan2(dot(cross(around, points[0].up), start), dot(around, points[0].up));

@@ -1,10 +1,10 @@
-// Curves that a body may be bound to: centripetal Catmull-Rom through points, open or closed. Places on it are counted in points: 2.5 is
-// half-way between the third and the fourth. Across the curve goes a direction that is carried along without twist, so a
-// body that follows the curve turns no more than it must, over loops too.
+// Curves for path joints: centripetal Catmull-Rom splines through points, open or closed. The parameter
+// counts points: 2.5 is half-way between the third and the fourth. A normal is transported along the curve
+// without twist, so a body that follows the curve rotates no more than necessary, over loops too.
 //
-// Sources: E. Catmull and R. Rom, "A class of local interpolating splines", 1974; C. Yuksel, S. Schaefer, J. Keyser,
-// "Parameterization and applications of Catmull-Rom curves", 2011; W. Wang, B. Juettler, D. Zheng, Y. Liu,
-// "Computation of Rotation Minimizing Frames", ACM TOG 27, 2008 (double reflection).
+// Sources: E. Catmull and R. Rom, "A class of local interpolating splines", 1974; C. Yuksel, S. Schaefer, J.
+// Keyser, "Parameterization and applications of Catmull-Rom curves", 2011; W. Wang, B. Juettler, D. Zheng, Y.
+// Liu, "Computation of Rotation Minimizing Frames", ACM TOG 27, 2008 (double reflection).
 #pragma once
 
 #include "solver/joint/joint_record.h"
@@ -20,20 +20,20 @@ struct PathCurve {
   float end() const { return float(closed ? points.size() : points.size() - 1); }
 };
 
-// Position and its derivatives by place.
+// Position and its derivatives by the parameter.
 struct PathSample {
   Vec3 position, first, second;
 };
-PathSample sample_path(const PathCurve& path, float place);
-// x along the curve, y along the direction that is carried: joint's frame from curve's.
-Quat path_frame(const PathCurve& path, float place);
+PathSample sample_path(const PathCurve& path, float parameter);
+// x along the curve, y along the transported normal: joint's frame from curve's frame.
+Quat path_frame(const PathCurve& path, float parameter);
 // m along the curve from its first point.
-float path_length(const PathCurve& path, float place);
-// The place nearest to p, sought from a place nearby; where the curve ends, it.
+float path_length(const PathCurve& path, float parameter);
+// The parameter nearest to p, sought from a nearby parameter; may lie beyond the ends.
 float nearest_on_path(const PathCurve& path, Vec3 p, float from);
-// The same without a place to begin with.
+// The same without a start, within the ends.
 float nearest_on_path(const PathCurve& path, Vec3 p);
-// Lengths and carried directions, from the positions.
+// Computes lengths and transported normals from the positions.
 void finish_path(std::span<PathPoint> points, bool closed);
 
 }  // namespace gyre

@@ -1,8 +1,8 @@
-// All kernels of one CPU target, as the table that a kernel file exports.
+// The table of all kernels of one CPU target; each kernel file exports one.
 #pragma once
 
+#include "solver/articulation/articulation_kernel.h"
 #include "solver/articulation/ball_kernel.h"
-#include "solver/articulation/linkage_kernel.h"
 #include "solver/contact/moving_contact_points.h"
 #include "solver/contact/contact_prepare.h"
 #include "solver/contact/contact_project.h"
@@ -16,11 +16,11 @@ inline namespace GYRE_TARGET_NAMESPACE {
 template <int W>
 constexpr SolverKernels solver_kernels() {
   return {W,
-          {sizeof(ContactBlock<W>), sizeof(ContactBlockCold<W>), prepare_blocks<W>, follow_lanes<W>, warm_start_blocks<W>,
+          {sizeof(ContactBlock<W>), sizeof(ContactBlockCold<W>), prepare_blocks<W>, advance_points<W>, warm_start_blocks<W>,
            solve_blocks<W>, relax_blocks<W>, project_blocks<W>, read_block_impulse<W>, write_block_impulse<W>,
-           harden_block<W>, finish_blocks<W>},
+           make_block_rigid<W>, finish_blocks<W>},
           motion_kernels<W>(),
-          turn_kernels<W>(),
+          rotation_kernels<W>(),
           articulation_kernels<W>(),
           ball_kernels<W>()};
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/articulation/ball_joint_simd.h"
-#include "solver/articulation/linkage_lanes.h"
+#include "solver/articulation/articulation_lanes.h"
 #include "solver/contact/contact_block.h"
 #include "solver/motion/motion_block.h"
 #include "solver/motion/rotation_block.h"
@@ -13,8 +13,8 @@ struct SolverKernels {
   int width;  // lanes
   ContactKernels contacts;
   MotionKernels motion;
-  RotationKernels turns;
-  ArticulationKernels linkages;
+  RotationKernels rotation;
+  ArticulationKernels articulations;
   BallKernels balls;
 };
 

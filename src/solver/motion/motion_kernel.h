@@ -1,16 +1,18 @@
-// The motion kernels: forces, displacement and free rotation of W bodies at once, one template for every width. Lane i
-// computes exactly what a block of width 1 would, so the width never changes a bit.
+// The motion kernels: forces, displacement and free rotation of W bodies at once, one template for every
+// width. Lane i computes exactly what a block of width 1 would, so the width never changes a bit.
 //
-// Within a step a body's rotation is kept as a rotation vector since the step began (`turned`), composed by the first terms
-// of Baker, Campbell and Hausdorff; the orientation is made of it once a step, in double (rigid/integrate/integrators.h). So turns far
-// below a float's resolution add up, and there is one exponential map a step instead of one a sub-step.
+// Within a step the rotation of a body is a rotation vector since the step began (delta_rotation), composed
+// by the first terms of Baker, Campbell and Hausdorff. The orientation follows from it once a step, in double
+// (rigid/integrate/integrators.h). So rotations far below the resolution of floats add up, and a step needs
+// one exponential map instead of one a sub-step.
 //
-// Free rotation: the angular momentum is what stays constant in the world frame. The body turns with the angular velocity
-// of the middle of the sub-step, and has at its end the one that its momentum asks for in its new orientation (the error is
-// of order angle^3; faster bodies turn alone). Sources as in solver/motion/torque_free_rotation.h.
+// Free rotation: the angular momentum is constant in the world frame. A body rotates with the angular
+// velocity of the middle of the sub-step; at its end it has the angular velocity of its momentum in the new
+// orientation. The error is of order angle^3; faster bodies get exact rotation. Sources as in
+// solver/motion/torque_free_rotation_kernel.h.
 //
-// Contacts do the same work at the beginning of each sub-step as they did in the last one (warm start). Instead of walking
-// over all contacts, each body remembers what they gave it.
+// Warm start: contacts act at the beginning of each sub-step as in the last one. Instead of a loop over all
+// contacts, each body stores their effect.
 #pragma once
 
 #include "math/wide_vec.h"
@@ -22,19 +24,20 @@ inline namespace GYRE_TARGET_NAMESPACE {
 template <int W>
 struct MotionBlock {
   std::int32_t body[W];     // kNoBody in lanes without a body
-  std::uint32_t shown = 0;  // bits of lanes
-  std::int32_t any_locked = 0, any_torque = 0, any_lost = 0, any_gyroscopic = 0;
-  std::int32_t rested = 0;  // in the last sub-step nothing moved, nor had before: what depends on that is up to date
-  Vec3W<W> kick, torque;
-  Wide<W> linear_lost, angular_lost, reach;
-  Vec3W<W> loose;                                 // 1 along world axes that are free, 0 along locked ones
-  Wide<W> turns;                                  // 1 where the kernel turns the body
+  std::uint32_t pose_read = 0;  // bits of lanes
+  std::int32_t any_locked = 0, any_torque = 0, any_loss = 0, any_gyroscopic = 0;
+  std::int32_t was_at_rest = 0;  // nothing moved in the last sub-step, nor before: what depends on the motion
+                                 // is up to date
+  Vec3W<W> velocity_gain, torque;
+  Wide<W> linear_loss, angular_loss, bounding_radius;
+  Vec3W<W> free_axes;                             // 1 along free world axes, 0 along locked ones
+  Wide<W> rotates;                                // 1 where the kernel rotates the body
   Wide<W> gyroscopic;                             // 1 where principal moments differ
-  QuatW<W> start;                                 // orientation as the step began
+  QuatW<W> start;                                 // orientation at the beginning of the step
   Sym3W<W> inertia, inverse_inertia;              // body frame
   Sym3W<W> world_inertia, world_inverse_inertia;  // of the present orientation
-  Vec3W<W> before_linear, before_angular;         // velocities that contacts started from
-  Vec3W<W> given_linear, given_angular;           // what contacts gave in the last sub-step
+  Vec3W<W> recorded_linear, recorded_angular;     // velocities before contacts
+  Vec3W<W> contact_linear, contact_angular;       // velocity change by contacts in the last sub-step
 };
 
 template <int W>
@@ -43,12 +46,12 @@ struct MotionW {
 
   GYRE_INLINE Vec3W<W> linear() const { return {record[0], record[1], record[2]}; }
   GYRE_INLINE Vec3W<W> angular() const { return {record[3], record[4], record[5]}; }
-  GYRE_INLINE Vec3W<W> moved() const { return {record[8], record[9], record[10]}; }
-  GYRE_INLINE Vec3W<W> turned() const { return {record[11], record[12], record[13]}; }
+  GYRE_INLINE Vec3W<W> delta_position() const { return {record[8], record[9], record[10]}; }
+  GYRE_INLINE Vec3W<W> delta_rotation() const { return {record[11], record[12], record[13]}; }
   GYRE_INLINE void set_linear(Vec3W<W> v) { record[0] = v.x, record[1] = v.y, record[2] = v.z; }
   GYRE_INLINE void set_angular(Vec3W<W> v) { record[3] = v.x, record[4] = v.y, record[5] = v.z; }
-  GYRE_INLINE void set_moved(Vec3W<W> v) { record[8] = v.x, record[9] = v.y, record[10] = v.z; }
-  GYRE_INLINE void set_turned(Vec3W<W> v) { record[11] = v.x, record[12] = v.y, record[13] = v.z; }
+  GYRE_INLINE void set_delta_position(Vec3W<W> v) { record[8] = v.x, record[9] = v.y, record[10] = v.z; }
+  GYRE_INLINE void set_delta_rotation(Vec3W<W> v) { record[11] = v.x, record[12] = v.y, record[13] = v.z; }
 };
 
 // The first `Columns` floats of the block's motion records.
@@ -63,7 +66,7 @@ GYRE_INLINE void store_motion(const MotionBlock<W>& block, BodyMotion* motion, c
   scatter<Columns, W>(&motion->linear_velocity.x, block.body, m.record);
 }
 
-// Where the velocities of blocks are while a kernel works on these: in the records, with all the rest,
+// Access to the velocities of blocks in the motion records, with all other columns.
 template <int W>
 struct InRecords {
   BodyMotion* motion;
@@ -77,11 +80,11 @@ struct InRecords {
     store_motion<Columns, W>(block, motion, m);
   }
 };
-// or in lanes beside them.
+// Access to velocities in lanes.
 template <int W>
 struct InLanes {
   const LaneVelocities& lanes;
-  BodyMotion* motion = nullptr;  // what only needs velocities does without
+  BodyMotion* motion = nullptr;  // null in kernels that only need velocities
 
   template <int Columns>
   GYRE_INLINE MotionW<W> load(const MotionBlock<W>& block, int n) const {
@@ -89,7 +92,8 @@ struct InLanes {
     const float* const from = lanes.of(n);
     GYRE_UNROLL
     for (int i = 0; i < 6; ++i) m.record[i] = Wide<W>::load(from + i * W);
-    if constexpr (Columns > kMotionMoved) gather8<W>(&motion->moved.x, block.body, m.record + kMotionMoved);
+    if constexpr (Columns > kMotionDeltaPosition)
+      gather8<W>(&motion->delta_position.x, block.body, m.record + kMotionDeltaPosition);
     return m;
   }
   template <int Columns>
@@ -97,42 +101,43 @@ struct InLanes {
     float* const to = lanes.of(n);
     GYRE_UNROLL
     for (int i = 0; i < 6; ++i) m.record[i].store(to + i * W);
-    if constexpr (Columns > kMotionMoved)
-      scatter<Columns - kMotionMoved, W>(&motion->moved.x, block.body, m.record + kMotionMoved);
+    if constexpr (Columns > kMotionDeltaPosition)
+      scatter<Columns - kMotionDeltaPosition, W>(&motion->delta_position.x, block.body,
+                                                 m.record + kMotionDeltaPosition);
   }
 };
 
 template <int W>
-GYRE_INLINE Vec3W<W> along_loose_axes(const MotionBlock<W>& block, Vec3W<W> v) {
+GYRE_INLINE Vec3W<W> along_free_axes(const MotionBlock<W>& block, Vec3W<W> v) {
   const Wide<W> zero(0.0f);
-  return {select(block.loose.x > zero, v.x, zero), select(block.loose.y > zero, v.y, zero),
-          select(block.loose.z > zero, v.z, zero)};
+  return {select(block.free_axes.x > zero, v.x, zero), select(block.free_axes.y > zero, v.y, zero),
+          select(block.free_axes.z > zero, v.z, zero)};
 }
 
-// The vector at most `most` long. Without overflow, whatever the numbers.
+// Clamps the length without overflow, whatever the numbers.
 template <int W>
-GYRE_INLINE Vec3W<W> within_length(Vec3W<W> v, float most) {
+GYRE_INLINE Vec3W<W> clamp_without_overflow(Vec3W<W> v, float max_length) {
   const Wide<W> top = max(absolute(v.x), max(absolute(v.y), absolute(v.z)));
-  const auto may_exceed = top > Wide<W>(0.5f * most);
+  const auto may_exceed = top > Wide<W>(0.5f * max_length);
   if (!any(may_exceed)) return v;
   const Wide<W> scale = select(may_exceed, top, Wide<W>(1.0f));
   const Vec3W<W> u{v.x / scale, v.y / scale, v.z / scale};
-  // In units of the largest component: the length itself may be beyond all floats.
-  const Wide<W> size = sqrt(dot(u, u)), limit = Wide<W>(most) / scale;
+  // In units of the largest component: the length itself may overflow.
+  const Wide<W> size = sqrt(dot(u, u)), limit = Wide<W>(max_length) / scale;
   const auto exceeds = may_exceed & (size > limit);
   const Wide<W> share = limit / select(exceeds, size, Wide<W>(1.0f));
   return select<W>(exceeds, share * v, v);
 }
 
-// log(exp(turn) exp(turned)) but for terms of the fourth order.
+// log(exp(rotation) exp(before)) up to terms of the fourth order.
 template <int W>
-GYRE_INLINE Vec3W<W> compose_turns(Vec3W<W> turn, Vec3W<W> turned) {
-  const Vec3W<W> c = cross(turn, turned), sum = turned + turn;
-  const Vec3W<W> composed = sum + 0.5f * c + (1.0f / 12.0f) * cross(turn - turned, c);
-  // Two turns are never more than both together. Of what whirls by several turns a part the series says otherwise, and from
-  // part to part it would grow beyond all bounds.
-  const Wide<W> most = 2.1f * (dot(turn, turn) + dot(turned, turned));
-  return select<W>(dot(composed, composed) <= most, composed, sum);
+GYRE_INLINE Vec3W<W> compose_rotations(Vec3W<W> rotation, Vec3W<W> before) {
+  const Vec3W<W> c = cross(rotation, before), sum = before + rotation;
+  const Vec3W<W> composed = sum + 0.5f * c + (1.0f / 12.0f) * cross(rotation - before, c);
+  // The angle of two rotations never exceeds their sum. For several turns in a half step the series violates
+  // this, and the result would grow without bound from one half step to the next.
+  const Wide<W> bound = 2.1f * (dot(rotation, rotation) + dot(before, before));
+  return select<W>(dot(composed, composed) <= bound, composed, sum);
 }
 
 template <class Number>
@@ -164,21 +169,21 @@ void prepare_motion(void* memory, int begin, int end, const MovedBody* bodies, i
       }
       const MovedBody& from = bodies[n * W + lane];
       block.body[lane] = from.body;
-      if (from.shown && !from.needs_exact_rotation) block.shown |= 1u << lane;
+      if (from.pose_read && !from.needs_exact_rotation) block.pose_read |= 1u << lane;
       if (from.locked != 0) block.any_locked = 1;
       if (from.torque != Vec3{}) block.any_torque = 1;
-      if (from.linear_lost != 0.0f || from.angular_lost != 0.0f) block.any_lost = 1;
+      if (from.linear_loss != 0.0f || from.angular_loss != 0.0f) block.any_loss = 1;
       const bool gyroscopic = !from.isotropic && !from.needs_exact_rotation;
       if (gyroscopic) block.any_gyroscopic = 1;
-      put<W>(block.kick, lane, from.kick);
+      put<W>(block.velocity_gain, lane, from.velocity_gain);
       put<W>(block.torque, lane, from.torque);
-      put(block.linear_lost, lane, from.linear_lost);
-      put(block.angular_lost, lane, from.angular_lost);
-      put(block.reach, lane, from.reach);
-      put<W>(block.loose, lane,
+      put(block.linear_loss, lane, from.linear_loss);
+      put(block.angular_loss, lane, from.angular_loss);
+      put(block.bounding_radius, lane, from.bounding_radius);
+      put<W>(block.free_axes, lane,
              Vec3{(from.locked & 1) != 0 ? 0.0f : 1.0f, (from.locked & 2) != 0 ? 0.0f : 1.0f,
                   (from.locked & 4) != 0 ? 0.0f : 1.0f});
-      put(block.turns, lane, from.needs_exact_rotation ? 0.0f : 1.0f);
+      put(block.rotates, lane, from.needs_exact_rotation ? 0.0f : 1.0f);
       put(block.gyroscopic, lane, gyroscopic ? 1.0f : 0.0f);
       put(block.start.x, lane, from.orientation.x);
       put(block.start.y, lane, from.orientation.y);
@@ -194,25 +199,26 @@ void prepare_motion(void* memory, int begin, int end, const MovedBody* bodies, i
 }
 
 template <int W>
-GYRE_INLINE void add_given(MotionBlock<W>& block, MotionW<W>& m) {
-  m.set_linear(m.linear() + block.given_linear);
-  m.set_angular(m.angular() + block.given_angular);
+GYRE_INLINE void add_contact_velocities(MotionBlock<W>& block, MotionW<W>& m) {
+  m.set_linear(m.linear() + block.contact_linear);
+  m.set_angular(m.angular() + block.contact_angular);
 }
 template <int W>
-GYRE_INLINE void remember(MotionBlock<W>& block, const MotionW<W>& m) {
-  block.before_linear = m.linear();
-  block.before_angular = m.angular();
+GYRE_INLINE void record(MotionBlock<W>& block, const MotionW<W>& m) {
+  block.recorded_linear = m.linear();
+  block.recorded_angular = m.angular();
 }
 
-// What velocities gained since they were remembered.
+// Adds the velocity change since the record.
 template <int W>
 GYRE_INLINE void add_gain(MotionBlock<W>& block, const MotionW<W>& m) {
-  block.given_linear = block.given_linear + (m.linear() - block.before_linear);
-  block.given_angular = block.given_angular + (m.angular() - block.before_angular);
+  block.contact_linear = block.contact_linear + (m.linear() - block.recorded_linear);
+  block.contact_angular = block.contact_angular + (m.angular() - block.recorded_angular);
 }
 
 template <int W, class Where>
-GYRE_INLINE void predict_blocks(void* memory, int begin, int end, const Where& where, bool warm, bool watched) {
+GYRE_INLINE void integrate_velocities_of(void* memory, int begin, int end, const Where& where, bool warm,
+                                         bool recorded) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
@@ -220,41 +226,43 @@ GYRE_INLINE void predict_blocks(void* memory, int begin, int end, const Where& w
     MotionBlock<W>& block = blocks[n];
     MotionW<W> m = where.template load<8>(block, n);
     Vec3W<W> v = m.linear(), w = m.angular();
-    Vec3W<W> direction = block.kick;
+    Vec3W<W> gain = block.velocity_gain;
     Vec3W<W> twist = none;
     if (block.any_torque != 0) twist = block.world_inverse_inertia * block.torque;
-    if (block.any_lost != 0) {
-      // Not 0 times v where nothing is lost: a lane must not see that another one loses something, whatever its numbers.
-      direction = direction - select<W>(block.linear_lost > zero, block.linear_lost * v, none);
-      twist = twist - select<W>(block.angular_lost > zero, block.angular_lost * w, none);
+    if (block.any_loss != 0) {
+      // Not 0 times v without damping: a lane must not depend on damping in another one, whatever its
+      // numbers.
+      gain = gain - select<W>(block.linear_loss > zero, block.linear_loss * v, none);
+      twist = twist - select<W>(block.angular_loss > zero, block.angular_loss * w, none);
     }
-    v = v + direction;
+    v = v + gain;
     w = w + twist;
-    if (block.any_locked != 0) v = along_loose_axes<W>(block, v);
-    // Adding zero keeps -0 out of the state, so that wide kernels may add zeros to lanes that nothing touches.
-    m.set_linear(within_length<W>(v, kMaxSpeed) + none);
-    m.set_angular(within_length<W>(w, kMaxSpin) + none);
-    if (warm) add_given<W>(block, m);
-    if (watched) remember<W>(block, m);
+    if (block.any_locked != 0) v = along_free_axes<W>(block, v);
+    // Adding zero keeps -0 out of the state, so wide kernels may add zeros to lanes that nothing acts on.
+    m.set_linear(clamp_without_overflow<W>(v, kMaxSpeed) + none);
+    m.set_angular(clamp_without_overflow<W>(w, kMaxSpin) + none);
+    if (warm) add_contact_velocities<W>(block, m);
+    if (recorded) record<W>(block, m);
     where.template store<6>(block, n, m);
   }
 }
 template <int W>
-void predict_motion(void* memory, int begin, int end, BodyMotion* motion, bool warm, bool watched) {
-  predict_blocks<W>(memory, begin, end, InRecords<W>{motion}, warm, watched);
+void integrate_velocities(void* memory, int begin, int end, BodyMotion* motion, bool warm, bool recorded) {
+  integrate_velocities_of<W>(memory, begin, end, InRecords<W>{motion}, warm, recorded);
 }
 template <int W>
-void predict_in_lanes(void* memory, int begin, int end, const LaneVelocities& lanes, bool warm, bool watched) {
-  predict_blocks<W>(memory, begin, end, InLanes<W>{lanes}, warm, watched);
+void integrate_velocities_in_lanes(void* memory, int begin, int end, const LaneVelocities& lanes, bool warm,
+                                   bool recorded) {
+  integrate_velocities_of<W>(memory, begin, end, InLanes<W>{lanes}, warm, recorded);
 }
 
 template <int W>
-void warm_motion(void* memory, int begin, int end, BodyMotion* motion) {
+void warm_start_motion(void* memory, int begin, int end, BodyMotion* motion) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   for (int n = begin; n < end; ++n) {
     MotionW<W> m = load_motion<8, W>(blocks[n], motion);
-    add_given<W>(blocks[n], m);
-    remember<W>(blocks[n], m);
+    add_contact_velocities<W>(blocks[n], m);
+    record<W>(blocks[n], m);
     store_motion<6, W>(blocks[n], motion, m);
   }
 }
@@ -262,44 +270,46 @@ void warm_motion(void* memory, int begin, int end, BodyMotion* motion) {
 template <int W>
 void start_contact_change(void* memory, int begin, int end, const BodyMotion* motion) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
-  for (int n = begin; n < end; ++n) remember<W>(blocks[n], load_motion<8, W>(blocks[n], motion));
+  for (int n = begin; n < end; ++n) record<W>(blocks[n], load_motion<8, W>(blocks[n], motion));
 }
 template <int W>
 void start_contact_change_in_lanes(void* memory, int begin, int end, const LaneVelocities& lanes) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
-  for (int n = begin; n < end; ++n) remember<W>(blocks[n], InLanes<W>{lanes}.template load<6>(blocks[n], n));
+  for (int n = begin; n < end; ++n) record<W>(blocks[n], InLanes<W>{lanes}.template load<6>(blocks[n], n));
 }
 
-// Calls `then` with the number of a block and what its records hold.
+// Calls `then` with the number of a block and the values of its records.
 template <int W, class Then>
-GYRE_INLINE void note_blocks(void* memory, int begin, int end, const BodyMotion* motion, const Then& then) {
+GYRE_INLINE void record_change_of(void* memory, int begin, int end, const BodyMotion* motion,
+                                  const Then& then) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   for (int n = begin; n < end; ++n) {
     MotionBlock<W>& block = blocks[n];
     const MotionW<W> m = load_motion<8, W>(block, motion);
     add_gain<W>(block, m);
-    remember<W>(block, m);
+    record<W>(block, m);
     then(n, m);
   }
 }
 template <int W>
 void add_contact_change(void* memory, int begin, int end, const BodyMotion* motion) {
-  note_blocks<W>(memory, begin, end, motion, [](int, const MotionW<W>&) {});
+  record_change_of<W>(memory, begin, end, motion, [](int, const MotionW<W>&) {});
 }
 template <int W>
 void add_contact_change_in_lanes(void* memory, int begin, int end, const BodyMotion* motion,
-                                 const LaneVelocities& lanes) {
+                                     const LaneVelocities& lanes) {
   const auto* blocks = static_cast<const MotionBlock<W>*>(memory);
-  note_blocks<W>(memory, begin, end, motion, [&](int n, const MotionW<W>& m) {
+  record_change_of<W>(memory, begin, end, motion, [&](int n, const MotionW<W>& m) {
     InLanes<W>{lanes}.template store<6>(blocks[n], n, m);
   });
 }
 
-// Shows the place of some lanes to joints and impacts: mostly of all. Inertia that no torque turns is what it was as the step began.
+// Writes the pose of some lanes, mostly all, for joints and impacts. Without gyroscopic torque the inertia is
+// that of the beginning of the step.
 template <int W>
-GYRE_INLINE void show(const MotionBlock<W>& block, const QuatW<W>& q, MotionArrays arrays) {
+GYRE_INLINE void store_pose(const MotionBlock<W>& block, const QuatW<W>& q, MotionArrays arrays) {
   const Sym3W<W>& i = block.world_inverse_inertia;
-  if (block.shown == (1u << W) - 1u) {
+  if (block.pose_read == (1u << W) - 1u) {
     const Wide<W> pose[4] = {q.x, q.y, q.z, q.w}, inverse[6] = {i.xx, i.yy, i.zz, i.xy, i.xz, i.yz};
     float* records[W];
     locate_records<W, 4>(&arrays.orientation->x, block.body, records);
@@ -310,7 +320,7 @@ GYRE_INLINE void show(const MotionBlock<W>& block, const QuatW<W>& q, MotionArra
     return;
   }
   for (int lane = 0; lane < W; ++lane) {
-    if ((block.shown >> lane & 1u) == 0) continue;
+    if ((block.pose_read >> lane & 1u) == 0) continue;
     const std::int32_t body = block.body[lane];
     arrays.orientation[body] = {q.x[lane], q.y[lane], q.z[lane], q.w[lane]};
     if (block.any_gyroscopic == 0) continue;
@@ -318,34 +328,35 @@ GYRE_INLINE void show(const MotionBlock<W>& block, const QuatW<W>& q, MotionArra
   }
 }
 
-// The rotation of a sub-step: `turn` is made, and the angular velocity follows from the momentum.
+// Rotates over a sub-step; the angular velocity follows from the momentum.
 template <int W>
-GYRE_INLINE void turn_block(MotionBlock<W>& block, MotionW<W>& m, MotionArrays arrays, float substep) {
+GYRE_INLINE void rotate_block(MotionBlock<W>& block, MotionW<W>& m, MotionArrays arrays, float substep) {
   const Wide<W> zero(0.0f);
   const Wide<W> h(substep);
   const auto gyroscopic = block.gyroscopic > zero;
   const Vec3W<W> w = m.angular();
-  Vec3W<W> turn = h * w;
+  Vec3W<W> rotation = h * w;
   if (block.any_gyroscopic != 0) {
     const Vec3W<W> torque = cross(block.world_inertia * w, w);
     const Vec3W<W> middle = w + (0.5f * h) * (block.world_inverse_inertia * torque);
-    turn = select<W>(gyroscopic, h * middle, turn);
+    rotation = select<W>(gyroscopic, h * middle, rotation);
   }
-  const Vec3W<W> turned = select<W>(block.turns > zero, compose_turns<W>(turn, m.turned()), m.turned());
-  m.set_turned(turned);
-  if (block.any_gyroscopic == 0 && block.shown == 0) return;
-  const QuatW<W> q = integrate_rotation<W>(block.start, turned);
+  const Vec3W<W> delta_rotation =
+      select<W>(block.rotates > zero, compose_rotations<W>(rotation, m.delta_rotation()), m.delta_rotation());
+  m.set_delta_rotation(delta_rotation);
+  if (block.any_gyroscopic == 0 && block.pose_read == 0) return;
+  const QuatW<W> q = integrate_rotation<W>(block.start, delta_rotation);
   if (block.any_gyroscopic != 0) {
     const Mat3W<W> r = to_matrix<W>(q);
     const Sym3W<W> next = rotate_inertia<W>(r, block.inertia);
     const Sym3W<W> next_inverse = rotate_inertia<W>(r, block.inverse_inertia);
-    const Sym3W<W> lost{block.world_inertia.xx - next.xx, block.world_inertia.yy - next.yy,
-                        block.world_inertia.zz - next.zz, block.world_inertia.xy - next.xy,
-                        block.world_inertia.xz - next.xz, block.world_inertia.yz - next.yz};
-    const Vec3W<W> change = next_inverse * (lost * w);
+    const Sym3W<W> inertia_loss{block.world_inertia.xx - next.xx, block.world_inertia.yy - next.yy,
+                                block.world_inertia.zz - next.zz, block.world_inertia.xy - next.xy,
+                                block.world_inertia.xz - next.xz, block.world_inertia.yz - next.yz};
+    const Vec3W<W> change = next_inverse * (inertia_loss * w);
     m.set_angular(select<W>(gyroscopic, w + change, w));
     block.world_inertia = next;
-    // Of a body without gyroscopic torque the inverse turns with nothing.
+    // Without gyroscopic torque the inverse inertia stays.
     block.world_inverse_inertia = {select(gyroscopic, next_inverse.xx, block.world_inverse_inertia.xx),
                                    select(gyroscopic, next_inverse.yy, block.world_inverse_inertia.yy),
                                    select(gyroscopic, next_inverse.zz, block.world_inverse_inertia.zz),
@@ -353,47 +364,49 @@ GYRE_INLINE void turn_block(MotionBlock<W>& block, MotionW<W>& m, MotionArrays a
                                    select(gyroscopic, next_inverse.xz, block.world_inverse_inertia.xz),
                                    select(gyroscopic, next_inverse.yz, block.world_inverse_inertia.yz)};
   }
-  if (block.shown != 0) show<W>(block, q, arrays);
+  if (block.pose_read != 0) store_pose<W>(block, q, arrays);
 }
 
-// Whether nothing moves or has moved since the step began, to the bit.
+// True if nothing moves or has moved since the step began, to the bit.
 template <int W>
-GYRE_INLINE bool rests(const MotionW<W>& m) {
+GYRE_INLINE bool is_at_rest(const MotionW<W>& m) {
   WideInt<W> bits(0);
   for (int i = kMotionLinear; i < kMotionLinear + 6; ++i) bits = bits | bit_pattern(m.record[i]);
-  for (int i = kMotionMoved; i < kMotionMoved + 6; ++i) bits = bits | bit_pattern(m.record[i]);
+  for (int i = kMotionDeltaPosition; i < kMotionDeltaPosition + 6; ++i)
+    bits = bits | bit_pattern(m.record[i]);
   return none(bits != WideInt<W>(0));
 }
 
 template <int W, class Where>
-GYRE_INLINE void advance_blocks(void* memory, int begin, int end, MotionArrays arrays, const Where& where,
-                                float substep, bool watched) {
+GYRE_INLINE void integrate_positions_of(void* memory, int begin, int end, MotionArrays arrays,
+                                        const Where& where, float substep, bool recorded) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
   for (int n = begin; n < end; ++n) {
     MotionBlock<W>& block = blocks[n];
     MotionW<W> m = where.template load<16>(block, n);
-    const bool resting = rests<W>(m);
-    if (block.any_locked != 0) m.set_linear(along_loose_axes<W>(block, m.linear()));
-    if (watched) add_gain<W>(block, m);
-    // Then all that follows gives what is there already.
-    if (resting && block.rested != 0) continue;
-    block.rested = resting ? 1 : 0;
-    m.set_moved(m.moved() + Wide<W>(substep) * m.linear());
-    turn_block<W>(block, m, arrays, substep);
+    const bool resting = is_at_rest<W>(m);
+    if (block.any_locked != 0) m.set_linear(along_free_axes<W>(block, m.linear()));
+    if (recorded) add_gain<W>(block, m);
+    // At rest all that follows would give the values that are there already.
+    if (resting && block.was_at_rest != 0) continue;
+    block.was_at_rest = resting ? 1 : 0;
+    m.set_delta_position(m.delta_position() + Wide<W>(substep) * m.linear());
+    rotate_block<W>(block, m, arrays, substep);
     m.set_angular(m.angular() + none);
     where.template store<14>(block, n, m);
   }
 }
 template <int W>
-void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float substep, bool watched) {
-  advance_blocks<W>(memory, begin, end, arrays, InRecords<W>{arrays.motion}, substep, watched);
+void integrate_positions(void* memory, int begin, int end, MotionArrays arrays, float substep,
+                         bool recorded) {
+  integrate_positions_of<W>(memory, begin, end, arrays, InRecords<W>{arrays.motion}, substep, recorded);
 }
 template <int W>
-void advance_in_lanes(void* memory, int begin, int end, MotionArrays arrays, const LaneVelocities& lanes,
-                      float substep) {
-  advance_blocks<W>(memory, begin, end, arrays, InLanes<W>{lanes, arrays.motion}, substep, false);
+void integrate_positions_in_lanes(void* memory, int begin, int end, MotionArrays arrays,
+                                  const LaneVelocities& lanes, float substep) {
+  integrate_positions_of<W>(memory, begin, end, arrays, InLanes<W>{lanes, arrays.motion}, substep, false);
 }
 
 template <int W>
@@ -401,30 +414,32 @@ void begin_projection(void* memory, int begin, int end, BodyMotion* motion) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   for (int n = begin; n < end; ++n) {
     MotionW<W> m = load_motion<8, W>(blocks[n], motion);
-    remember<W>(blocks[n], m);
+    record<W>(blocks[n], m);
     for (int i = 0; i < 6; ++i) m.record[i] = Wide<W>(0.0f);
     store_motion<6, W>(blocks[n], motion, m);
   }
 }
 
 template <int W>
-void end_projection(void* memory, int begin, int end, BodyMotion* motion, Vec3* turns) {
+void end_projection(void* memory, int begin, int end, BodyMotion* motion, Vec3* rotations) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   for (int n = begin; n < end; ++n) {
     const MotionBlock<W>& block = blocks[n];
     MotionW<W> m = load_motion<16, W>(block, motion);
-    Vec3W<W> way = m.linear();
-    const Vec3W<W> turn = m.angular();
-    if (block.any_locked != 0) way = along_loose_axes<W>(block, way);
-    m.set_moved(m.moved() + way);
-    m.set_turned(select<W>(block.turns > zero, compose_turns<W>(turn, m.turned()), m.turned()));
-    m.set_linear(block.before_linear);
-    m.set_angular(block.before_angular);
-    m.record[kMotionPushed] = length(way) + block.reach * length(turn);
+    Vec3W<W> displacement = m.linear();
+    const Vec3W<W> rotation = m.angular();
+    if (block.any_locked != 0) displacement = along_free_axes<W>(block, displacement);
+    m.set_delta_position(m.delta_position() + displacement);
+    m.set_delta_rotation(select<W>(block.rotates > zero, compose_rotations<W>(rotation, m.delta_rotation()),
+                                   m.delta_rotation()));
+    m.set_linear(block.recorded_linear);
+    m.set_angular(block.recorded_angular);
+    m.record[kMotionPushout] = length(displacement) + block.bounding_radius * length(rotation);
     store_motion<14, W>(block, motion, m);
     for (int lane = 0; lane < W; ++lane) {
-      if (block.body[lane] != kNoBody) turns[n * W + lane] = {turn.x[lane], turn.y[lane], turn.z[lane]};
+      if (block.body[lane] != kNoBody)
+        rotations[n * W + lane] = {rotation.x[lane], rotation.y[lane], rotation.z[lane]};
     }
   }
 }
@@ -435,18 +450,18 @@ constexpr MotionKernels motion_kernels() {
   MotionKernels kernels{};
   kernels.block_bytes = sizeof(MotionBlock<W>);
   kernels.prepare = prepare_motion<W>;
-  kernels.predict = predict_motion<W>;
-  kernels.warm = warm_motion<W>;
+  kernels.integrate_velocities = integrate_velocities<W>;
+  kernels.warm_start = warm_start_motion<W>;
   kernels.start_contact_change = start_contact_change<W>;
   kernels.add_contact_change = add_contact_change<W>;
-  kernels.advance = advance_motion<W>;
+  kernels.integrate_positions = integrate_positions<W>;
   kernels.begin_projection = begin_projection<W>;
   kernels.end_projection = end_projection<W>;
   if constexpr (W >= 8) {
-    kernels.predict_in_lanes = predict_in_lanes<W>;
+    kernels.integrate_velocities_in_lanes = integrate_velocities_in_lanes<W>;
     kernels.start_contact_change_in_lanes = start_contact_change_in_lanes<W>;
     kernels.add_contact_change_in_lanes = add_contact_change_in_lanes<W>;
-    kernels.advance_in_lanes = advance_in_lanes<W>;
+    kernels.integrate_positions_in_lanes = integrate_positions_in_lanes<W>;
   }
   return kernels;
 }

@@ -1,4 +1,4 @@
-// The kernels of bodies that turn freely against the same turns worked out one body at a time, to the bit, at every width.
+// The rotation kernels against the same rotations computed one body at a time, to the bit, at every width.
 #include "math/rotation.h"
 #include "random.h"
 #include "solver/kernels/solver_kernels.h"
@@ -40,7 +40,7 @@ Tensor inverse_of(const Tensor& m) {
 DQuat sum(DQuat a, DQuat b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w}; }
 DQuat times(double s, DQuat q) { return {s * q.x, s * q.y, s * q.z, s * q.w}; }
 
-DQuat turn_in_steps(DQuat q, DVec3 momentum, const Tensor& inverse, double seconds, double angle) {
+DQuat rotate_in_steps(DQuat q, DVec3 momentum, const Tensor& inverse, double seconds, double angle) {
   const int steps = 1 + int(std::fmin(angle / 0.02, 4096.0));
   const double h = seconds / double(steps);
   const auto rate = [&](DQuat at) {
@@ -67,7 +67,7 @@ int axis_of_revolution(const Sym3& m) {
   return 3;
 }
 
-DQuat turn_top(DQuat start, DVec3 momentum, const Sym3& inertia, int axis, double seconds) {
+DQuat rotate_symmetric_top(DQuat start, DVec3 momentum, const Sym3& inertia, int axis, double seconds) {
   const float moments[3] = {inertia.xx, inertia.yy, inertia.zz};
   const double along = double(moments[axis]),
                across = 0.5 * (double(moments[(axis + 1) % 3]) + double(moments[(axis + 2) % 3]));
@@ -77,7 +77,7 @@ DQuat turn_top(DQuat start, DVec3 momentum, const Sym3& inertia, int axis, doubl
                     exponential_map((seconds * spin) * own));
 }
 
-void turn_plainly(Spinner& body, float seconds) {
+void rotate_plainly(Spinner& body, float seconds) {
   Vec3& spin = body.motion.angular_velocity;
   const Vec3 w = rotate_inverse(body.orientation, spin), own_momentum = body.inertia * w;
   const float angle = seconds * length(spin);
@@ -85,7 +85,7 @@ void turn_plainly(Spinner& body, float seconds) {
                              square(1.0e-7f) * length_squared(own_momentum) * length_squared(w)) {
     const Vec3 turn = seconds * spin;
     if (turn != Vec3{}) body.orientation = integrate_rotation(body.orientation, turn);
-    body.motion.turned += turn;
+    body.motion.delta_rotation += turn;
     return;
   }
   const Sym3& m = body.inertia;
@@ -97,24 +97,24 @@ void turn_plainly(Spinner& body, float seconds) {
   const int axis = axis_of_revolution(m);
   DQuat q;
   if (axis < 3) {
-    q = turn_top(start, momentum, m, axis, time);
+    q = rotate_symmetric_top(start, momentum, m, axis, time);
   } else if (angle < 2.0e-3f) {
     const DVec3 middle = velocity + 0.5 * time * (inverse * cross(own, velocity));
     q = normalized(start * exponential_map(time * middle));
   } else {
-    q = turn_in_steps(start, momentum, inverse, time, double(angle));
+    q = rotate_in_steps(start, momentum, inverse, time, double(angle));
   }
   spin = to_float(rotate(q, inverse * rotate_inverse(q, momentum)));
   body.orientation = to_float(q);
-  body.motion.turned += to_float(logarithm_map(q * conjugate(start)));
+  body.motion.delta_rotation += to_float(logarithm_map(q * conjugate(start)));
 }
 
-// Of all sizes, from standing still to whirling; with and without an axis of revolution.
+// Of all sizes, from rest to very fast; with and without an axis of revolution.
 Spinner make_spinner(Random& random) {
   Spinner body;
   body.orientation = normalized(
       Quat{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)});
-  body.motion.turned = random.vector(0.1f);
+  body.motion.delta_rotation = random.vector(0.1f);
   const float size = std::pow(10.0f, random.between(-6.0f, 2.5f));
   if (random.between(0, 1) > 0.05f) body.motion.angular_velocity = random.vector(size);
   float moments[3] = {random.between(1, 2), random.between(1, 2), random.between(1, 2)};
@@ -130,41 +130,42 @@ void expect_same(const Spinner& body, const Spinner& plain, int width) {
   const Quat &q = body.orientation, &p = plain.orientation;
   EXPECT_TRUE(q.x == p.x && q.y == p.y && q.z == p.z && q.w == p.w) << "width " << width;
   EXPECT_EQ(body.motion.angular_velocity, plain.motion.angular_velocity) << "width " << width;
-  EXPECT_EQ(body.motion.turned, plain.motion.turned) << "width " << width;
+  EXPECT_EQ(body.motion.delta_rotation, plain.motion.delta_rotation) << "width " << width;
 }
 
-TEST(TurnKernel, TurnsManyBodiesAsEachAlone) {
+TEST(RotationKernel, RotatesManyBodiesAsSingleOnes) {
   Random random;
   for (int round = 0; round < 200; ++round) {
     const float seconds = round % 2 == 0 ? 1.0f / 60.0f : 1.0f / 480.0f;
     std::vector<Spinner> bodies;
-    for (int i = 0; i <= round % kMaxTurns; ++i) bodies.push_back(make_spinner(random));
+    for (int i = 0; i <= round % kMaxRotations; ++i) bodies.push_back(make_spinner(random));
     std::vector<Spinner> plain = bodies;
-    for (Spinner& body : plain) turn_plainly(body, seconds);
+    for (Spinner& body : plain) rotate_plainly(body, seconds);
     for (const int width : {0, 1, 4, 8, 16}) {
       std::vector<Spinner> turned = bodies;
-      TorqueFreeRotation turns[kMaxTurns];
+      TorqueFreeRotation rotations[kMaxRotations];
       for (std::size_t i = 0; i < turned.size(); ++i)
-        turns[i] = {&turned[i].motion, &turned[i].orientation, &turned[i].inertia};
-      select_kernels(width).turns.rotate_torque_free(turns, int(turned.size()), seconds);
+        rotations[i] = {&turned[i].motion, &turned[i].orientation, &turned[i].inertia};
+      select_kernels(width).rotation.rotate_torque_free(rotations, int(turned.size()), seconds);
       for (std::size_t i = 0; i < turned.size(); ++i) expect_same(turned[i], plain[i], width);
     }
   }
 }
 
-TEST(TurnKernel, TurnsByVectorsAsEachAlone) {
+TEST(RotationKernel, RotatesByVectorsAsSingleOnes) {
   Random random;
-  for (int count = 0; count <= kMaxTurns; ++count) {
-    std::vector<ConstantRotation> turns;
+  for (int count = 0; count <= kMaxRotations; ++count) {
+    std::vector<ConstantRotation> rotations;
     for (int i = 0; i < count; ++i) {
       const Spinner body = make_spinner(random);
-      turns.push_back({body.orientation, 0.1f * body.motion.angular_velocity});
+      rotations.push_back({body.orientation, 0.1f * body.motion.angular_velocity});
     }
     for (const int width : {0, 1, 4, 8, 16}) {
-      std::vector<ConstantRotation> turned = turns;
-      select_kernels(width).turns.rotate_at_constant_velocity(turned.data(), count);
-      for (std::size_t i = 0; i < turns.size(); ++i)
-        EXPECT_EQ(turned[i].orientation, integrate_rotation(turns[i].orientation, turns[i].turn)) << width;
+      std::vector<ConstantRotation> turned = rotations;
+      select_kernels(width).rotation.rotate_at_constant_velocity(turned.data(), count);
+      for (std::size_t i = 0; i < rotations.size(); ++i)
+        EXPECT_EQ(turned[i].orientation, integrate_rotation(rotations[i].orientation, rotations[i].rotation))
+            << width;
     }
   }
 }

@@ -6,16 +6,16 @@ namespace gyre {
 
 namespace {
 
-// Errors of place are taken back with this rate (1/s), twice a step.
-constexpr float kRate = 10.0f;
-// Nearer than this share of the size a point is where it belongs.
-constexpr float kStillGap = 1.0e-6f;
+// 1/s, at which errors of position are removed.
+constexpr float kErrorRate = 10.0f;
+// Separation at rest, as a share of the size: nearer points need no correction.
+constexpr float kMaxRestSeparation = 1.0e-6f;
 
-// Shares >= 0 of the points of a patch that put the centre of pressure at (x, y) of the contact plane: their sum is 1 and
-// their mean point is (x, y). False if it lies outside the patch.
+// Shares >= 0 of the points of a patch that put the centre of pressure at (x, y) of the contact plane: their
+// sum is 1 and their mean point is (x, y). False if it lies outside the patch.
 bool share_pressure(const float (&px)[4], const float (&py)[4], int count, float x, float y, float (&shares)[4]) {
   for (float& share : shares) share = 0.0f;
-  // The least uneven shares first: 1/n each plus what is linear in the place.
+  // The most even shares first: 1/n each plus a linear function of the position.
   float mx = 0.0f, my = 0.0f;
   for (int k = 0; k < count; ++k) mx += px[k], my += py[k];
   mx /= float(count), my /= float(count);
@@ -34,7 +34,7 @@ bool share_pressure(const float (&px)[4], const float (&py)[4], int count, float
     even = even && shares[k] >= 0.0f;
   }
   if (even) return true;
-  // Near the rim: the triangle of points that holds the place, the one with the largest least share.
+  // Near the rim: the triangle of points around (x, y) with the largest smallest share.
   float best = -1.0e-6f;
   bool found = false;
   float chosen[4] = {};
@@ -46,9 +46,9 @@ bool share_pressure(const float (&px)[4], const float (&py)[4], int count, float
         const float v = ((x - px[i]) * (py[k] - py[i]) - (px[k] - px[i]) * (y - py[i])) / area;
         const float w = ((px[j] - px[i]) * (y - py[i]) - (x - px[i]) * (py[j] - py[i])) / area;
         const float u = 1.0f - v - w;
-        const float least = min(u, min(v, w));
-        if (least < best) continue;
-        best = least;
+        const float smallest = min(u, min(v, w));
+        if (smallest < best) continue;
+        best = smallest;
         found = true;
         for (float& share : chosen) share = 0.0f;
         chosen[i] = max(u, 0.0f), chosen[j] = max(v, 0.0f), chosen[k] = max(w, 0.0f);
@@ -59,14 +59,15 @@ bool share_pressure(const float (&px)[4], const float (&py)[4], int count, float
   return found;
 }
 
-// The anchor of the node's contact on its own body.
+// The arm of a contact point on the node's body.
 Vec3 arm_of(const TreeNode& node, const ContactConstraint& constraint, int k) {
   const ContactPointState& point = constraint.manifold->points[k];
   return node.sign > 0.0f ? point.from_b : point.from_a;
 }
 
-// The wrench (force and torque impulse about the contact's first anchor) that a contact's present impulses put on B.
-void present_wrench(const ContactImpulse& impulse, const ContactConstraint& constraint, Vec3 origin, Vec3& force, Vec3& torque) {
+// The wrench (force and torque impulse about the contact's first anchor) of the contact's impulses on B.
+void current_wrench(const ContactImpulse& impulse, const ContactConstraint& constraint, Vec3 origin,
+                    Vec3& force, Vec3& torque) {
   const Manifold& manifold = *constraint.manifold;
   force = impulse.friction;
   torque = cross(impulse.friction_from_b - origin, impulse.friction) + impulse.twist * manifold.normal + impulse.rolling;
@@ -77,8 +78,10 @@ void present_wrench(const ContactImpulse& impulse, const ContactConstraint& cons
   }
 }
 
-// Finds impulses of points, friction and twist that make up the wrench on B about `origin`; false if the contact cannot.
-bool bear_wrench(const ContactConstraint& constraint, Vec3 origin, Vec3 force, Vec3 torque, ContactImpulse& impulse) {
+// Finds impulses of points, friction and twist with this wrench on B about `origin`; false if the contact
+// cannot carry it.
+bool solve_wrench(const ContactConstraint& constraint, Vec3 origin, Vec3 force, Vec3 torque,
+                  ContactImpulse& impulse) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal;
   const float load = dot(force, n);
@@ -97,7 +100,7 @@ bool bear_wrench(const ContactConstraint& constraint, Vec3 origin, Vec3 force, V
   const float y = (height * dot(tangential, v) + dot(torque, u)) / load;
   float shares[4];
   if (!share_pressure(px, py, manifold.count, x, y, shares)) return false;
-  // What is left about the normal once the friction acts at the centre of friction that the kernels use.
+  // The twist that remains with the friction at the kernels' centre of friction.
   const Vec3 at = impulse.friction_from_b - origin;
   const float twist = dot(torque, n) - dot(cross(at, tangential), n);
   const float slide = constraint.static_friction * load;
@@ -122,10 +125,10 @@ TreeCorrection correction_of(const ContactConstraint& constraint, const BodyMoti
   float mean = 0.0f;
   for (int k = 0; k < count; ++k) {
     const ContactPointState& point = manifold.points[k];
-    Vec3 drift;
-    if (b != nullptr) drift += b->moved + cross(b->turned, point.from_b);
-    if (a != nullptr) drift -= a->moved + cross(a->turned, point.from_a);
-    separations[k] = point.separation + dot(drift, n);
+    Vec3 displacement;
+    if (b != nullptr) displacement += b->delta_position + cross(b->delta_rotation, point.from_b);
+    if (a != nullptr) displacement -= a->delta_position + cross(a->delta_rotation, point.from_a);
+    separations[k] = point.separation + dot(displacement, n);
     mean += separations[k] / float(count);
     c.middle += (1.0f / float(count)) * point.from_b;
   }
@@ -137,32 +140,34 @@ TreeCorrection correction_of(const ContactConstraint& constraint, const BodyMoti
     xx += x * x, yy += y * y, xy += x * y, xs += x * s, ys += y * s;
   }
   const float det = xx * yy - xy * xy;
-  c.velocity = clamp(-kRate * mean, -constraint.push_speed, constraint.push_speed) * n;
+  c.velocity = clamp(-kErrorRate * mean, -constraint.pushout_speed, constraint.pushout_speed) * n;
   if (det > 0.0f) {
     // s = slope_u x + slope_v y; a tilt w gives w x p . n = w . (p x n).
     const float slope_u = (yy * xs - xy * ys) / det, slope_v = (xx * ys - xy * xs) / det;
-    c.tilt = -kRate * (slope_v * u - slope_u * v);
+    c.tilt = -kErrorRate * (slope_v * u - slope_u * v);
   }
   return c;
 }
 
-// Whether the sweeps left every body as good as at rest, where it belongs.
-bool is_still(const RestingTree& tree, const TreeSolve& s) {
+// True if the iterations left every body practically at rest, in position.
+bool is_at_rest(const RestingTree& tree, const TreeSolve& s) {
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     const TreeNode& node = s.nodes[i];
     const BodyMotion& motion = s.motion[node.body];
-    if (largest(absolute(motion.linear_velocity)) > node.still || largest(absolute(motion.angular_velocity)) > node.still_spin) {
+    if (largest(absolute(motion.linear_velocity)) > node.rest_speed ||
+        largest(absolute(motion.angular_velocity)) > node.rest_spin) {
       return false;
     }
     const ContactConstraint& constraint = s.constraints[node.constraint];
     for (int k = 0; k < constraint.manifold->count; ++k) {
-      if (absolute(constraint.manifold->points[k].separation) > kStillGap * constraint.size) return false;
+      if (absolute(constraint.manifold->points[k].separation) > kMaxRestSeparation * constraint.size)
+        return false;
     }
   }
   return true;
 }
 
-void stop_tree(const RestingTree& tree, const TreeSolve& s) {
+void halt_tree(const RestingTree& tree, const TreeSolve& s) {
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     BodyMotion& motion = s.motion[s.nodes[i].body];
     motion.linear_velocity = motion.angular_velocity = {};
@@ -172,7 +177,7 @@ void stop_tree(const RestingTree& tree, const TreeSolve& s) {
 }  // namespace
 
 void solve_tree(const RestingTree& tree, const TreeSolve& s) {
-  if (is_still(tree, s)) return stop_tree(tree, s);
+  if (is_at_rest(tree, s)) return halt_tree(tree, s);
   const DVec3 base = s.nodes[tree.begin].center;
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     const TreeNode& node = s.nodes[i];
@@ -185,27 +190,27 @@ void solve_tree(const RestingTree& tree, const TreeSolve& s) {
     const Sym3 inertia = rotate_inertia(node.orientation, node.inertia);
     work.spin = DVec3(inertia * motion.angular_velocity) - cross(arm, work.momentum);
   }
-  // Leaves to root: what lies beyond a contact, about that contact.
+  // Leaves to root: sums the momentum beyond each contact, about that contact.
   for (std::uint32_t i = tree.end; i-- > tree.begin;) {
     const TreeNode& node = s.nodes[i];
     TreeScratch& work = s.work[i];
     const ContactConstraint& constraint = s.constraints[node.constraint];
     s.kernels->read_impulse(s.blocks, int(node.block), int(node.lane), work.impulse);
-    // The change that brings the subtree to rest acts on the node's body; the manifold counts impulses on B.
+    // The change that stops the subtree acts on the node's body; the manifold counts impulses on B.
     const Vec3 origin = constraint.manifold->points[0].from_b;
     Vec3 force, torque;
-    present_wrench(work.impulse, constraint, origin, force, torque);
+    current_wrench(work.impulse, constraint, origin, force, torque);
     force -= node.sign * to_float(work.momentum);
     torque -= node.sign * to_float(work.spin);
-    if (!bear_wrench(constraint, origin, force, torque, work.impulse)) return;
+    if (!solve_wrench(constraint, origin, force, torque, work.impulse)) return;
     if (node.parent >= 0) {
       TreeScratch& below = s.work[std::size_t(node.parent)];
       below.momentum += work.momentum;
       below.spin += work.spin + cross(work.point - below.point, work.momentum);
     }
   }
-  // Root to leaves: impulses as found, and velocities that take back errors of place. They are made as
-  // displacements over the step; what stays is rest.
+  // Root to leaves: writes the impulses, and finds velocities that remove errors of position. They are
+  // applied as displacements over the step, and the velocities are zero.
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     const TreeNode& node = s.nodes[i];
     TreeScratch& work = s.work[i];
@@ -222,11 +227,12 @@ void solve_tree(const RestingTree& tree, const TreeSolve& s) {
     Vec3 linear, angular;
     if (node.parent >= 0) {
       const TreeScratch& below = s.work[std::size_t(node.parent)];
-      const Vec3 way = difference(node.center, s.nodes[std::size_t(node.parent)].center);
+      const Vec3 offset = difference(node.center, s.nodes[std::size_t(node.parent)].center);
       angular = below.angular;
-      linear = below.linear + cross(angular, way);
+      linear = below.linear + cross(angular, offset);
     }
-    // The correction is of B against A at the middle of the patch; `own` is the body's centre from there.
+    // The correction is that of B against A at the middle of the patch; `middle_own` is the middle from the
+    // body's centre.
     const TreeCorrection& c = work.correction;
     const Vec3 middle_own = c.middle + arm_of(node, constraint, 0) - constraint.manifold->points[0].from_b;
     const Vec3 tilt = node.sign * c.tilt;
@@ -234,8 +240,8 @@ void solve_tree(const RestingTree& tree, const TreeSolve& s) {
     work.angular = angular + tilt;
     BodyMotion& motion = s.motion[node.body];
     motion.linear_velocity = motion.angular_velocity = {};
-    motion.moved += s.step * work.linear;
-    motion.turned += s.step * work.angular;
+    motion.delta_position += s.step * work.linear;
+    motion.delta_rotation += s.step * work.angular;
   }
 }
 

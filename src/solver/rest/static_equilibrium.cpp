@@ -10,67 +10,70 @@ namespace gyre {
 
 namespace {
 
-// What counts as one that does not stand: after so many rounds, or multiplications where these are fewer rounds. Pyramids and
-// walls take one round, card houses and towers of planks up to six, arches near their limit up to twenty.
+// Bounds on the search: rounds, or multiplications if these are fewer rounds. Pyramids and walls take one
+// round, card houses and towers of planks up to six, arches near their limit up to twenty.
 constexpr int kMaxRounds = 30;
 constexpr int kMinRounds = 12;
-constexpr int kMaxStuck = 5;  // rounds in turn after which no less was left over
+constexpr int kMaxStuck = 5;  // successive rounds without a smaller residual
 constexpr std::uint64_t kMaxWork = 6'000'000;
-// Where a round is so many multiplications they have to bring more: what holds goes straight there.
-constexpr std::uint64_t kDear = 250'000;
-constexpr int kMaxStuckIfDear = 2;  // rounds in turn after which more than this share was left over
-constexpr double kProgressIfDear = 0.7;
-constexpr int kMaxRoundsIfFresh =
-    2;  // and dear: what was put as it lies holds at once, what has yet to settle does not
-// What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
-constexpr double kTrace = 1.0e-6;
-// The longest step, in Newton's, and after how many tries it is taken as it is.
+// Above this number of multiplications a round must achieve more: a stable structure converges at once.
+constexpr std::uint64_t kExpensiveWork = 250'000;
+constexpr int kMaxStuckIfExpensive = 2;  // successive rounds that left more than this share of the residual
+constexpr double kProgressIfExpensive = 0.7;
+constexpr int kMaxRoundsIfNew =
+    2;  // new and expensive: a structure put in place converges at once, one that has yet to settle does not
+// Share of its stiffness that an inactive point keeps in the second derivative, but not in its impulse.
+constexpr double kInactiveStiffness = 1.0e-6;
+// The longest step, in Newton steps, and the number of tries before it is taken as it is.
 constexpr double kLongestStep = 1.0e3;
-constexpr int kCuts = 40;
-// A slope counts as none below this share of what it is where the step begins, if that is Newton's own step; if not, below the next.
-constexpr double kFlat = 1.0e-9, kRounding = 1.0e-13;
-// Contacts begin this stiff sideways, as elastic bodies are (R. Mindlin, 1949: 2 (1 - nu) / (2 - nu) = 0.82 for nu = 0.3), and
-// what is softer than this bears nothing sideways.
+constexpr int kMaxBisections = 40;
+// A slope counts as zero below the first share of its initial value for Newton's own step, below the second
+// otherwise.
+constexpr double kFlatSlope = 1.0e-9, kRoundingSlope = 1.0e-13;
+// Initial tangential stiffness of contacts, as of elastic bodies (R. Mindlin, 1949: 2 (1 - nu) / (2 - nu) =
+// 0.82 for nu = 0.3). Softer contacts than the second carry no friction.
 constexpr float kShear = 0.8f;
 constexpr float kMinShear = 1.0e-7f;
-// A contact asked for too much friction is softened so that it bears this share of what it can.
+// Share of its friction limit to which a contact with too much friction is softened.
 constexpr double kFrictionAim = 0.7;
-constexpr double kMaxSoftening = 0.05;  // at once
-// The age of contacts that were held and are not any more (s).
+constexpr double kMaxSoftening = 0.05;  // largest softening at once
+// s: age of contacts that cease to be rigid.
 constexpr float kReleasedAge = 2.0f;
-// Points further apart than this share of the size do not touch.
+// Points with a larger separation, as a share of the size, do not touch.
 constexpr float kTouchingGap = 1.0e-3f;
-constexpr double kEndless = 1.0e30;
-// What an answer may leave of a body's speed, over what counts as still: rounding. Of one that leaves more than the next share of
-// that a round more is made.
+constexpr double kInfinite = 1.0e30;
+// Residual speed of a body that counts as rounding, as a multiple of its rest speed. A residual above the
+// second share of that costs one more round.
 constexpr double kResidual = 100.0;
 constexpr double kExactShare = 0.01;
-// The most that a point of an answer may bear, over all that the structure weighs. What is wedged between two walls would hold by a thrust
-// that is large enough, though nothing presses it: a thousand times its weight, even by the little friction that a point has about
-// its normal. Arches bear less than once that, a wedge of two degrees between smooth walls 29 times.
+// The largest impulse of a point over the weight of the structure. A body wedged between two walls would hold
+// by a large enough thrust though nothing presses it: a thousand times its weight, even by the little
+// friction that a point has about its normal. Arches carry less than once their weight, a wedge of two
+// degrees between smooth walls 29 times.
 constexpr double kMaxThrust = 30.0;
-// What a structure that was held may move by, over what counts as still: what thirty rows of boxes weigh rounds to more than that, and
-// solving would but round it anew. It may grow as the structure buckles, and then takes one round.
-constexpr float kHeldStill = 30.0f;
+// Motion of a rigid structure that counts as rest, as a multiple of the rest speed: the weight of thirty rows
+// of boxes rounds to more than that, and a solve would only round anew. The motion may grow as the structure
+// buckles; then one round follows.
+constexpr float kRigidRestFactor = 30.0f;
 
-// A row of a contact: what it is about, on either body, and what it bears before anything moves. The structure's rows are those
-// of bodies: place, then rotation.
+// A row of a contact on both bodies: direction, stiffness, and impulse before any displacement. Rows of
+// bodies are linear, then angular.
 struct ContactRow {
   double a[6], b[6];
   double stiffness = 0.0, before = 0.0;
 };
 
 ContactRow make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness, float before) {
-  const Vec3 turn_a = cross(from_a, direction), turn_b = cross(from_b, direction);
-  return {{-double(direction.x), -double(direction.y), -double(direction.z), -double(turn_a.x),
-           -double(turn_a.y), -double(turn_a.z)},
-          {double(direction.x), double(direction.y), double(direction.z), double(turn_b.x), double(turn_b.y),
-           double(turn_b.z)},
+  const Vec3 angular_a = cross(from_a, direction), angular_b = cross(from_b, direction);
+  return {{-double(direction.x), -double(direction.y), -double(direction.z), -double(angular_a.x),
+           -double(angular_a.y), -double(angular_a.z)},
+          {double(direction.x), double(direction.y), double(direction.z), double(angular_b.x),
+           double(angular_b.y), double(angular_b.z)},
           stiffness,
           double(before)};
 }
 
-// The rows of a contact: one for each point, two of friction and one of twist where the load gives them any.
+// The rows of a contact: one for each point, two of friction and one of twist if it has a load.
 struct ContactRows {
   ContactRow normal[kMaxManifoldPoints];
   ContactRow tangent[2], twist;
@@ -78,8 +81,9 @@ struct ContactRows {
   bool rubs = false;
 };
 
-// Those of friction and twist, as stiff as the contact is sideways now.
-void place_friction(const ContactConstraint& constraint, const StructureScratch& work, ContactRows& rows) {
+// Friction and twist rows with the present tangential stiffness.
+void prepare_friction_rows(const ContactConstraint& constraint, const StructureScratch& work,
+                           ContactRows& rows) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal, from_b = work.impulse.friction_from_b;
   const Vec3 from_a = from_b + (manifold.points[0].from_a - manifold.points[0].from_b);
@@ -93,7 +97,7 @@ void place_friction(const ContactConstraint& constraint, const StructureScratch&
                 double(work.before.twist)};
 }
 
-void place_rows(const ContactConstraint& constraint, const StructureScratch& work, ContactRows& rows) {
+void prepare_rows(const ContactConstraint& constraint, const StructureScratch& work, ContactRows& rows) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal;
   for (int k = 0; k < manifold.count; ++k) {
@@ -103,36 +107,36 @@ void place_rows(const ContactConstraint& constraint, const StructureScratch& wor
   rows.u = any_perpendicular(n);
   rows.v = cross(n, rows.u);
   rows.rubs = constraint.static_friction > 0.0f && work.touching != 0;
-  if (rows.rubs) place_friction(constraint, work, rows);
+  if (rows.rubs) prepare_friction_rows(constraint, work, rows);
 }
 
-// Whether the sweeps left every body as good as at rest.
-bool is_still(const RestingStructure& s, const StructureSolve& solve) {
-  const float factor = s.held ? kHeldStill : 1.0f;
+// True if the iterations left every body practically at rest.
+bool is_at_rest(const RestingStructure& s, const StructureSolve& solve) {
+  const float factor = s.was_rigid ? kRigidRestFactor : 1.0f;
   for (const StructureNode& node : s.nodes) {
     const BodyMotion& motion = solve.motion[node.body];
-    if (largest(absolute(motion.linear_velocity)) > factor * node.still) return false;
-    if (largest(absolute(motion.angular_velocity)) > factor * node.still_spin) return false;
+    if (largest(absolute(motion.linear_velocity)) > factor * node.rest_speed) return false;
+    if (largest(absolute(motion.angular_velocity)) > factor * node.rest_spin) return false;
   }
   return true;
 }
 
-void stop(const RestingStructure& s, const StructureSolve& solve) {
+void halt(const RestingStructure& s, const StructureSolve& solve) {
   for (const StructureNode& node : s.nodes) {
     BodyMotion& motion = solve.motion[node.body];
     motion.linear_velocity = motion.angular_velocity = {};
   }
 }
 
-// From now on its contacts are no springs,
-void hold(const RestingStructure& s, const StructureSolve& solve) {
+// Makes the contacts of the structure rigid.
+void make_rigid(const RestingStructure& s, const StructureSolve& solve) {
   for (const StructureContact& contact : s.contacts) {
     solve.constraints[contact.constraint].manifold->load_age = kRigidContactAge;
-    solve.kernels->harden(solve.blocks, int(contact.block), int(contact.lane));
+    solve.kernels->make_rigid(solve.blocks, int(contact.block), int(contact.lane));
   }
 }
-// and from now on they are.
-void release(const RestingStructure& s, const StructureSolve& solve) {
+// Makes its rigid contacts soft again.
+void make_soft(const RestingStructure& s, const StructureSolve& solve) {
   for (const StructureContact& contact : s.contacts) {
     Manifold& manifold = *solve.constraints[contact.constraint].manifold;
     if (manifold.load_age >= kRigidContactAge) manifold.load_age = kReleasedAge;
@@ -143,34 +147,34 @@ class Solver {
  public:
   Solver(RestingStructure& structure, const StructureSolve& solve) : s_(structure), solve_(solve) {}
 
-  // Finds impulses that stop everything; false if it cannot. Newton's method on the springs' energy, which is convex: pieces of
-  // parabolas that meet where points let go.
+  // Finds impulses that stop everything; false if it cannot. Newton's method on the energy of the springs,
+  // which is convex: pieces of parabolas that meet where points become inactive.
   bool find() {
     if (!plan()) return false;
-    if (!s_.begun) begin();
+    if (!s_.has_scratch) begin();
     if (!touches_all()) return false;
     gather_loads();
-    for (double& x : place_) x = 0.0;
-    const bool is_dear = plan_.work > kDear;
-    const double progress = is_dear ? kProgressIfDear : 1.0;
-    const int rounds = max_rounds(), max_stuck = is_dear ? kMaxStuckIfDear : kMaxStuck;
-    double least = kEndless;
+    for (double& x : displacement_) x = 0.0;
+    const bool is_expensive = plan_.work > kExpensiveWork;
+    const double progress = is_expensive ? kProgressIfExpensive : 1.0;
+    const int rounds = max_rounds(), max_stuck = is_expensive ? kMaxStuckIfExpensive : kMaxStuck;
+    double smallest = kInfinite;
     int stuck = 0;
-    bool holds = false;
+    bool is_balanced = false;
     for (int round = 0; round < rounds && stuck < max_stuck; ++round) {
       assemble();
       factor_blocks(plan_, values_, room_);
-      find_way();
-      solve_blocks(plan_, values_, way_);
-      go(find_step());
-      give_friction();
-      const double left = left_over();
-      if (left <= kExactShare || (holds && left <= 1.0)) return is_thrust_borne();
-      holds = left <= 1.0;
-      stuck = left < progress * least ? 0 : stuck + 1;
-      least = min(least, left);
+      find_residual();
+      solve_blocks(plan_, values_, direction_);
+      take_step(find_step());
+      limit_friction();
+      const double residual = max_residual();
+      if (residual <= kExactShare || (is_balanced && residual <= 1.0)) return is_thrust_allowed();
+      is_balanced = residual <= 1.0;
+      stuck = residual < progress * smallest ? 0 : stuck + 1;
+      smallest = min(smallest, residual);
     }
-    return holds && is_thrust_borne();
+    return is_balanced && is_thrust_allowed();
   }
 
   void write() const {
@@ -182,7 +186,7 @@ class Solver {
 
  private:
   int max_rounds() const {
-    if (s_.fresh && plan_.work > kDear) return kMaxRoundsIfFresh;
+    if (s_.is_new && plan_.work > kExpensiveWork) return kMaxRoundsIfNew;
     const std::uint64_t affordable = kMaxWork / (plan_.work + 1);
     return int(min(std::uint64_t(kMaxRounds), max(std::uint64_t(kMinRounds), affordable)));
   }
@@ -203,15 +207,15 @@ class Solver {
     values_ = arena.make<double>(plan_.values);
     room_ = arena.make<double>(factor_room(plan_));
     loads_ = arena.make<double>(plan_.rows);
-    place_ = arena.make<double>(plan_.rows);
-    way_ = arena.make<double>(plan_.rows);
+    displacement_ = arena.make<double>(plan_.rows);
+    direction_ = arena.make<double>(plan_.rows);
     rows_ = arena.make<ContactRows>(s_.contacts.size());
     return true;
   }
 
-  // Every point bears, but those that are ahead of their contact: they never will.
+  // All points are active, except those that do not touch and never will.
   void begin() {
-    s_.begun = true;
+    s_.has_scratch = true;
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const ContactConstraint& c = constraint(i);
       StructureScratch& work = s_.work[i] = {};
@@ -223,17 +227,17 @@ class Solver {
     }
   }
 
-  // A body that touches nothing falls.
+  // A body without any touching point falls.
   bool touches_all() {
-    for (double& x : way_) x = 0.0;
+    for (double& x : direction_) x = 0.0;
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       if (s_.work[i].touching == 0) continue;
       for (const std::uint32_t node : {s_.contacts[i].node_a, s_.contacts[i].node_b}) {
-        if (node != kNoNode) rows_at(way_, node)[0] = 1.0;
+        if (node != kNoNode) rows_at(direction_, node)[0] = 1.0;
       }
     }
     for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
-      if (rows_at(way_, i)[0] == 0.0) return false;
+      if (rows_at(direction_, i)[0] == 0.0) return false;
     }
     return true;
   }
@@ -244,7 +248,7 @@ class Solver {
   const BlockColumn& column(std::uint32_t node) const { return plan_.columns[plan_.index_of[node]]; }
   double* rows_at(std::span<double> x, std::uint32_t node) const { return x.data() + column(node).row; }
 
-  // What the contacts must bear: what they do, less the momentum that is left over.
+  // The load of the contacts: their present impulses minus the remaining momentum.
   void gather_loads() {
     for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
       const StructureNode& node = s_.nodes[i];
@@ -259,19 +263,19 @@ class Solver {
       StructureScratch& work = s_.work[i];
       solve_.kernels->read_impulse(solve_.blocks, int(contact.block), int(contact.lane), work.before);
       add_wrench(contact, constraint(i), work.before, 1.0, loads_);
-      // A contact that bore nothing yet begins with all its points.
-      std::uint8_t loaded = 0;
+      // A contact without load begins with all its points.
+      std::uint8_t was_loaded = 0;
       for (int k = 0; k < kMaxManifoldPoints; ++k) {
         if ((work.touching >> k & 1) == 0) work.before.normal[k] = 0.0f;
-        if (work.before.normal[k] > 0.0f) loaded = std::uint8_t(loaded | 1u << k);
+        if (work.before.normal[k] > 0.0f) was_loaded = std::uint8_t(was_loaded | 1u << k);
       }
-      work.pressed = loaded != 0 ? loaded : work.touching;
+      work.loaded = was_loaded != 0 ? was_loaded : work.touching;
       work.impulse = work.before;
-      place_rows(constraint(i), work, rows_[i]);
+      prepare_rows(constraint(i), work, rows_[i]);
     }
   }
 
-  // Adds what the impulses do to both bodies.
+  // Adds the effect of the impulses on both bodies.
   void add_wrench(const StructureContact& contact, const ContactConstraint& c, const ContactImpulse& impulse,
                   double factor, std::span<double> x) const {
     const Manifold& manifold = *c.manifold;
@@ -290,15 +294,17 @@ class Solver {
     }
     const Vec3 from_b = impulse.friction_from_b;
     add(impulse.friction, from_b + (manifold.points[0].from_a - manifold.points[0].from_b), from_b, 1.0f);
-    const Vec3 turn = impulse.twist * manifold.normal + impulse.rolling;
-    const double turns[3] = {factor * double(turn.x), factor * double(turn.y), factor * double(turn.z)};
+    const Vec3 torsion = impulse.twist * manifold.normal + impulse.rolling;
+    const double torsions[3] = {factor * double(torsion.x), factor * double(torsion.y),
+                                factor * double(torsion.z)};
     for (int j = 0; j < 3; ++j) {
-      if (contact.node_a != kNoNode) rows_at(x, contact.node_a)[3 + j] -= turns[j];
-      if (contact.node_b != kNoNode) rows_at(x, contact.node_b)[3 + j] += turns[j];
+      if (contact.node_a != kNoNode) rows_at(x, contact.node_a)[3 + j] -= torsions[j];
+      if (contact.node_b != kNoNode) rows_at(x, contact.node_b)[3 + j] += torsions[j];
     }
   }
 
-  // The second derivative of the energy; points that do not bear keep a trace of stiffness, so that what nothing holds has one.
+  // The second derivative of the energy. Inactive points keep a trace of stiffness, so that free bodies have
+  // one.
   void assemble() {
     for (double& value : values_) value = 0.0;
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
@@ -307,7 +313,7 @@ class Solver {
       const ContactRows& rows = rows_[i];
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         if ((work.touching >> k & 1) == 0) continue;
-        add_row(contact, rows.normal[k], (work.pressed >> k & 1) != 0 ? 1.0 : kTrace);
+        add_row(contact, rows.normal[k], (work.loaded >> k & 1) != 0 ? 1.0 : kInactiveStiffness);
       }
       if (!rows.rubs) continue;
       for (const ContactRow* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist})
@@ -325,8 +331,8 @@ class Solver {
     add_outer_six(values + contact.coupling.offset, a_first ? row.a : row.b, a_first ? row.b : row.a, stiffness);
   }
 
-  // How far the bodies' moves `x` press the row together.
-  double along(const StructureContact& contact, const ContactRow& row, std::span<double> x) const {
+  // Compression of the row by the displacements `x` of the bodies.
+  double row_displacement(const StructureContact& contact, const ContactRow& row, std::span<double> x) const {
     double sum = 0.0;
     if (contact.node_a != kNoNode) {
       const double* moves = rows_at(x, contact.node_a);
@@ -338,9 +344,9 @@ class Solver {
     }
     return sum;
   }
-  // What the row bears where the bodies are now.
-  double borne(const StructureContact& contact, const ContactRow& row) const {
-    return row.before + row.stiffness * along(contact, row, place_);
+  // The impulse of the row at the present displacement.
+  double row_impulse(const StructureContact& contact, const ContactRow& row) const {
+    return row.before + row.stiffness * row_displacement(contact, row, displacement_);
   }
   void add_to(std::span<double> x, const StructureContact& contact, const ContactRow& row,
               double amount) const {
@@ -352,56 +358,57 @@ class Solver {
     }
   }
 
-  // What is not borne yet.
-  void find_way() {
-    std::copy(loads_.begin(), loads_.end(), way_.begin());
+  // The residual load.
+  void find_residual() {
+    std::copy(loads_.begin(), loads_.end(), direction_.begin());
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
       const StructureScratch& work = s_.work[i];
       const ContactRows& rows = rows_[i];
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         if ((work.touching >> k & 1) == 0) continue;
-        add_to(way_, contact, rows.normal[k], -max(borne(contact, rows.normal[k]), 0.0));
+        add_to(direction_, contact, rows.normal[k], -max(row_impulse(contact, rows.normal[k]), 0.0));
       }
       if (!rows.rubs) continue;
       for (const ContactRow* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
-        add_to(way_, contact, *row, -borne(contact, *row));
+        add_to(direction_, contact, *row, -row_impulse(contact, *row));
       }
     }
   }
 
-  // How far to go along `way_`: to where the energy is least. Its derivative grows, in straight pieces.
+  // The step along `direction_` to the minimum of the energy, whose derivative grows in straight pieces.
   double find_step() {
     slope_ = curve_ = 0.0;
-    for (std::size_t j = 0; j < way_.size(); ++j) slope_ -= loads_[j] * way_[j];
+    for (std::size_t j = 0; j < direction_.size(); ++j) slope_ -= loads_[j] * direction_[j];
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
       StructureScratch& work = s_.work[i];
       const ContactRows& rows = rows_[i];
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
-        work.at[k] = work.ahead[k] = 0.0;
+        work.at[k] = work.rate[k] = 0.0;
         if ((work.touching >> k & 1) == 0) continue;
-        work.at[k] = borne(contact, rows.normal[k]);
-        work.ahead[k] = along(contact, rows.normal[k], way_);
+        work.at[k] = row_impulse(contact, rows.normal[k]);
+        work.rate[k] = row_displacement(contact, rows.normal[k], direction_);
       }
       if (!rows.rubs) continue;
       for (const ContactRow* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
-        const double ahead = along(contact, *row, way_);
-        slope_ += borne(contact, *row) * ahead;
-        curve_ += row->stiffness * ahead * ahead;
+        const double rate = row_displacement(contact, *row, direction_);
+        slope_ += row_impulse(contact, *row) * rate;
+        curve_ += row->stiffness * rate * rate;
       }
     }
     const double start = absolute(slope_at(0.0).value);
     double low = 0.0, high = 1.0;
     Slope here = slope_at(high);
-    if (absolute(here.value) <= kFlat * start) return high;
+    if (absolute(here.value) <= kFlatSlope * start) return high;
     while (here.value < 0.0 && high < kLongestStep) {
       low = high, high *= 2.0;
       here = slope_at(high);
     }
-    // Newton's method ends as soon as it meets the right piece; where it leads out of the bracket, that is halved.
+    // Newton's method ends as soon as it meets the right piece; outside the bracket it bisects.
     double t = high;
-    for (int cut = 0; cut < kCuts && low < high && absolute(here.value) > kRounding * start; ++cut) {
+    for (int cut = 0; cut < kMaxBisections && low < high && absolute(here.value) > kRoundingSlope * start;
+         ++cut) {
       (here.value < 0.0 ? low : high) = t;
       const double next = t - here.value / here.growth;
       t = next > low && next < high ? next : 0.5 * (low + high);
@@ -409,7 +416,7 @@ class Solver {
     }
     return t;
   }
-  // The energy's derivative along the way, and how fast that grows.
+  // The derivative of the energy along the direction, and its growth.
   struct Slope {
     double value, growth;
   };
@@ -417,29 +424,29 @@ class Solver {
     Slope slope{slope_ + t * curve_, curve_};
     for (const StructureScratch& work : s_.work) {
       for (int k = 0; k < kMaxManifoldPoints; ++k) {
-        const double press = work.at[k] + t * work.ahead[k];
-        slope.value += press > 0.0 ? press * work.ahead[k] : 0.0;
-        slope.growth += press > 0.0 ? square(work.ahead[k]) : 0.0;
+        const double press = work.at[k] + t * work.rate[k];
+        slope.value += press > 0.0 ? press * work.rate[k] : 0.0;
+        slope.growth += press > 0.0 ? square(work.rate[k]) : 0.0;
       }
     }
     return slope;
   }
 
-  void go(double t) {
-    for (std::size_t j = 0; j < place_.size(); ++j) place_[j] += t * way_[j];
+  void take_step(double t) {
+    for (std::size_t j = 0; j < displacement_.size(); ++j) displacement_[j] += t * direction_[j];
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       StructureScratch& work = s_.work[i];
-      work.pressed = 0;
+      work.loaded = 0;
       for (int k = 0; k < kMaxManifoldPoints; ++k) {
-        const double press = work.at[k] + t * work.ahead[k];
-        if (press > 0.0) work.pressed = std::uint8_t(work.pressed | 1u << k);
+        const double press = work.at[k] + t * work.rate[k];
+        if (press > 0.0) work.loaded = std::uint8_t(work.loaded | 1u << k);
         work.impulse.normal[k] = float(max(press, 0.0));
       }
     }
   }
 
-  // Friction and twist of all contacts, no more than there can be; those that were asked for more give way sideways.
-  void give_friction() {
+  // Clamps friction and twist of all contacts to their limits, and softens those beyond.
+  void limit_friction() {
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
       const ContactConstraint& c = constraint(i);
@@ -451,12 +458,12 @@ class Solver {
       double load = 0.0;
       for (const float normal : impulse.normal) load += double(normal);
       if (!rows.rubs || !(load > 0.0)) continue;
-      const double u = borne(contact, rows.tangent[0]), v = borne(contact, rows.tangent[1]);
-      const double twist = borne(contact, rows.twist);
+      const double u = row_impulse(contact, rows.tangent[0]), v = row_impulse(contact, rows.tangent[1]);
+      const double twist = row_impulse(contact, rows.twist);
       const double limit = double(impulse.twist_per_normal) * load;
       const double slide = std::sqrt(u * u + v * v) / (double(c.static_friction) * load);
-      const double turn = limit > 0.0 ? twist / limit : 0.0;
-      const double use = std::sqrt(slide * slide + turn * turn);
+      const double twist_use = limit > 0.0 ? twist / limit : 0.0;
+      const double use = std::sqrt(slide * slide + twist_use * twist_use);
       const double share = use > 1.0 ? 1.0 / use : 1.0;
       impulse.friction = float(share * u) * rows.u + float(share * v) * rows.v;
       impulse.twist = float(share * twist);
@@ -465,71 +472,71 @@ class Solver {
       work.shear = max(work.shear * rest, kMinShear);
       work.before.friction *= rest;
       work.before.twist *= rest;
-      place_friction(c, work, rows);
+      prepare_friction_rows(c, work, rows);
     }
   }
 
-  // The most that a body has left to be borne, over what it may: bodies that could still move have no load to do so.
-  double left_over() {
-    std::copy(loads_.begin(), loads_.end(), way_.begin());
+  // The largest residual of a body over its tolerance: a body that could still move has no load for it.
+  double max_residual() {
+    std::copy(loads_.begin(), loads_.end(), direction_.begin());
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
-      add_wrench(s_.contacts[i], constraint(i), s_.work[i].impulse, -1.0, way_);
+      add_wrench(s_.contacts[i], constraint(i), s_.work[i].impulse, -1.0, direction_);
     }
-    double most = 0.0;
+    double largest = 0.0;
     for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
       const StructureNode& node = s_.nodes[i];
-      const double* rest = rows_at(way_, i);
+      const double* rest = rows_at(direction_, i);
       const double speed = length_of(rest) / double(node.mass);
       const double spin =
           length_of(rest + 3) / double(min(node.inertia.xx, min(node.inertia.yy, node.inertia.zz)));
-      const double left = max(speed / double(node.still), spin / double(node.still_spin)) / kResidual;
-      if (!(speed + spin < kEndless)) return kEndless;  // no number
-      most = max(most, left);
+      const double left = max(speed / double(node.rest_speed), spin / double(node.rest_spin)) / kResidual;
+      if (!(speed + spin < kInfinite)) return kInfinite;  // not a number
+      largest = max(largest, left);
     }
-    return most;
+    return largest;
   }
-  bool is_thrust_borne() const {
-    double weight = 0.0, most = 0.0;
+  bool is_thrust_allowed() const {
+    double weight = 0.0, largest = 0.0;
     for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) weight += length_of(rows_at(loads_, i));
     for (const StructureScratch& work : s_.work)
-      for (const float normal : work.impulse.normal) most = max(most, double(normal));
-    return most <= kMaxThrust * weight;
+      for (const float normal : work.impulse.normal) largest = max(largest, double(normal));
+    return largest <= kMaxThrust * weight;
   }
   static double length_of(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
   RestingStructure& s_;
   const StructureSolve& solve_;
   BlockPlan plan_;
-  double slope_ = 0.0, curve_ = 0.0;  // of the energy along the way, without its points
-  std::span<double> values_, room_, loads_, place_, way_;
+  double slope_ = 0.0, curve_ = 0.0;  // of the energy along the direction, without points
+  std::span<double> values_, room_, loads_, displacement_, direction_;
   std::span<ContactRows> rows_;  // by contact
 };
 
-// Brings the structure to rest; false if its contacts cannot.
+// Stops the structure; false if its contacts cannot.
 bool bring_to_rest(RestingStructure& structure, const StructureSolve& solve) {
-  if (!is_still(structure, solve)) {
+  if (!is_at_rest(structure, solve)) {
     const ArenaScope scope(*solve.arena);
     Solver solver(structure, solve);
     if (!solver.find()) return false;
     solver.write();
   }
-  stop(structure, solve);
+  halt(structure, solve);
   return true;
 }
 
 }  // namespace
 
 void solve_structure_first(RestingStructure& structure, const StructureSolve& solve) {
-  if (structure.settling) return;
-  structure.solved = bring_to_rest(structure, solve);
-  structure.solved ? hold(structure, solve) : release(structure, solve);
+  if (structure.is_settling) return;
+  structure.is_solved = bring_to_rest(structure, solve);
+  structure.is_solved ? make_rigid(structure, solve) : make_soft(structure, solve);
 }
 
 void solve_structure_last(RestingStructure& structure, const StructureSolve& solve) {
-  if (structure.solved) {
+  if (structure.is_solved) {
     bring_to_rest(structure, solve);
-  } else if (structure.settling) {
-    bring_to_rest(structure, solve) ? hold(structure, solve) : release(structure, solve);
+  } else if (structure.is_settling) {
+    bring_to_rest(structure, solve) ? make_rigid(structure, solve) : make_soft(structure, solve);
   }
 }
 

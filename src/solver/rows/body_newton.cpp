@@ -7,12 +7,12 @@ namespace gyre {
 
 namespace {
 
-// A number for each of the velocities that a row sees: a's three and three of turning, then b's.
-constexpr int kSeen = 12;
+// Velocities in a row of J: linear and angular of a, then of b.
+constexpr int kJacobianSize = 12;
 
 using Pair = WideDouble<2>;
 
-// to += by values, of C numbers.
+// to += by values, for C numbers.
 template <int C>
 void add_times(const double* values, double by, double* to) {
   const Pair wide(by);
@@ -21,10 +21,10 @@ void add_times(const double* values, double by, double* to) {
     (Pair::load_loose(to + k) + wide * Pair::load_loose(values + k)).store_loose(to + k);
 }
 
-// block += push gain^T.
-void add_product(const double* direction, const double* gain, double* block) {
+// block += column gain^T.
+void add_product(const double* column, const double* gain, double* block) {
   GYRE_UNROLL
-  for (int r = 0; r < kLuBlock; ++r) add_times<kLuBlock>(gain, direction[r], block + r * kLuBlock);
+  for (int r = 0; r < kLuBlock; ++r) add_times<kLuBlock>(gain, column[r], block + r * kLuBlock);
 }
 
 class BodyNewton {
@@ -36,7 +36,7 @@ class BodyNewton {
         step_(room.take(problem.plan->rows)),
         velocities_(room.take(problem.plan->rows)),
         constants_(room.take(rows())),
-        gains_(room.take(kSeen * rows())) {}
+        gains_(room.take(kJacobianSize * rows())) {}
 
   std::size_t rows() const { return p_.rows.size(); }
   double residual_of(int i, std::span<const double> x, std::span<const double> w) const {
@@ -50,29 +50,29 @@ class BodyNewton {
     for (std::size_t i = 0; i < p_.bodies.size(); ++i)
       for (std::size_t k = 0; k < kLuBlock; ++k)
         velocities_[kLuBlock * i + k] = velocities_of(p_.bodies[i])[k];
-    direction(x);
+    add_impulses(x);
     for (std::size_t i = 0; i < rows(); ++i)
-      w[i] = seen(p_.rows[i]) - p_.rows[i].target_speed + p_.rows[i].compliance * x[i];
+      w[i] = speed_of_row(p_.rows[i]) - p_.rows[i].target_speed + p_.rows[i].compliance * x[i];
   }
   void find_change(std::span<const double> dx, std::span<double> dw) const {
     for (double& value : velocities_) value = 0.0;
-    direction(dx);
-    for (std::size_t i = 0; i < rows(); ++i) dw[i] = seen(p_.rows[i]) + p_.rows[i].compliance * dx[i];
+    add_impulses(dx);
+    for (std::size_t i = 0; i < rows(); ++i) dw[i] = speed_of_row(p_.rows[i]) + p_.rows[i].compliance * dx[i];
   }
 
-  bool find_step(std::span<const double> x, std::span<const double> w, double near, std::span<double> dx) {
-    // What loads are made of first.
+  bool find_step(std::span<const double> x, std::span<const double> w, double damping, std::span<double> dx) {
+    // Rows that make up loads come first.
     for (const bool of_loads : {true, false}) {
       for (std::size_t i = 0; i < rows(); ++i) {
         const RowKind kind = p_.rows[i].limits.kind;
-        if (kind != RowKind::cone_second && (kind == RowKind::box) == of_loads) resolve(i, x, w, near);
+        if (kind != RowKind::cone_second && (kind == RowKind::box) == of_loads) resolve(i, x, w, damping);
       }
     }
     assemble();
     if (!factor_lu(lu_)) return false;
     solve_lu(lu_, step_);
     for (std::size_t i = 0; i < rows(); ++i) {
-      const double* const gain = &gains_[kSeen * i];
+      const double* const gain = &gains_[kJacobianSize * i];
       dx[i] = constants_[i];
       if (is_idle(gain)) continue;
       double sum = constants_[i];
@@ -86,17 +86,17 @@ class BodyNewton {
   }
 
  private:
-  // dx = constant - gain dv of row i, and of the second of a cone.
-  void resolve(std::size_t i, std::span<const double> x, std::span<const double> w, double near) {
+  // dx = constant - gain dv of row i, and of the second row of a cone.
+  void resolve(std::size_t i, std::span<const double> x, std::span<const double> w, double damping) {
     const Row& row = p_.rows[i];
     const RowLimits& limits = row.limits;
     const bool is_cone = limits.kind == RowKind::cone;
     const std::size_t count = is_cone ? 2 : 1;
-    MapPoint at{{x[i], 0.0}, {w[i], 0.0}, row.diagonal, 0.0, near};
+    MapPoint at{{x[i], 0.0}, {w[i], 0.0}, row.diagonal, 0.0, damping};
     if (is_cone) at.x[1] = x[i + 1], at.w[1] = w[i + 1], at.rate = max(at.rate, p_.rows[i + 1].diagonal);
     if (limits.kind != RowKind::box) at.load = load_of(limits, [&](int j) { return x[std::size_t(j)]; });
     const MapEquations e = is_cone ? cone_equations(limits, *p_.friction, at) : scalar_equation(limits, at);
-    // (own + speed give) dx = right - speed J dv - load dL.
+    // (own + speed compliance) dx = right - speed J dv - load dL.
     double own[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
     for (std::size_t r = 0; r < count; ++r) {
       for (std::size_t k = 0; k < count; ++k)
@@ -109,20 +109,20 @@ class BodyNewton {
       inverse[1][0] = -own[1][0] / d, inverse[1][1] = own[0][0] / d;
     }
     for (std::size_t r = 0; r < count; ++r) {
-      double* const gain = &gains_[kSeen * (i + r)];
-      for (std::size_t k = 0; k < kSeen; ++k) gain[k] = 0.0;
+      double* const gain = &gains_[kJacobianSize * (i + r)];
+      for (std::size_t k = 0; k < kJacobianSize; ++k) gain[k] = 0.0;
       double constant = 0.0, of_load = 0.0;
       for (std::size_t k = 0; k < count; ++k) {
         constant += inverse[r][k] * e.right[k];
         of_load += inverse[r][k] * e.load[k];
         double by = 0.0;
         for (std::size_t m = 0; m < count; ++m) by += inverse[r][m] * e.speed[m][k];
-        if (by != 0.0) add_times<kSeen>(seen_of(p_.rows[i + k]), by, gain);
+        if (by != 0.0) add_times<kJacobianSize>(jacobian_of(p_.rows[i + k]), by, gain);
       }
       for (std::int32_t k = 0; of_load != 0.0 && k < limits.load_count; ++k) {
         const std::size_t j = std::size_t(limits.load_first + k);
         constant -= of_load * constants_[j];
-        for (std::size_t m = 0; m < kSeen; ++m) gain[m] -= of_load * gains_[kSeen * j + m];
+        for (std::size_t m = 0; m < kJacobianSize; ++m) gain[m] -= of_load * gains_[kJacobianSize * j + m];
       }
       constants_[i + r] = constant;
     }
@@ -139,29 +139,29 @@ class BodyNewton {
     BlockLocation between;
     for (std::size_t i = 0; i < rows(); ++i) {
       const Row& row = p_.rows[i];
-      const double* const gain = &gains_[kSeen * i];
-      const double* const push_a = gains_of(row);
-      const double* const push_b = push_a + kLuBlock;
+      const double* const gain = &gains_[kJacobianSize * i];
+      const double* const gains_a = gains_of(row);
+      const double* const gains_b = gains_a + kLuBlock;
       if (constants_[i] != 0.0) {
-        if (row.body_a != kNoRowBody) add_times<kLuBlock>(push_a, constants_[i], at(row.body_a));
-        if (row.body_b != kNoRowBody) add_times<kLuBlock>(push_b, constants_[i], at(row.body_b));
+        if (row.body_a != kNoRowBody) add_times<kLuBlock>(gains_a, constants_[i], at(row.body_a));
+        if (row.body_b != kNoRowBody) add_times<kLuBlock>(gains_b, constants_[i], at(row.body_b));
       }
-      // Limits that are not reached, which are most rows of a crowd's joints.
+      // Inactive limits, which are most rows of joints in a crowd.
       if (is_idle(gain)) continue;
-      if (row.body_a != kNoRowBody) add_product(push_a, gain, &lu_.lower[column_of(row.body_a).diagonal]);
+      if (row.body_a != kNoRowBody) add_product(gains_a, gain, &lu_.lower[column_of(row.body_a).diagonal]);
       if (row.body_b != kNoRowBody)
-        add_product(push_b, gain + kLuBlock, &lu_.lower[column_of(row.body_b).diagonal]);
+        add_product(gains_b, gain + kLuBlock, &lu_.lower[column_of(row.body_b).diagonal]);
       if (row.body_a == kNoRowBody || row.body_b == kNoRowBody) continue;
       if (row.body_a != last_a || row.body_b != last_b) {
         last_a = row.body_a, last_b = row.body_b;
         between = find_block(*lu_.plan, std::uint32_t(last_a), std::uint32_t(last_b));
       }
-      add_product(push_a, gain + kLuBlock, &(between.first_is_row ? lu_.lower : lu_.upper)[between.offset]);
-      add_product(push_b, gain, &(between.first_is_row ? lu_.upper : lu_.lower)[between.offset]);
+      add_product(gains_a, gain + kLuBlock, &(between.first_is_row ? lu_.lower : lu_.upper)[between.offset]);
+      add_product(gains_b, gain, &(between.first_is_row ? lu_.upper : lu_.lower)[between.offset]);
     }
   }
   static bool is_idle(const double* gain) {
-    for (std::size_t k = 0; k < kSeen; ++k) {
+    for (std::size_t k = 0; k < kJacobianSize; ++k) {
       if (gain[k] != 0.0) return false;
     }
     return true;
@@ -170,11 +170,11 @@ class BodyNewton {
   const BlockColumn& column_of(std::int32_t body) const {
     return lu_.plan->columns[lu_.plan->index_of[std::size_t(body)]];
   }
-  // Where the body's part of the step lies; null if no row moves it.
+  // The part of the step of the body; null if no row moves it.
   double* at(std::int32_t body) const { return body == kNoRowBody ? nullptr : &step_[column_of(body).row]; }
 
-  // Adds what impulses do to the velocities.
-  void direction(std::span<const double> impulses) const {
+  // Adds the effect of impulses to the velocities.
+  void add_impulses(std::span<const double> impulses) const {
     for (std::size_t i = 0; i < rows(); ++i) {
       if (impulses[i] == 0.0) continue;
       const Row& row = p_.rows[i];
@@ -185,14 +185,14 @@ class BodyNewton {
         add_times<kLuBlock>(gains + kLuBlock, impulses[i], &velocities_[kLuBlock * std::size_t(row.body_b)]);
     }
   }
-  double seen(const Row& row) const {
+  double speed_of_row(const Row& row) const {
     double sum = 0.0;
     const auto add = [&](std::int32_t body, const double* all) {
       const double* const v = &velocities_[kLuBlock * std::size_t(body)];
       for (int k = 0; k < kLuBlock; ++k) sum += all[k] * v[k];
     };
-    if (row.body_a != kNoRowBody) add(row.body_a, seen_of(row));
-    if (row.body_b != kNoRowBody) add(row.body_b, seen_of(row) + kLuBlock);
+    if (row.body_a != kNoRowBody) add(row.body_a, jacobian_of(row));
+    if (row.body_b != kNoRowBody) add(row.body_b, jacobian_of(row) + kLuBlock);
     return sum;
   }
 
@@ -204,7 +204,7 @@ class BodyNewton {
 }  // namespace
 
 std::size_t body_newton_room(std::size_t rows, const BlockPlan& plan) {
-  return 2 * plan.values + 3 * plan.rows + (1 + kSeen) * rows + newton_search_room(rows);
+  return 2 * plan.values + 3 * plan.rows + (1 + kJacobianSize) * rows + newton_search_room(rows);
 }
 
 NewtonResult solve_body_newton(const RowProblem& problem, double tolerance, int max_steps,

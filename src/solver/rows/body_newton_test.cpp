@@ -1,4 +1,5 @@
-// Newton's method by bodies against pivoting, against itself by rows, and on islands that no dense method bears.
+// Newton's method by bodies against pivoting, against the method by rows, and on islands too large for dense
+// methods.
 #include "solver/rows/body_newton.h"
 
 #include "solver/rows/rows_test_kit.h"
@@ -26,7 +27,7 @@ Solved solve_by_bodies(const Island& island, const FrictionSet& friction, double
 }
 
 TEST(BodyNewton, MakesTheStepsOfTheDenseMethod) {
-  // From the same impulses and by the same rules, so after as many steps both stand at the same place but for rounding.
+  // Both start from the same impulses and follow the same rules, so equal numbers of steps agree to rounding.
   for (const int sides : {0, 8}) {
     const FrictionSet set = make_friction_set(sides);
     for (int seed = 0; seed < 40; ++seed) {
@@ -35,10 +36,10 @@ TEST(BodyNewton, MakesTheStepsOfTheDenseMethod) {
       std::vector<double> by_rows(dense.q.size(), 0.0), numbers(newton_room(dense.q.size()));
       solve_newton(dense.problem, 0.0, 2, by_rows, NumberRoom(numbers));
       const std::vector<double> by_bodies = solve_by_bodies(island, set, 0.0, 2).x;
-      double most = 1.0;
-      for (const double x : by_rows) most = std::max(most, std::abs(x));
+      double largest = 1.0;
+      for (const double x : by_rows) largest = std::max(largest, std::abs(x));
       for (std::size_t i = 0; i < by_rows.size(); ++i)
-        EXPECT_NEAR(by_bodies[i], by_rows[i], 1.0e-7 * most) << sides << " sides, seed " << seed;
+        EXPECT_NEAR(by_bodies[i], by_rows[i], 1.0e-7 * largest) << sides << " sides, seed " << seed;
     }
   }
 }
@@ -57,7 +58,7 @@ TEST(BodyNewton, AgreesWithPivotingOnHeaps) {
     solve_direct(dense.problem, polygon, DirectMethod::dantzig, 1.0e-9, x, NumberRoom(numbers));
     EXPECT_LT(apart(pushed(island, solved.x), pushed(island, x)), 1.0e-6) << seed;
   }
-  EXPECT_GE(ended, 54);  // from nothing: a world begins with the last impulses, and leads it by sweeps
+  EXPECT_GE(ended, 54);  // from zero; a world starts from the last impulses and some iterations
 }
 
 TEST(BodyNewton, ATowerOfTwentyBoxesStands) {

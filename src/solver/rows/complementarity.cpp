@@ -29,18 +29,18 @@ double dense_residual(const DenseProblem& problem, int i, std::span<const double
 }
 
 double find_residual(const DenseProblem& problem, std::span<const double> x, std::span<const double> w) {
-  double most = 0.0;
-  for (int i = 0; i < problem.size; ++i) most = max(most, dense_residual(problem, i, x, w));
-  return most;
+  double largest = 0.0;
+  for (int i = 0; i < problem.size; ++i) largest = max(largest, dense_residual(problem, i, x, w));
+  return largest;
 }
 
 double impulse_scale(const DenseProblem& problem) {
-  double most = 0.0;
+  double largest = 0.0;
   for (int i = 0; i < problem.size; ++i) {
     const double d = problem.at(i, i), q = problem.q[std::size_t(i)];
-    if (d > 0.0) most = max(most, (q < 0.0 ? -q : q) / d);
+    if (d > 0.0) largest = max(largest, (q < 0.0 ? -q : q) / d);
   }
-  return most;
+  return largest;
 }
 
 }  // namespace gyre

@@ -1,13 +1,15 @@
-// The complementarity problem of an island, dense, and how far a list of impulses is from solving it.
+// The dense complementarity problem of an island, and the residual of a list of impulses.
 //
-// Find x with w = A x + q complementary to x within the rows' limits (solver/rows/row.h); A = J M^-1 J^T + give is symmetric and at
-// least positive semi-definite, q is what the rows see without impulses less what is wanted.
+// Find x with w = A x + q complementary to x within the limits of the rows (solver/rows/row.h). A = J M^-1
+// J^T + compliance is symmetric and positive semi-definite; q is the speed along the rows without impulses,
+// minus the target speed.
 //
-// The residual is that of the natural map: how far each impulse, stepped against its w by w / A_ii, then brought back within
-// its limits, is from itself. It is an impulse (N s, or N m s), zero for solutions only, and holds for every method and every
-// friction set alike.
+// The residual is that of the natural map: step an impulse against its w by w / A_ii, clamp it to its limits,
+// and take the distance from the impulse. It is an impulse (N s, or N m s), it is zero only at solutions, and
+// it is defined for every method and every friction set.
 //
-// Source: F. Facchinei, J.-S. Pang, "Finite-Dimensional Variational Inequalities and Complementarity Problems", 2003, ch. 1.5.
+// Source: F. Facchinei, J.-S. Pang, "Finite-Dimensional Variational Inequalities and Complementarity
+// Problems", 2003, ch. 1.5.
 #pragma once
 
 #include "solver/rows/row.h"
@@ -26,7 +28,7 @@ struct DenseProblem {
   double at(int i, int j) const { return a[std::size_t(i) * std::size_t(size) + std::size_t(j)]; }
 };
 
-// Memory for numbers that live while a problem is solved, handed out from one piece.
+// Hands out memory for numbers from one piece.
 class NumberRoom {
  public:
   explicit NumberRoom(std::span<double> room) : room_(room) {}
@@ -44,8 +46,8 @@ double load_of(const RowLimits& limits, ImpulseOf&& impulse_of) {
   return load > 0.0 ? load : 0.0;
 }
 
-// The natural residual of row i, with `impulse_of(j)`, `speed_of(j)` = w_j and `diagonal_of(j)`; second rows of cones count with
-// their first.
+// The natural residual of row i, from `impulse_of(j)`, `speed_of(j)` = w_j and `diagonal_of(j)`. The second
+// row of a cone is covered by the first.
 template <class ImpulseOf, class SpeedOf, class DiagonalOf>
 double row_residual(int i, const RowLimits& limits, const FrictionSet& friction, ImpulseOf&& impulse_of,
                     SpeedOf&& speed_of, DiagonalOf&& diagonal_of) {
@@ -74,7 +76,7 @@ double dense_residual(const DenseProblem& problem, int i, std::span<const double
                       std::span<const double> w);
 // The largest residual of all rows; `w` belongs to `x`.
 double find_residual(const DenseProblem& problem, std::span<const double> x, std::span<const double> w);
-// What impulses are measured by: the largest that stops a row alone.
+// The scale of the impulses: the largest that stops a row alone.
 double impulse_scale(const DenseProblem& problem);
 
 }  // namespace gyre

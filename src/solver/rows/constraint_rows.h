@@ -1,15 +1,17 @@
-// Contacts and joints as scalar rows (solver/rows/row.h), and the rows' impulses back to where contacts and joints keep theirs.
+// Converts contacts and joints to scalar rows (solver/rows/row.h), and stores the impulses of the rows back
+// in contacts and joints.
 //
-// A contact has for each point the two tangents, limited together by the friction set, and then the normal: taken one after the
-// other, that points keep apart has the last word. Then the twist of the whole contact and its two rolling rows, limited by its load,
-// where its surface has these frictions. A gap of s may close within the sub-step: the normal asks for -s / h at least.
-// Overlap asks for nothing here: it is pushed apart when the step is over, without momentum.
+// A contact has two tangent rows for each point, bounded together by the friction set, and then the normal
+// rows. In this order non-penetration has the last word. Surfaces with spinning or rolling friction add a
+// twist row and two rolling rows, bounded by the load. A gap of s may close within the sub-step: the normal
+// speed is at least -s / h. Penetration adds no bias here; pushout removes it after the step, without
+// momentum.
 //
-// A joint has its equations, and for each axis on which something acts a row for each of stops, motor, friction and spring.
-// Springs that a sub-step resolves are forces (kick and drift keep their energy); stiffer ones are soft rows. Limits of drives to a
-// pose and of friction against all turning hold for each of the world's axes by itself.
+// A joint has its equations, and for each active axis a row for each limit, motor, friction and spring.
+// Springs that a sub-step resolves are forces (semi-implicit Euler keeps their energy); stiffer ones are soft
+// rows. The bounds of pose drives and of friction against all rotation hold for each world axis separately.
 //
-// In: ContactConstraint, or JointRecord with JointConstraint as placed and bent in the sub-step. Out: rows; then velocities' impulses.
+// In: ContactConstraint, or JointRecord with its prepared JointConstraint. Out: rows, then impulses.
 #pragma once
 
 #include "solver/contact/contact_block.h"
@@ -18,15 +20,16 @@
 
 namespace gyre {
 
-// An island's bodies while its rows are made.
+// The bodies of an island while its rows are made.
 struct RowFrame {
-  std::span<RowBody> bodies;            // with the velocities that the rows find
-  const std::int32_t* place = nullptr;  // by motion record: among `bodies`; kNoRowBody if no row moves it
+  std::span<RowBody> bodies;                 // with the velocities along which rows are evaluated
+  const std::int32_t* body_index = nullptr;  // by motion record: index in `bodies`; kNoRowBody if no row
+                                             // moves it
   const BodyMotion* motion = nullptr;
   double substep = 0.0;
 };
 
-// A body at rest. `locked_linear`: bits 0 to 2: not moved along the world's x, y, z.
+// A body at rest. `locked_linear`: bits 0 to 2 lock the world's x, y, z.
 inline RowBody make_row_body(const BodyInertia& inertia, std::uint8_t locked_linear) {
   const double w = double(inertia.inverse_mass);
   const Sym3& m = inertia.inverse;
@@ -37,29 +40,30 @@ inline RowBody make_row_body(const BodyInertia& inertia, std::uint8_t locked_lin
           {double(m.xx), double(m.yy), double(m.zz), double(m.xy), double(m.xz), double(m.yz)}};
 }
 
-// Rows of an island, and where the impulse of each is kept (null where several rows share what keeps them).
+// Rows of an island, and where the impulse of each is stored (null where several rows share one store).
 struct RowList {
   Row* rows = nullptr;
-  float** kept = nullptr;
+  float** stored = nullptr;
   int count = 0;
 };
 
 int count_contact_rows(const ContactConstraint& constraint);
-// `warm`: by how much impulses that were kept are scaled.
+// `warm`: scale of the accumulated impulses.
 void add_contact_rows(const ContactConstraint& constraint, const RowFrame& frame, float warm, RowList& list);
-// `rows`: those that the contact added.
-void keep_contact_impulses(const ContactConstraint& constraint, const FrictionSet& set,
-                           std::span<const Row> rows);
-// Rows of the normals alone, in displacements: how far a step pushes what overlaps. Returns whether anything does.
+// `rows`: those of this contact.
+void store_contact_impulses(const ContactConstraint& constraint, const FrictionSet& set,
+                            std::span<const Row> rows);
+// Adds normal rows in displacements: the pushout of the penetration in a step. Returns true if anything
+// penetrates.
 bool add_overlap_rows(const ContactConstraint& constraint, const RowFrame& frame, float step, RowList& list);
 
 int count_joint_rows(const JointRecord& joint, const JointDetail* detail, const JointConstraint& work);
-// Springs that are forces push the bodies of the frame at once.
+// Springs that are forces change the velocities of the frame at once.
 void add_joint_rows(JointRecord& joint, JointConstraint& work, const JointSettings& settings,
                     const RowFrame& frame, RowList& list);
-void keep_joint_impulses(JointRecord& joint, JointConstraint& work, std::span<const Row> rows,
-                         std::span<float* const> kept);
-// The equations alone, asking for nothing: what is pushed apart stays joined.
+void store_joint_impulses(JointRecord& joint, JointConstraint& work, std::span<const Row> rows,
+                          std::span<float* const> stored);
+// Adds the equations without bias, so that pushout does not open joints.
 void add_joint_equations(JointRecord& joint, JointConstraint& work, const RowFrame& frame, RowList& list);
 
 }  // namespace gyre

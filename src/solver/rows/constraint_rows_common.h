@@ -1,4 +1,4 @@
-// How contacts and joints begin and end a row.
+// The first and the last step in making a row of a contact or joint.
 #pragma once
 
 #include "solver/rows/constraint_rows.h"
@@ -6,25 +6,25 @@
 namespace gyre {
 
 inline Row& begin_row(RowList& list) {
-  list.kept[list.count] = nullptr;
+  list.stored[list.count] = nullptr;
   Row& row = list.rows[list.count++];
   row = {};
   return row;
 }
 
-// J is known. What a body that rows do not move brings along is part of what is wanted. `still`: in displacements, where such a
-// body has none.
+// Completes a row whose J is known. The velocity of a body that rows do not move becomes part of the target.
+// `still`: rows in displacements, where such a body has none.
 inline void end_row(Row& row, std::int32_t body_a, std::int32_t body_b, const RowFrame& frame,
                     bool still = false) {
-  const auto settle = [&](std::int32_t body, std::int32_t& place, DVec3 linear, DVec3 angular) {
-    place = body == kNoBody ? kNoRowBody : frame.place[body];
-    if (place != kNoRowBody || body == kNoBody || still) return;
+  const auto set_body = [&](std::int32_t body, std::int32_t& index, DVec3 linear, DVec3 angular) {
+    index = body == kNoBody ? kNoRowBody : frame.body_index[body];
+    if (index != kNoRowBody || body == kNoBody || still) return;
     const BodyMotion& motion = frame.motion[body];
     row.target_speed -=
         dot(linear, DVec3(motion.linear_velocity)) + dot(angular, DVec3(motion.angular_velocity));
   };
-  settle(body_a, row.body_a, row.linear_a, row.angular_a);
-  settle(body_b, row.body_b, row.linear_b, row.angular_b);
+  set_body(body_a, row.body_a, row.linear_a, row.angular_a);
+  set_body(body_b, row.body_b, row.linear_b, row.angular_b);
   finish_row(row, frame.bodies);
 }
 

@@ -1,17 +1,13 @@
-// Contacts as rows; joints are in joint_rows.cpp.
+// Rows of contacts; rows of joints are in joint_rows.cpp.
 #include "solver/rows/constraint_rows.h"
 #include "solver/rows/constraint_rows_common.h"
 
 #include "math/rotation.h"
+#include "solver/core/error_bounds.h"
 
 namespace gyre {
 
 namespace {
-
-// The share of an overlap beyond the slop that a step takes back, and the slop as a share of the contact's size: those of the
-// default solver (solver/contact/contact_project.h).
-constexpr double kTakenBack = 0.4;
-constexpr double kRowSlop = 6.0e-4;
 
 constexpr double kNearlyAll = 1.0 - 1.0e-6;
 
@@ -31,7 +27,7 @@ void point_row(Row& row, DVec3 axis, const ContactPointState& point) {
   row.linear_a = -axis, row.angular_a = -cross(DVec3(point.from_a), axis);
   row.linear_b = axis, row.angular_b = cross(DVec3(point.from_b), axis);
 }
-void turn_row(Row& row, DVec3 axis) {
+void angular_row(Row& row, DVec3 axis) {
   row.linear_a = row.linear_b = {};
   row.angular_a = -axis, row.angular_b = axis;
 }
@@ -41,11 +37,12 @@ const BodyMotion& motion_of(std::int32_t body, const RowFrame& frame) {
   return body == kNoBody ? kStill : frame.motion[body];
 }
 
-double gap_now(const ContactConstraint& c, const ContactPointState& point, const RowFrame& frame) {
+double current_separation(const ContactConstraint& c, const ContactPointState& point, const RowFrame& frame) {
   const BodyMotion &a = motion_of(c.body_a, frame), &b = motion_of(c.body_b, frame);
-  const DVec3 way = DVec3(b.moved) - DVec3(a.moved) + cross(DVec3(b.turned), DVec3(point.from_b)) -
-                    cross(DVec3(a.turned), DVec3(point.from_a));
-  return double(point.separation) + dot(way, DVec3(c.manifold->normal));
+  const DVec3 displacement = DVec3(b.delta_position) - DVec3(a.delta_position) +
+                             cross(DVec3(b.delta_rotation), DVec3(point.from_b)) -
+                             cross(DVec3(a.delta_rotation), DVec3(point.from_a));
+  return double(point.separation) + dot(displacement, DVec3(c.manifold->normal));
 }
 
 }  // namespace
@@ -71,7 +68,7 @@ void add_contact_rows(const ContactConstraint& c, const RowFrame& frame, float w
     row.limits = {k % 2 == 0 ? RowKind::cone : RowKind::cone_second, 0.0, 0.0, friction, normals + k / 2, 1};
     point_row(row, axis, point);
     row.target_speed = dot(DVec3(c.surface_velocity), axis);
-    // Friction is kept for the contact as a whole: points share it as they share the load.
+    // Friction is stored for the contact as a whole; points share it in proportion to the load.
     if (load > 0.0)
       row.impulse =
           double(warm) * dot(DVec3(manifold.friction_impulse), axis) * double(point.normal_impulse) / load;
@@ -82,14 +79,14 @@ void add_contact_rows(const ContactConstraint& c, const RowFrame& frame, float w
     Row& row = begin_row(list);
     row.limits.low = 0.0;
     point_row(row, axes.normal, point);
-    row.target_speed = -max(gap_now(c, point, frame), 0.0) / frame.substep;
+    row.target_speed = -max(current_separation(c, point, frame), 0.0) / frame.substep;
     row.impulse = double(warm) * double(point.normal_impulse);
     end_row(row, c.body_a, c.body_b, frame);
   }
   if (c.spinning_friction > 0.0f) {
     Row& row = begin_row(list);
     row.limits = {RowKind::load, 0.0, 0.0, double(c.spinning_friction), normals, c.point_count};
-    turn_row(row, axes.normal);
+    angular_row(row, axes.normal);
     row.impulse = double(warm) * double(manifold.twist_impulse);
     end_row(row, c.body_a, c.body_b, frame);
   }
@@ -102,13 +99,13 @@ void add_contact_rows(const ContactConstraint& c, const RowFrame& frame, float w
                   double(c.rolling_friction),
                   normals,
                   c.point_count};
-    turn_row(row, axis);
+    angular_row(row, axis);
     row.impulse = double(warm) * dot(DVec3(manifold.rolling_impulse), axis);
     end_row(row, c.body_a, c.body_b, frame);
   }
 }
 
-void keep_contact_impulses(const ContactConstraint& c, const FrictionSet& set, std::span<const Row> rows) {
+void store_contact_impulses(const ContactConstraint& c, const FrictionSet& set, std::span<const Row> rows) {
   Manifold& manifold = *c.manifold;
   const ContactAxes axes = axes_of(manifold);
   const std::size_t points = std::size_t(c.point_count), tangents = has_friction(c) ? 2 * points : 0;
@@ -125,9 +122,10 @@ void keep_contact_impulses(const ContactConstraint& c, const FrictionSet& set, s
     if (tangents == 0) continue;
     const double x = rows[2 * k].impulse, y = rows[2 * k + 1].impulse;
     friction += x * axes.tangent_1 + y * axes.tangent_2;
-    // At the limit but for rounding.
+    // At the limit, up to rounding.
     const double radius = kNearlyAll * rows[2 * k].limits.friction * normal;
-    slides = slides && (normal == 0.0 || nearest_friction(set, radius, x, y).place != FrictionPlace::inside);
+    slides =
+        slides && (normal == 0.0 || nearest_friction(set, radius, x, y).region != FrictionRegion::inside);
   }
   std::size_t next = tangents + points;
   manifold.friction_impulse = to_float(friction) + Vec3{};
@@ -144,16 +142,16 @@ void keep_contact_impulses(const ContactConstraint& c, const FrictionSet& set, s
 bool add_overlap_rows(const ContactConstraint& c, const RowFrame& frame, float step, RowList& list) {
   const Manifold& manifold = *c.manifold;
   const DVec3 normal(manifold.normal);
-  const double slop = kRowSlop * double(c.size), most = double(c.push_speed) * double(step);
+  const double slop = kPushoutSlop * double(c.size), max_pushout = double(c.pushout_speed) * double(step);
   bool overlaps = false;
   for (int k = 0; k < c.point_count; ++k) {
     const ContactPointState& point = manifold.points[k];
-    const double over = -gap_now(c, point, frame) - slop;
+    const double over = -current_separation(c, point, frame) - slop;
     overlaps = overlaps || over > 0.0;
     Row& row = begin_row(list);
     row.limits.low = 0.0;
     point_row(row, normal, point);
-    row.target_speed = over > 0.0 ? min(kTakenBack * over, most) : over;
+    row.target_speed = over > 0.0 ? min(kPushoutShare * over, max_pushout) : over;
     end_row(row, c.body_a, c.body_b, frame, true);
   }
   return overlaps;

@@ -4,7 +4,7 @@ namespace gyre {
 
 namespace {
 
-// The sides of rows are numbered: 2 i is row i's side on a, 2 i + 1 that on b.
+// Sides of rows have numbers: 2 i is the side of row i on a, 2 i + 1 that on b.
 struct Side {
   std::int32_t body;
   DVec3 linear, angular, gain_linear, gain_angular;
@@ -30,7 +30,7 @@ void fill_delassus(std::span<const Row> rows, std::size_t bodies, std::span<doub
       std::int32_t& head = first[std::size_t(side.body)];
       next[2 * i + std::size_t(s)] = head;
       head = std::int32_t(2 * i) + s;
-      // The row itself first, then those before it that act on the body.
+      // First the row itself, then earlier rows on the same body.
       for (std::int32_t other = head; other >= 0; other = next[std::size_t(other)]) {
         const std::size_t j = std::size_t(other) / 2;
         const Side by = side_of(rows[j], (other & 1) != 0);

@@ -27,27 +27,27 @@ FrictionSet make_friction_set(int sides) {
 }
 
 FrictionPoint nearest_friction(const FrictionSet& set, double radius, double x, double y) {
-  if (!(radius > 0.0)) return {0.0, 0.0, FrictionPlace::corner, 0};
+  if (!(radius > 0.0)) return {0.0, 0.0, FrictionRegion::corner, 0};
   if (set.sides == 0) {
     const double size = std::sqrt(x * x + y * y);
-    if (size <= radius) return {x, y, FrictionPlace::inside, 0};
-    return {radius / size * x, radius / size * y, FrictionPlace::rim, 0};
+    if (size <= radius) return {x, y, FrictionRegion::inside, 0};
+    return {radius / size * x, radius / size * y, FrictionRegion::rim, 0};
   }
   int far = 0;
-  double most = -1.0;
+  double largest = -1.0;
   for (int i = 0; i < set.sides; ++i) {
     const double out = x * set.side[i][0] + y * set.side[i][1];
-    if (out > most) most = out, far = i;
+    if (out > largest) largest = out, far = i;
   }
   const double inner = set.inner * radius, half = set.half_side * radius;
-  if (most <= inner) return {x, y, FrictionPlace::inside, 0};
+  if (largest <= inner) return {x, y, FrictionRegion::inside, 0};
   const double along = y * set.side[far][0] - x * set.side[far][1];
   if (along > half || along < -half) {
     const int corner = along > 0.0 ? (far + 1) % set.sides : far;
-    return {radius * set.corner[corner][0], radius * set.corner[corner][1], FrictionPlace::corner, corner};
+    return {radius * set.corner[corner][0], radius * set.corner[corner][1], FrictionRegion::corner, corner};
   }
   return {inner * set.side[far][0] - along * set.side[far][1],
-          inner * set.side[far][1] + along * set.side[far][0], FrictionPlace::side, far};
+          inner * set.side[far][1] + along * set.side[far][0], FrictionRegion::side, far};
 }
 
 }  // namespace gyre

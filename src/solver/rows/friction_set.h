@@ -1,8 +1,8 @@
-// The set of friction impulses that a load allows at a point: Coulomb's disc, or a regular polygon within it. The cone of all
-// loads is then a cone, or a pyramid with so many sides.
+// The set of friction impulses that a load allows at a point: Coulomb's disc, or a regular polygon within it.
+// Over all loads it is the friction cone, or a pyramid.
 //
-// The polygon's corners lie on the disc, so friction is never more than Coulomb's, and in the worst direction cos(pi / sides)
-// of it. With four sides the sides are parallel to the two tangents: each has a limit of its own.
+// The corners of the polygon lie on the disc, so friction never exceeds Coulomb's, and is at least cos(pi /
+// sides) of it. With four sides the sides are parallel to the two tangents, and each has a bound of its own.
 #pragma once
 
 namespace gyre {
@@ -11,25 +11,25 @@ constexpr int kMinSides = 4, kMaxSides = 32;  // even numbers
 
 struct FrictionSet {
   int sides = 0;       // 0: the disc
-  double inner = 1.0;  // distance of the sides from the middle, of a set with radius one
+  double inner = 1.0;  // distance of the sides from the centre, for radius one
   double half_side = 0.0;
-  double corner[kMaxSides][2] = {};  // of a set with radius one
-  double side[kMaxSides][2] = {};    // unit, across: the side from corner i to i + 1
+  double corner[kMaxSides][2] = {};  // for radius one
+  double side[kMaxSides][2] = {};    // unit normal of the side from corner i to i + 1
 };
 
 // `sides`: 0, or an even number within kMinSides and kMaxSides.
 FrictionSet make_friction_set(int sides);
 
-// Where the nearest point of a set lies.
-enum class FrictionPlace : unsigned char { inside, side, corner, rim };
+// The region of a set that holds the nearest point.
+enum class FrictionRegion : unsigned char { inside, side, corner, rim };
 
 struct FrictionPoint {
   double x = 0.0, y = 0.0;
-  FrictionPlace place = FrictionPlace::inside;
+  FrictionRegion region = FrictionRegion::inside;
   int index = 0;  // of the side or corner
 };
 
-// The point of the set with this radius that is nearest to (x, y).
+// The nearest point of the set with this radius to (x, y).
 FrictionPoint nearest_friction(const FrictionSet& set, double radius, double x, double y);
 
 }  // namespace gyre

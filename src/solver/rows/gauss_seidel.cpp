@@ -6,8 +6,8 @@ namespace gyre {
 
 namespace {
 
-// The residual is as dear as a sweep: it is looked at this often.
-constexpr int kLookEvery = 8;
+// The residual costs as much as an iteration, so it is computed this rarely.
+constexpr int kIterationsPerCheck = 8;
 
 double row_w(const Row& row, std::span<const RowBody> bodies) {
   return row_speed(row, bodies) - row.target_speed + row.compliance * row.impulse;
@@ -16,7 +16,7 @@ double row_w(const Row& row, std::span<const RowBody> bodies) {
 double change_row(Row& row, double impulse, std::span<RowBody> bodies) {
   const double change = impulse - row.impulse;
   if (change == 0.0) return 0.0;
-  push_row(row, change, bodies);
+  apply_row_impulse(row, change, bodies);
   row.impulse = impulse;
   return row.diagonal * change * change;
 }
@@ -27,7 +27,7 @@ double coupling(const Row& i, const Row& j) {
          dot(i.linear_b, j.gain_linear_b) + dot(i.angular_b, j.gain_angular_b);
 }
 
-// The equations of a joint, exactly. Returns the sum of squared changes.
+// Solves the equations of a joint exactly. Returns the sum of squared changes.
 double solve_block(std::span<Row> rows, std::span<RowBody> bodies) {
   const std::size_t n = rows.size();
   double k[kMaxRowBlock * kMaxRowBlock], x[kMaxRowBlock];
@@ -38,26 +38,26 @@ double solve_block(std::span<Row> rows, std::span<RowBody> bodies) {
   }
   factor_ldlt(std::span<double>(k, n * n), int(n));
   solve_ldlt(std::span<const double>(k, n * n), int(n), std::span<double>(x, n));
-  double moved = 0.0;
-  for (std::size_t i = 0; i < n; ++i) moved += change_row(rows[i], rows[i].impulse + x[i], bodies);
-  return moved;
+  double change_sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) change_sum += change_row(rows[i], rows[i].impulse + x[i], bodies);
+  return change_sum;
 }
 
 }  // namespace
 
 void warm_start_rows(std::span<const Row> rows, std::span<RowBody> bodies) {
   for (const Row& row : rows) {
-    if (row.impulse != 0.0) push_row(row, row.impulse, bodies);
+    if (row.impulse != 0.0) apply_row_impulse(row, row.impulse, bodies);
   }
 }
 
 double iterate_rows_once(std::span<Row> rows, std::span<RowBody> bodies, const FrictionSet& friction) {
-  double moved = 0.0;
+  double change_sum = 0.0;
   const auto impulse_of = [&](int j) { return rows[std::size_t(j)].impulse; };
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Row& row = rows[i];
     if (row.block > 1) {
-      moved += solve_block(rows.subspan(i, std::size_t(row.block)), bodies);
+      change_sum += solve_block(rows.subspan(i, std::size_t(row.block)), bodies);
       i += std::size_t(row.block) - 1;
       continue;
     }
@@ -68,8 +68,8 @@ double iterate_rows_once(std::span<Row> rows, std::span<RowBody> bodies, const F
       const double radius = row.limits.friction * load_of(row.limits, impulse_of);
       const FrictionPoint to = nearest_friction(friction, radius, row.impulse - row_w(row, bodies) / rate,
                                                 second.impulse - row_w(second, bodies) / rate);
-      moved += change_row(row, to.x, bodies);
-      moved += change_row(second, to.y, bodies);
+      change_sum += change_row(row, to.x, bodies);
+      change_sum += change_row(second, to.y, bodies);
       ++i;
       continue;
     }
@@ -78,38 +78,38 @@ double iterate_rows_once(std::span<Row> rows, std::span<RowBody> bodies, const F
       high = row.limits.friction * load_of(row.limits, impulse_of);
       low = -high;
     }
-    moved += change_row(row, clamp(row.impulse - row_w(row, bodies) / row.diagonal, low, high), bodies);
+    change_sum += change_row(row, clamp(row.impulse - row_w(row, bodies) / row.diagonal, low, high), bodies);
   }
-  return moved;
+  return change_sum;
 }
 
 double find_row_residual(std::span<const Row> rows, std::span<const RowBody> bodies,
                          const FrictionSet& friction) {
-  double most = 0.0;
+  double largest = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    most =
-        max(most, row_residual(
+    largest = max(largest,
+                  row_residual(
                       int(i), rows[i].limits, friction, [&](int j) { return rows[std::size_t(j)].impulse; },
                       [&](int j) { return row_w(rows[std::size_t(j)], bodies); },
                       [&](int j) { return rows[std::size_t(j)].diagonal; }));
   }
-  return most;
+  return largest;
 }
 
 GaussSeidelResult solve_nncg(std::span<Row> rows, std::span<RowBody> bodies, const FrictionSet& friction,
-                             double tolerance, int max_sweeps, NumberRoom room) {
+                             double tolerance, int max_iterations, NumberRoom room) {
   const std::span<double> direction = room.take(rows.size()), before = room.take(rows.size());
   for (double& value : direction) value = 0.0;
   double last = 0.0;
   GaussSeidelResult result;
-  while (result.sweeps < max_sweeps) {
+  while (result.iterations < max_iterations) {
     for (std::size_t i = 0; i < rows.size(); ++i) before[i] = rows[i].impulse;
     iterate_rows_once(rows, bodies, friction);
-    ++result.sweeps;
-    // What stands now is a plain sweep's: within its limits.
-    if (result.sweeps % kLookEvery == 0 || result.sweeps == max_sweeps) {
+    ++result.iterations;
+    // The impulses are those of a plain iteration here, within their bounds.
+    if (result.iterations % kIterationsPerCheck == 0 || result.iterations == max_iterations) {
       result.residual = find_row_residual(rows, bodies, friction);
-      if (result.residual <= tolerance || result.sweeps == max_sweeps) return result;
+      if (result.residual <= tolerance || result.iterations == max_iterations) return result;
     }
     double square = 0.0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -126,7 +126,7 @@ GaussSeidelResult solve_nncg(std::span<Row> rows, std::span<RowBody> bodies, con
       const double along = share * direction[i];
       direction[i] = along + (rows[i].impulse - before[i]);
       if (along == 0.0) continue;
-      push_row(rows[i], along, bodies);
+      apply_row_impulse(rows[i], along, bodies);
       rows[i].impulse += along;
     }
   }

@@ -6,7 +6,7 @@ namespace {
 constexpr double kNever = 1.0e301;
 }
 
-// The tableau says y = T u + qt: of rows in the basis u is w and y is x, of the others the other way round.
+// The tableau is y = T u + qt: in the basis u is w and y is x, outside it u is x and y is w.
 Dantzig::Dantzig(std::span<const double> a, std::span<const double> q, double compliance, NumberRoom& room)
     : n_(int(q.size())),
       t_(room.take(a.size())),
@@ -16,7 +16,7 @@ Dantzig::Dantzig(std::span<const double> a, std::span<const double> q, double co
       low_(room.take(q.size())),
       high_(room.take(q.size())),
       basic_(room.take(q.size())),
-      right_(room.take(q.size())),
+      satisfied_(room.take(q.size())),
       diagonal_(room.take(q.size())) {
   for (std::size_t i = 0; i < a.size(); ++i) t_[i] = a[i];
   for (int i = 0; i < n_; ++i) {
@@ -53,7 +53,7 @@ void Dantzig::pivot(int k) {
   basic_[std::size_t(k)] = is_basic(k) ? 0.0 : 1.0;
 }
 
-// What depends on the impulses at their limits: the basis's impulses, the others' speeds.
+// Recomputes the impulses in the basis and the speeds outside it from the impulses at their limits.
 void Dantzig::refresh() {
   for (int i = 0; i < n_; ++i) {
     double sum = qt_[std::size_t(i)];
@@ -65,17 +65,17 @@ void Dantzig::refresh() {
   }
 }
 
-bool Dantzig::is_right(int i) const {
+bool Dantzig::is_satisfied(int i) const {
   const std::size_t n = std::size_t(i);
   if (is_basic(i)) return x_[n] >= low_[n] - tolerance_ && x_[n] <= high_[n] + tolerance_;
   if (low_[n] == high_[n]) return true;
-  const double slack = tolerance_ * diagonal_[n];  // of impulse, as one of speed
+  const double slack = tolerance_ * diagonal_[n];  // tolerance of the impulse, as a speed
   if (x_[n] <= low_[n]) return w_[n] >= -slack;
   if (x_[n] >= high_[n]) return w_[n] <= slack;
   return false;
 }
 
-// Drives row i, which is out of the basis, until its speed is zero or its impulse at a limit.
+// Drives row i, outside the basis, until its speed is zero or its impulse is at a limit.
 bool Dantzig::drive(int i, int max_pivots) {
   const std::size_t own = std::size_t(i);
   const double sign = w_[own] > 0.0 ? -1.0 : 1.0;
@@ -83,15 +83,15 @@ bool Dantzig::drive(int i, int max_pivots) {
     if (pivots_ > max_pivots) return false;
     const double limit = sign > 0.0 ? high_[own] : low_[own];
     const double gain = at(i, i);
-    double least = limit <= -kNoLimit || limit >= kNoLimit ? kNever : max(sign * (limit - x_[own]), 0.0);
-    int first = -1;  // the row's limit
+    double distance = limit <= -kNoLimit || limit >= kNoLimit ? kNever : max(sign * (limit - x_[own]), 0.0);
+    int first = -1;  // -1: the limit of the row itself
     if (gain > 0.0) {
       const double until = max(-sign * w_[own] / gain, 0.0);
-      if (until <= least) least = until, first = i;
+      if (until <= distance) distance = until, first = i;
     }
     for (int j = 0; j < n_; ++j) {
       const std::size_t other = std::size_t(j);
-      if (j == i || right_[other] == 0.0 || low_[other] == high_[other]) continue;
+      if (j == i || satisfied_[other] == 0.0 || low_[other] == high_[other]) continue;
       const double change = sign * at(j, i);
       double until = kNever;
       if (is_basic(j)) {
@@ -100,14 +100,14 @@ bool Dantzig::drive(int i, int max_pivots) {
       } else if (x_[other] <= low_[other] ? change < 0.0 : change > 0.0) {
         until = -w_[other] / change;
       }
-      if (until < least) least = max(until, 0.0), first = j;
+      if (until < distance) distance = max(until, 0.0), first = j;
     }
-    if (least >= kNever) return false;
+    if (distance >= kNever) return false;
     for (int j = 0; j < n_; ++j) {
-      if (j != i) (is_basic(j) ? x_ : w_)[std::size_t(j)] += sign * least * at(j, i);
+      if (j != i) (is_basic(j) ? x_ : w_)[std::size_t(j)] += sign * distance * at(j, i);
     }
-    x_[own] += sign * least;
-    w_[own] += sign * least * gain;
+    x_[own] += sign * distance;
+    w_[own] += sign * distance * gain;
     if (first < 0) {
       x_[own] = limit;
       return true;
@@ -130,20 +130,20 @@ bool Dantzig::solve(double tolerance, int max_pivots) {
   for (int pass = 0; pass < 4; ++pass) {
     bool any = false;
     for (int i = 0; i < n_; ++i) {
-      if (is_right(i)) continue;
+      if (is_satisfied(i)) continue;
       any = true;
-      for (int j = 0; j < n_; ++j) right_[std::size_t(j)] = is_right(j) ? 1.0 : 0.0;
+      for (int j = 0; j < n_; ++j) satisfied_[std::size_t(j)] = is_satisfied(j) ? 1.0 : 0.0;
       if (is_basic(i)) {
-        // Beyond a limit: it is let go, and driven back to it.
+        // Beyond a limit: the row leaves the basis and is driven back to the limit.
         const double limit =
             x_[std::size_t(i)] > high_[std::size_t(i)] ? high_[std::size_t(i)] : low_[std::size_t(i)];
         const double back = limit - x_[std::size_t(i)];
         pivot(i);
-        const double kept_low = low_[std::size_t(i)], kept_high = high_[std::size_t(i)];
+        const double saved_low = low_[std::size_t(i)], saved_high = high_[std::size_t(i)];
         (back > 0.0 ? high_ : low_)[std::size_t(i)] = limit;
         w_[std::size_t(i)] = back > 0.0 ? -1.0e30 * at(i, i) : 1.0e30 * at(i, i);
         const bool driven = drive(i, last_pivot);
-        low_[std::size_t(i)] = kept_low, high_[std::size_t(i)] = kept_high;
+        low_[std::size_t(i)] = saved_low, high_[std::size_t(i)] = saved_high;
         refresh();
         if (!driven) return false;
         continue;

@@ -1,13 +1,15 @@
-// Dantzig's principal pivoting for complementarity problems with limits on both sides: find x within [low, high] with
-// w = A x + q >= 0 where x is at its low limit, <= 0 where it is at its high one, and 0 between; A symmetric, positive definite.
+// Dantzig's principal pivoting for complementarity problems with bounds on both sides: find x within [low,
+// high] with w = A x + q >= 0 where x is at its low bound, <= 0 where it is at its high one, and 0 between; A
+// symmetric, positive definite.
 //
-// One violated row after the other is driven to where it should be, while all that are right already stay right: a row's
-// impulse that reaches a limit stays there and its speed is let go (it leaves the basis), a speed that reaches zero is held there
-// (it enters). Each change is one principal pivot of the tableau, n^2 operations. What is right never gets wrong again, so the
-// method ends after finitely many pivots. It may go on from where it stood after limits have changed.
+// The method drives one violated row after the other to a solution and keeps all satisfied rows satisfied. A
+// row whose impulse reaches a bound leaves the basis; a row whose speed reaches zero enters it. Each change
+// is one principal pivot of the tableau, n^2 operations. Satisfied rows stay so, so the number of pivots is
+// finite. A solve may continue from the last solution after bounds have changed.
 //
-// Sources: R. W. Cottle, G. B. Dantzig, "Complementary pivot theory of mathematical programming", 1968; D. Baraff, "Fast contact
-// force computation for nonpenetrating rigid bodies", SIGGRAPH 1994 (contacts, one row after the other).
+// Sources: R. W. Cottle, G. B. Dantzig, "Complementary pivot theory of mathematical programming", 1968; D.
+// Baraff, "Fast contact force computation for nonpenetrating rigid bodies", SIGGRAPH 1994 (contacts, one row
+// after the other).
 #pragma once
 
 #include "solver/rows/complementarity.h"
@@ -18,12 +20,12 @@ class Dantzig {
  public:
   static std::size_t room_for(std::size_t size) { return size * size + 8 * size; }
 
-  // Of a matrix of `size`, whose diagonal is raised by the share `give` of itself.
+  // `compliance`: share by which the diagonal is raised.
   Dantzig(std::span<const double> a, std::span<const double> q, double compliance, NumberRoom& room);
 
-  // Beyond all bounds: 1e300. All x start at 0, or at the limit that is nearest to it.
+  // No bound is 1e300. Every x starts at 0, or at the bound nearest to it.
   void set_limits(int i, double low, double high);
-  // Solves within the limits that are set now. False if it gave up: more than `max_pivots`, or no finite solution.
+  // Solves within the present bounds. False after more than `max_pivots`, or if no finite solution exists.
   bool solve(double tolerance, int max_pivots);
 
   double x(int i) const { return x_[std::size_t(i)]; }
@@ -36,11 +38,11 @@ class Dantzig {
   bool is_basic(int i) const { return basic_[std::size_t(i)] != 0.0; }
   void pivot(int k);
   void refresh();
-  bool is_right(int i) const;
+  bool is_satisfied(int i) const;
   bool drive(int i, int max_pivots);
 
   int n_ = 0;
-  std::span<double> t_, qt_, x_, w_, low_, high_, basic_, right_, diagonal_;
+  std::span<double> t_, qt_, x_, w_, low_, high_, basic_, satisfied_, diagonal_;
   double tolerance_ = 0.0;
   int pivots_ = 0;
 };

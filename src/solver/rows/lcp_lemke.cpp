@@ -4,24 +4,24 @@ namespace gyre {
 
 namespace {
 
-// Variables are numbered: w_i is i, z_i is n + i, z0 is 2 n. The dictionary says: each basic variable is its constant plus its
-// row of the tableau times the variables outside the basis.
+// Variables have numbers: w_i is i, z_i is n + i, z0 is 2 n. In the dictionary each basic variable is its
+// constant plus its row of the tableau times the variables outside the basis.
 class Dictionary {
  public:
-  Dictionary(std::span<const double> m, std::span<const double> q, double parting, NumberRoom& room)
+  Dictionary(std::span<const double> m, std::span<const double> q, double tie_break, NumberRoom& room)
       : n_(q.size()),
         t_(room.take(n_ * (n_ + 1))),
         constant_(room.take(n_)),
         basic_(room.take(n_)),
         outside_(room.take(n_ + 1)) {
-    double most = 0.0;
-    for (const double v : q) most = max(most, v < 0.0 ? -v : v);
+    double largest = 0.0;
+    for (const double v : q) largest = max(largest, v < 0.0 ? -v : v);
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j) at(i, j) = m[i * n_ + j];
       at(i, n_) = 1.0;
-      // A golden step: no two rows get nearly the same.
-      const double part = double((i + 1) * 40503u % 65536u) / 65536.0;
-      constant_[i] = q[i] + parting * most * (0.5 + part);
+      // A golden step: no two rows get nearly the same fraction.
+      const double fraction = double((i + 1) * 40503u % 65536u) / 65536.0;
+      constant_[i] = q[i] + tie_break * largest * (0.5 + fraction);
       basic_[i] = double(i);
       outside_[i] = double(n_ + i);
     }
@@ -32,31 +32,32 @@ class Dictionary {
   double constant(std::size_t i) const { return constant_[i]; }
   std::size_t basic(std::size_t i) const { return std::size_t(basic_[i]); }
 
-  // The row that the artificial variable must replace so that all constants are positive; n if none is negative.
-  std::size_t max_negative() const {
+  // The row that the artificial variable replaces so that all constants are positive; n if none is negative.
+  std::size_t find_worst_row() const {
     std::size_t row = n_;
-    double least = 0.0;
+    double smallest = 0.0;
     for (std::size_t i = 0; i < n_; ++i) {
-      if (constant_[i] < least) least = constant_[i], row = i;
+      if (constant_[i] < smallest) smallest = constant_[i], row = i;
     }
     return row;
   }
-  // The row that reaches zero first as the variable of a column grows; n if none does. The artificial one wins ties.
+  // The row that reaches zero first as the variable of a column grows; n if none does. The artificial
+  // variable wins ties.
   std::size_t blocking(std::size_t column) {
     std::size_t row = n_;
-    double least = 0.0, slope = 0.0;
+    double smallest = 0.0, slope = 0.0;
     for (std::size_t i = 0; i < n_; ++i) {
       const double t = at(i, column);
       if (!(t < -1.0e-12)) continue;
       const double until = max(constant_[i], 0.0) / -t;
       const bool is_artificial = basic(i) == 2 * n_;
-      if (row == n_ || until < least || (until == least && (is_artificial || -t > slope))) {
-        least = until, row = i, slope = -t;
+      if (row == n_ || until < smallest || (until == smallest && (is_artificial || -t > slope))) {
+        smallest = until, row = i, slope = -t;
       }
     }
     return row;
   }
-  // The variable of the row and that of the column change places.
+  // Exchanges the variable of the row with that of the column.
   void pivot(std::size_t row, std::size_t column) {
     double* const own = &t_[row * (n_ + 1)];
     const double inverse = 1.0 / own[column];
@@ -89,13 +90,13 @@ class Dictionary {
 
 }  // namespace
 
-LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double parting, int max_pivots,
-                        std::span<double> z, NumberRoom& room) {
+LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double tie_break,
+                        int max_pivots, std::span<double> z, NumberRoom& room) {
   const std::size_t n = q.size();
   for (double& value : z) value = 0.0;
   LemkeResult result{LemkeEnd::solved, 0};
-  Dictionary dictionary(m, q, parting, room);
-  std::size_t row = dictionary.max_negative();
+  Dictionary dictionary(m, q, tie_break, room);
+  std::size_t row = dictionary.find_worst_row();
   if (row == n) return result;
   std::size_t column = n;
   for (;;) {

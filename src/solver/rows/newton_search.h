@@ -1,19 +1,22 @@
-// A semi-smooth Newton method on the natural map of an island's complementarity problem: each step looks at which limits hold
-// where (rows at rest, at a limit, sticking, sliding), solves the linear equations that go with that (solver/rows/natural_map.h), and
-// looks again. A step is shortened until the residuals' sum of squares falls; where no share of it does, it is taken whole: now and
-// then the way leads over a hill. Friction sets are polygons or Coulomb's disc, whose rim bends: its derivative is in the equations.
+// A semi-smooth Newton method on the natural map of an island's complementarity problem. Each step finds the
+// active limits (rows at rest, at a bound, sticking, sliding) and solves the linear equations for them
+// (solver/rows/natural_map.h). A step is shortened until the sum of squared residuals falls. If no share of
+// it does, the whole step is taken, since the path sometimes leads over a hill. Friction sets are polygons or
+// Coulomb's disc, whose curvature is in the equations.
 //
-// From impulses that are near, as those of the last sub-step or of a pivoting method are, it needs a few steps and leaves only
-// rounding; from afar it may wander, and says so. Where rows are redundant, the step is the smallest that does: rows at rest resist
-// change by a share of their diagonal. That share falls with every good step, quickly where a whole step changes next to nothing
-// (redundant rows that cannot all be at rest then move on to where a limit holds), and rises with every bad one, as in Levenberg's
-// and Marquardt's method.
+// From nearby impulses, as of the last sub-step or a pivoting method, the search takes a few steps and leaves
+// only rounding. From far away it may wander; the result says so. Where rows are redundant the step is the
+// smallest possible, because rows at rest are regularised by a share of their diagonal. That share falls with
+// every good step and rises with every bad one, as in the method of Levenberg and Marquardt. It falls quickly
+// where a whole step changes almost nothing, so that redundant rows that cannot all be at rest reach another
+// limit.
 //
-// How the equations are solved is the problem's: densely by rows (solver/rows/solve_newton.h) or sparsely by bodies
+// The problem solves the equations: densely by rows (solver/rows/solve_newton.h) or sparsely by bodies
 // (solver/rows/body_newton.h).
 //
-// Sources: P. Alart, A. Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution methods",
-// 1991; S. Hueeber, B. Wohlmuth, "A primal-dual active set strategy for non-linear multibody contact problems", 2005.
+// Sources: P. Alart, A. Curnier, "A mixed formulation for frictional contact problems prone to Newton like
+// solution methods", 1991; S. Hueeber, B. Wohlmuth, "A primal-dual active set strategy for non-linear
+// multibody contact problems", 2005.
 #pragma once
 
 #include "solver/rows/complementarity.h"
@@ -36,11 +39,11 @@ constexpr std::size_t newton_search_room(std::size_t size) { return 6 * size; }
 template <class Problem>
 NewtonResult newton_search(Problem& problem, double tolerance, int max_steps, std::span<double> x,
                            NumberRoom& room) {
-  constexpr double kFirstNear = 1.0e-4, kMaxNear = 1.0e-3, kMinNear = 1.0e-10;
+  constexpr double kFirstDamping = 1.0e-4, kMaxDamping = 1.0e-3, kMinDamping = 1.0e-10;
   constexpr double kGood = 0.3, kSlow = 0.1, kBad = 10.0;
-  constexpr double kFall = 0.1;  // of the sum of squares, at least, for a whole step
+  constexpr double kFall = 0.1;  // required relative fall of the sum of squares, for a whole step
   constexpr double kShares[] = {1.0, 0.5, 0.25, 0.1, 0.03};
-  // Steps without progress after which it is given up.
+  // Steps without progress before the search ends.
   constexpr int kPatience = 12;
   const std::size_t n = problem.rows();
   const std::span<double> now = room.take(n), w = room.take(n), dx = room.take(n), dw = room.take(n),
@@ -58,13 +61,13 @@ NewtonResult newton_search(Problem& problem, double tolerance, int max_steps, st
   problem.find_speeds(now, w);
   measure(now, w);
   NewtonResult result{residual, 0};
-  double near = kFirstNear;
+  double damping = kFirstDamping;
   for (int idle = 0; result.residual > tolerance && result.steps < max_steps && idle < kPatience;) {
-    if (!problem.find_step(now, w, near, dx)) break;
+    if (!problem.find_step(now, w, damping, dx)) break;
     problem.find_change(dx, dw);
     ++result.steps;
     const double before = squares;
-    double taken = 1.0, whole = 0.0;  // whole: what a whole step makes of the sum of squares
+    double taken = 1.0, whole = 0.0;  // whole: factor of the sum of squares for a whole step
     bool is_good = false;
     for (const double share : kShares) {
       for (std::size_t i = 0; i < n; ++i) next[i] = now[i] + share * dx[i], next_w[i] = w[i] + share * dw[i];
@@ -75,8 +78,8 @@ NewtonResult newton_search(Problem& problem, double tolerance, int max_steps, st
       is_good = share >= 0.5;
       break;
     }
-    near *= whole > 0.8 && whole < 1.001 ? kSlow : is_good ? kGood : kBad;
-    near = clamp(near, kMinNear, kMaxNear);
+    damping *= whole > 0.8 && whole < 1.001 ? kSlow : is_good ? kGood : kBad;
+    damping = clamp(damping, kMinDamping, kMaxDamping);
     for (std::size_t i = 0; i < n; ++i) now[i] += taken * dx[i];
     problem.find_speeds(now, w);
     measure(now, w);

@@ -1,13 +1,15 @@
-// Scalar constraint rows: what holds between two bodies along or about one direction. The solvers that see all of an island at
-// once (sequential impulses over rows, and the complementarity problem) are made of them; the default solver is not.
+// Scalar constraint rows: one equation or inequality between two bodies along or about a direction. The
+// solvers of whole islands (sequential impulses over rows, and the complementarity problem) use rows; the
+// default solver does not.
 //
-// A row sees the speed J v and asks w = J v - wanted + give x to be complementary to its impulse x within its limits:
-//   x at its lower limit:  w >= 0,     x at its upper limit:  w <= 0,     between:  w = 0.
-// Units: N s and m/s, or N m s and rad/s for rows that turn. Everything is double: an island's rows may span mass ratios that
-// single precision cannot carry.
+// For the speed J v of a row, w = J v - target + compliance x is complementary to its impulse x within its
+// limits: x at its lower limit: w >= 0; x at its upper limit: w <= 0; between: w = 0. Units: N s and m/s, or
+// N m s and rad/s for angular rows. Everything is double: the rows of an island may span mass ratios beyond
+// single precision.
 //
-// Sources: D. E. Stewart, J. C. Trinkle, "An implicit time-stepping scheme for rigid body dynamics with inelastic collisions and
-// Coulomb friction", 1996; R. W. Cottle, J.-S. Pang, R. E. Stone, "The Linear Complementarity Problem", 1992.
+// Sources: D. E. Stewart, J. C. Trinkle, "An implicit time-stepping scheme for rigid body dynamics with
+// inelastic collisions and Coulomb friction", 1996; R. W. Cottle, J.-S. Pang, R. E. Stone, "The Linear
+// Complementarity Problem", 1992.
 #pragma once
 
 #include "solver/rows/friction_set.h"
@@ -23,17 +25,17 @@ namespace gyre {
 constexpr double kNoLimit = 1.0e300;
 
 enum class RowKind : std::uint8_t {
-  box,  // low <= x <= high; both beyond all bounds: an equation
-  cone,  // first of the two tangents of a point: (x, next x) lies within friction times the load, see FrictionSet
-  cone_second,  // its second
+  box,          // low <= x <= high; without either bound it is an equation
+  cone,         // first tangent of a point: (x, next x) lies within friction times the load, see FrictionSet
+  cone_second,  // second tangent
   load,         // |x| <= friction times the load
 };
 
 struct RowLimits {
   RowKind kind = RowKind::box;
   double low = -kNoLimit, high = kNoLimit;
-  double friction = 0.0;  // per N s of load: 1, or m for rows that turn
-  // The load is the sum of these rows' impulses, each of which has the lower limit 0.
+  double friction = 0.0;  // per N s of load: 1, or m for angular rows
+  // The load is the sum of the impulses of these rows, whose lower limit is 0.
   std::int32_t load_first = 0, load_count = 0;
 };
 
@@ -41,7 +43,7 @@ inline bool is_equation(const RowLimits& l) {
   return l.kind == RowKind::box && l.low <= -kNoLimit && l.high >= kNoLimit;
 }
 
-// A body as rows see it: velocities in an island's list, and what resists them.
+// A body as rows see it: its velocities and its inverse inertia.
 struct RowBody {
   DVec3 linear, angular;
   DVec3 inverse_mass;         // along the world's axes: 0 along locked ones
@@ -52,26 +54,27 @@ constexpr std::int32_t kNoRowBody = -1;
 constexpr int kMaxRowBlock = 6;
 
 struct Row {
-  std::int32_t body_a = kNoRowBody, body_b = kNoRowBody;  // places in the island's list
-  // Of the first of several equations between the same two bodies, as a joint has them: how many; sweeps solve them together.
+  std::int32_t body_a = kNoRowBody, body_b = kNoRowBody;  // indices in the list of the island
+  // In the first of several equations between the same two bodies, as of a joint: their number. Iterations
+  // solve them together.
   std::int32_t block = 1;
   RowLimits limits;
-  // J: what of the bodies' velocities the row sees, signs included.
+  // J, signs included.
   DVec3 linear_a, angular_a, linear_b, angular_b;
-  // M^-1 J^T: what an impulse of one does.
+  // M^-1 J^T: velocity changes for an impulse of one.
   DVec3 gain_linear_a, gain_angular_a, gain_linear_b, gain_angular_b;
   double target_speed = 0.0;
   double compliance = 0.0;
-  double diagonal = 0.0;  // J M^-1 J^T + give
+  double diagonal = 0.0;  // J M^-1 J^T + compliance
   double impulse = 0.0;
 };
 
-// A body's velocities are six numbers in a row, J and M^-1 J^T twelve each.
+// The velocities of a body are six numbers in a row; J and M^-1 J^T are twelve each.
 static_assert(offsetof(RowBody, angular) == offsetof(RowBody, linear) + 3 * sizeof(double));
 static_assert(offsetof(Row, angular_b) == offsetof(Row, linear_a) + 9 * sizeof(double));
 static_assert(offsetof(Row, gain_angular_b) == offsetof(Row, gain_linear_a) + 9 * sizeof(double));
 inline const double* velocities_of(const RowBody& body) { return &body.linear.x; }
-inline const double* seen_of(const Row& row) { return &row.linear_a.x; }
+inline const double* jacobian_of(const Row& row) { return &row.linear_a.x; }
 inline const double* gains_of(const Row& row) { return &row.gain_linear_a.x; }
 
 inline DVec3 along_inertia(const RowBody& body, DVec3 v) {
@@ -83,7 +86,7 @@ inline DVec3 along_mass(const RowBody& body, DVec3 v) {
   return {body.inverse_mass.x * v.x, body.inverse_mass.y * v.y, body.inverse_mass.z * v.z};
 }
 
-// Gains and diagonal, once J, give and the bodies are known.
+// Computes gains and diagonal from J, compliance and the bodies.
 inline void finish_row(Row& row, std::span<const RowBody> bodies) {
   row.diagonal = row.compliance;
   row.gain_linear_a = row.gain_angular_a = row.gain_linear_b = row.gain_angular_b = {};
@@ -115,7 +118,7 @@ inline double row_speed(const Row& row, std::span<const RowBody> bodies) {
   return speed;
 }
 
-inline void push_row(const Row& row, double impulse, std::span<RowBody> bodies) {
+inline void apply_row_impulse(const Row& row, double impulse, std::span<RowBody> bodies) {
   if (row.body_a != kNoRowBody) {
     RowBody& a = bodies[std::size_t(row.body_a)];
     a.linear += impulse * row.gain_linear_a;

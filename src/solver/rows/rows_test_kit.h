@@ -1,4 +1,4 @@
-// What the tests of the row solvers share: islands of bodies and contacts, made by hand or by a seed.
+// Islands of bodies and contacts for the tests of the row solvers, by hand or from a seed.
 #pragma once
 
 #include "math/block_lu.h"
@@ -33,7 +33,7 @@ inline std::int32_t add_body(std::vector<RowBody>& bodies, double mass, double s
   return std::int32_t(bodies.size()) - 1;
 }
 
-// A point that b may not go into a at; the normal is from a to b.
+// A contact point of a and b; the normal is from a to b.
 inline void add_contact(std::vector<Row>& rows, std::span<const RowBody> bodies, std::int32_t a,
                         std::int32_t b, DVec3 from_a, DVec3 from_b, DVec3 normal, double friction,
                         double gap_speed = 0.0) {
@@ -65,7 +65,7 @@ inline void add_equation(std::vector<Row>& rows, std::span<const RowBody> bodies
   rows.push_back(row);
 }
 
-// The four lower corners of a box of `size` on what lies below.
+// The four lower corners of a box of `size` on the body below.
 inline void add_corners(std::vector<Row>& rows, std::span<const RowBody> bodies, std::int32_t below,
                         std::int32_t box, double size, double friction) {
   const double h = 0.5 * size;
@@ -80,7 +80,7 @@ struct Island {
   std::vector<Row> rows;
 };
 
-// Boxes on each other, the lowest on fixed ground, after a step of gravity.
+// Boxes on each other, the lowest on static ground, after a step of gravity.
 inline Island make_stack(const std::vector<double>& masses, double kick) {
   Island island;
   for (const double mass : masses) add_body(island.bodies, mass, 1.0, {0, -kick, 0});
@@ -89,7 +89,7 @@ inline Island make_stack(const std::vector<double>& masses, double kick) {
   return island;
 }
 
-// Bodies that touch each other and the ground anyhow, some joined.
+// Bodies with random contacts among each other and with the ground, some joined.
 inline Island make_heap(std::uint64_t seed, int bodies, int contacts, int joints, double friction) {
   Chance chance(seed);
   Island island;
@@ -131,7 +131,7 @@ struct Dense {
   }
 };
 
-// The pattern of an island's bodies for solver/rows/body_newton.h.
+// The plan of an island's bodies for solver/rows/body_newton.h.
 inline BlockPlan plan_of(const Island& island, Arena& arena) {
   const std::vector<std::uint8_t> sizes(island.bodies.size(), kLuBlock);
   std::vector<BlockEdge> edges;
@@ -146,15 +146,15 @@ inline BlockPlan plan_of(const Island& island, Arena& arena) {
 
 inline std::vector<RowBody> pushed(const Island& island, std::span<const double> x) {
   std::vector<RowBody> bodies = island.bodies;
-  for (std::size_t i = 0; i < x.size(); ++i) push_row(island.rows[i], x[i], bodies);
+  for (std::size_t i = 0; i < x.size(); ++i) apply_row_impulse(island.rows[i], x[i], bodies);
   return bodies;
 }
 
 inline double apart(const std::vector<RowBody>& a, const std::vector<RowBody>& b) {
-  double most = 0.0;
+  double largest = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    most = max(most, max(length(a[i].linear - b[i].linear), length(a[i].angular - b[i].angular)));
-  return most;
+    largest = max(largest, max(length(a[i].linear - b[i].linear), length(a[i].angular - b[i].angular)));
+  return largest;
 }
 
 }  // namespace gyre

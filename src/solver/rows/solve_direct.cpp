@@ -9,31 +9,33 @@ namespace gyre {
 
 namespace {
 
-// Share by which diagonals are raised for pivoting: redundant rows then have one solution. Newton's method takes it back.
-constexpr double kGive = 1.0e-9;
-constexpr double kParting = 1.0e-10;
+// Share by which diagonals are raised for pivoting, so that redundant rows have one solution. Newton's method
+// removes its effect.
+constexpr double kRegularization = 1.0e-9;
+constexpr double kTieBreak = 1.0e-10;
 constexpr int kDantzigRounds = 20;
 constexpr int kRoundSteps = 8, kPolishSteps = 30;
 
-// A variable of a method in terms of the problem's rows: x_row and, of a cone, x_(row + 1) get its value times these.
-struct Part {
+// A variable of a method in terms of the rows of the problem: it adds its value times these factors to x_row
+// and, for a cone, to x_(row + 1).
+struct Segment {
   int row = 0;
   double first = 1.0, second = 0.0;
 };
 
-double part_speed(const DenseProblem& p, const Part& part, int column) {
-  double k = part.first * p.at(part.row, column);
-  if (part.second != 0.0) k += part.second * p.at(part.row + 1, column);
+double segment_speed(const DenseProblem& p, const Segment& segment, int column) {
+  double k = segment.first * p.at(segment.row, column);
+  if (segment.second != 0.0) k += segment.second * p.at(segment.row + 1, column);
   return k;
 }
-double part_coupling(const DenseProblem& p, const Part& a, const Part& b) {
-  double k = b.first * part_speed(p, a, b.row);
-  if (b.second != 0.0) k += b.second * part_speed(p, a, b.row + 1);
+double segment_coupling(const DenseProblem& p, const Segment& a, const Segment& b) {
+  double k = b.first * segment_speed(p, a, b.row);
+  if (b.second != 0.0) k += b.second * segment_speed(p, a, b.row + 1);
   return k;
 }
-double part_q(const DenseProblem& p, const Part& part) {
-  double q = part.first * p.q[std::size_t(part.row)];
-  if (part.second != 0.0) q += part.second * p.q[std::size_t(part.row) + 1];
+double segment_q(const DenseProblem& p, const Segment& segment) {
+  double q = segment.first * p.q[std::size_t(segment.row)];
+  if (segment.second != 0.0) q += segment.second * p.q[std::size_t(segment.row) + 1];
   return q;
 }
 
@@ -41,12 +43,13 @@ double load_in(const RowLimits& limits, std::span<const double> x) {
   return load_of(limits, [&](int j) { return x[std::size_t(j)]; });
 }
 
-// Which parts a row is made of for a method, as fn(part); a polygon is the sum of one segment for each pair of its sides.
+// Calls fn(segment) for each variable of a row. A polygon is the sum of one segment for each pair of its
+// sides.
 template <class Fn>
 void for_each_segment(const RowLimits& limits, int row, const FrictionSet& polygon, Fn&& fn) {
   if (limits.kind == RowKind::cone_second) return;
-  if (limits.kind != RowKind::cone) return fn(Part{row});
-  for (int k = 0; 2 * k < polygon.sides; ++k) fn(Part{row, -polygon.side[k][1], polygon.side[k][0]});
+  if (limits.kind != RowKind::cone) return fn(Segment{row});
+  for (int k = 0; 2 * k < polygon.sides; ++k) fn(Segment{row, -polygon.side[k][1], polygon.side[k][0]});
 }
 std::size_t count_segments(std::span<const RowLimits> limits, const FrictionSet& polygon) {
   std::size_t count = 0;
@@ -57,38 +60,40 @@ std::size_t count_segments(std::span<const RowLimits> limits, const FrictionSet&
   return count;
 }
 
-// Numbers kept as doubles so that one room holds all.
-struct Parts {
+// Doubles, so that one room holds all numbers.
+struct SegmentList {
   std::span<double> rows, first, second;
   std::size_t count = 0;
 
-  Parts(std::size_t most, NumberRoom& room)
-      : rows(room.take(most)), first(room.take(most)), second(room.take(most)) {}
-  void add(const Part& part) {
-    rows[count] = double(part.row), first[count] = part.first, second[count] = part.second;
+  SegmentList(std::size_t capacity, NumberRoom& room)
+      : rows(room.take(capacity)), first(room.take(capacity)), second(room.take(capacity)) {}
+  void add(const Segment& segment) {
+    rows[count] = double(segment.row), first[count] = segment.first, second[count] = segment.second;
     ++count;
   }
-  Part at(std::size_t i) const { return {int(rows[i]), first[i], second[i]}; }
+  Segment at(std::size_t i) const { return {int(rows[i]), first[i], second[i]}; }
 };
 
 // ------------------------------------------------------------------------------------------------------------ Dantzig
 
 void run_dantzig(const DenseProblem& p, const FrictionSet& polygon, double tolerance, std::span<double> x,
                  NumberRoom room, DirectResult& result) {
-  const std::size_t most = count_segments(p.limits, polygon);
-  Parts parts(most, room);
+  const std::size_t count = count_segments(p.limits, polygon);
+  SegmentList segments(count, room);
   for (int i = 0; i < p.size; ++i)
-    for_each_segment(p.limits[std::size_t(i)], i, polygon, [&](const Part& part) { parts.add(part); });
-  const std::span<double> a = room.take(most * most), q = room.take(most);
-  for (std::size_t i = 0; i < most; ++i) {
-    q[i] = part_q(p, parts.at(i));
-    for (std::size_t j = 0; j < most; ++j) a[i * most + j] = part_coupling(p, parts.at(i), parts.at(j));
+    for_each_segment(p.limits[std::size_t(i)], i, polygon,
+                     [&](const Segment& segment) { segments.add(segment); });
+  const std::span<double> a = room.take(count * count), q = room.take(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    q[i] = segment_q(p, segments.at(i));
+    for (std::size_t j = 0; j < count; ++j)
+      a[i * count + j] = segment_coupling(p, segments.at(i), segments.at(j));
   }
-  Dantzig dantzig(a, q, kGive, room);
+  Dantzig dantzig(a, q, kRegularization, room);
   const std::span<double> best = room.take(std::size_t(p.size));
   for (int round = 0; round < kDantzigRounds; ++round) {
-    for (std::size_t i = 0; i < most; ++i) {
-      const RowLimits& limits = p.limits[std::size_t(parts.at(i).row)];
+    for (std::size_t i = 0; i < count; ++i) {
+      const RowLimits& limits = p.limits[std::size_t(segments.at(i).row)];
       double high = limits.high, low = limits.low;
       if (limits.kind != RowKind::box) {
         high = limits.friction * load_in(limits, x);
@@ -98,15 +103,15 @@ void run_dantzig(const DenseProblem& p, const FrictionSet& polygon, double toler
       dantzig.set_limits(int(i), low, high);
     }
     const int before = dantzig.pivots();
-    const bool found = dantzig.solve(0.01 * tolerance, 20 * int(most) + 50);
+    const bool found = dantzig.solve(0.01 * tolerance, 20 * int(count) + 50);
     result.pivots += dantzig.pivots() - before;
     ++result.rounds;
     if (!found) return;
     for (double& value : x) value = 0.0;
-    for (std::size_t i = 0; i < most; ++i) {
-      const Part part = parts.at(i);
-      x[std::size_t(part.row)] += part.first * dantzig.x(int(i));
-      if (part.second != 0.0) x[std::size_t(part.row) + 1] += part.second * dantzig.x(int(i));
+    for (std::size_t i = 0; i < count; ++i) {
+      const Segment segment = segments.at(i);
+      x[std::size_t(segment.row)] += segment.first * dantzig.x(int(i));
+      if (segment.second != 0.0) x[std::size_t(segment.row) + 1] += segment.second * dantzig.x(int(i));
     }
     for (std::size_t i = 0; i < best.size(); ++i) best[i] = x[i];
     const NewtonResult polished = solve_newton(p, tolerance, kRoundSteps, best, room);
@@ -121,7 +126,7 @@ void run_dantzig(const DenseProblem& p, const FrictionSet& polygon, double toler
 
 // -------------------------------------------------------------------------------------------------------------- Lemke
 
-// How many variables a row has: those of its impulse, and a multiplier if these have a limit together.
+// Number of variables of a row: those of its impulse, and a multiplier if they have a common bound.
 int count_corners(const RowLimits& l, const FrictionSet& polygon) {
   if (l.kind == RowKind::cone) return polygon.sides;
   if (l.kind == RowKind::load) return 2;
@@ -144,12 +149,12 @@ std::size_t count_lemke(std::span<const RowLimits> limits, const FrictionSet& po
 
 // The problem without its equations, in variables that are not negative.
 struct LemkeProblem {
-  Parts parts;  // a multiplier has zero in both
+  SegmentList segments;  // a multiplier has zero in both
   std::span<double> m, q, shift, groups;
   std::size_t count = 0;
 
   LemkeProblem(std::size_t size, std::size_t rows, NumberRoom& room)
-      : parts(size, room),
+      : segments(size, room),
         m(room.take(size * size)),
         q(room.take(size)),
         shift(room.take(rows)),
@@ -160,23 +165,23 @@ void list_lemke(const DenseProblem& p, const FrictionSet& polygon, LemkeProblem&
   for (int i = 0; i < p.size; ++i) {
     const RowLimits& l = p.limits[std::size_t(i)];
     lemke.shift[std::size_t(i)] = 0.0;
-    lemke.groups[std::size_t(i)] = double(lemke.parts.count);
+    lemke.groups[std::size_t(i)] = double(lemke.segments.count);
     if (l.kind == RowKind::cone) {
       for (int k = 0; k < polygon.sides; ++k)
-        lemke.parts.add({i, polygon.corner[k][0], polygon.corner[k][1]});
+        lemke.segments.add({i, polygon.corner[k][0], polygon.corner[k][1]});
     } else if (l.kind == RowKind::load) {
-      lemke.parts.add({i, 1.0});
-      lemke.parts.add({i, -1.0});
+      lemke.segments.add({i, 1.0});
+      lemke.segments.add({i, -1.0});
     } else if (l.kind == RowKind::box && !is_equation(l)) {
       const bool from_low = l.low > -kNoLimit;
       lemke.shift[std::size_t(i)] = from_low ? l.low : l.high;
-      lemke.parts.add({i, from_low ? 1.0 : -1.0});
+      lemke.segments.add({i, from_low ? 1.0 : -1.0});
     }
-    if (has_multiplier(l)) lemke.parts.add({i, 0.0});
+    if (has_multiplier(l)) lemke.segments.add({i, 0.0});
   }
 }
 
-// The problem's equations by themselves: their part of the matrix `a`, factored.
+// The equations of the problem: their part of the matrix `a`, factored.
 class Equations {
  public:
   static std::size_t room_for(std::size_t count) { return count * count + 2 * count; }
@@ -193,41 +198,41 @@ class Equations {
       if (is_equation(p.limits[i])) at_[e++] = double(i);
     }
     for (std::size_t i = 0; i < e; ++i)
-      for (std::size_t j = 0; j < e; ++j) own_[i * e + j] = a[place(i) * size() + place(j)];
+      for (std::size_t j = 0; j < e; ++j) own_[i * e + j] = a[row_of(i) * size() + row_of(j)];
     factor_ldlt(own_, int(e));
   }
 
-  // Takes the equations out of the matrix `a` and the right side, which then hold for the other rows.
+  // Eliminates the equations from the matrix `a` and the right side of the other rows.
   void eliminate(std::span<double> a, std::span<double> q) {
     const std::size_t n = size();
     for (std::size_t j = 0; j <= n; ++j) {
       if (j < n && is_equation(p_.limits[j])) continue;
-      for (std::size_t i = 0; i < count_; ++i) column_[i] = j < n ? a[place(i) * n + j] : q[place(i)];
+      for (std::size_t i = 0; i < count_; ++i) column_[i] = j < n ? a[row_of(i) * n + j] : q[row_of(i)];
       solve_ldlt(own_, int(count_), column_);
       for (std::size_t i = 0; i < n; ++i) {
         if (is_equation(p_.limits[i])) continue;
         double sum = 0.0;
-        for (std::size_t k = 0; k < count_; ++k) sum += a[i * n + place(k)] * column_[k];
+        for (std::size_t k = 0; k < count_; ++k) sum += a[i * n + row_of(k)] * column_[k];
         (j < n ? a[i * n + j] : q[i]) -= sum;
       }
     }
   }
-  // The equations' impulses beside those of the other rows.
+  // Computes the impulses of the equations from those of the other rows.
   void fill(std::span<const double> q, std::span<double> x) {
     for (std::size_t i = 0; i < count_; ++i) {
-      double sum = -q[place(i)];
+      double sum = -q[row_of(i)];
       for (std::size_t j = 0; j < size(); ++j) {
-        if (!is_equation(p_.limits[j])) sum -= a_[place(i) * size() + j] * x[j];
+        if (!is_equation(p_.limits[j])) sum -= a_[row_of(i) * size() + j] * x[j];
       }
       column_[i] = sum;
     }
     solve_ldlt(own_, int(count_), column_);
-    for (std::size_t i = 0; i < count_; ++i) x[place(i)] = column_[i];
+    for (std::size_t i = 0; i < count_; ++i) x[row_of(i)] = column_[i];
   }
 
  private:
   std::size_t size() const { return p_.limits.size(); }
-  std::size_t place(std::size_t i) const { return std::size_t(at_[i]); }
+  std::size_t row_of(std::size_t i) const { return std::size_t(at_[i]); }
 
   const DenseProblem& p_;
   std::span<const double> a_;
@@ -235,7 +240,7 @@ class Equations {
   std::span<double> own_, column_, at_;
 };
 
-// With the diagonal raised by the share `give`.
+// `compliance`: share by which the diagonal is raised.
 void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double compliance, double tolerance,
                std::span<double> x, NumberRoom room, DirectResult& result) {
   const std::size_t n = std::size_t(p.size);
@@ -254,28 +259,28 @@ void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double complia
   joined.eliminate(a, q);
   const DenseProblem reduced{p.size, a, q, p.limits, p.friction};
   for (std::size_t i = 0; i < size; ++i) {
-    const Part own = lemke.parts.at(i);
+    const Segment own = lemke.segments.at(i);
     const RowLimits& l = p.limits[std::size_t(own.row)];
     const bool is_multiplier = own.first == 0.0 && own.second == 0.0;
-    lemke.q[i] = is_multiplier ? (l.kind == RowKind::box ? l.high - l.low : 0.0) : part_q(reduced, own);
+    lemke.q[i] = is_multiplier ? (l.kind == RowKind::box ? l.high - l.low : 0.0) : segment_q(reduced, own);
     for (std::size_t j = 0; j < size; ++j) {
-      const Part other = lemke.parts.at(j);
+      const Segment other = lemke.segments.at(j);
       double& m = lemke.m[i * size + j];
       const bool other_multiplies = other.first == 0.0 && other.second == 0.0;
-      m = is_multiplier || other_multiplies ? 0.0 : part_coupling(reduced, own, other);
+      m = is_multiplier || other_multiplies ? 0.0 : segment_coupling(reduced, own, other);
       if (own.row == other.row && is_multiplier != other_multiplies) m = is_multiplier ? -1.0 : 1.0;
     }
     if (!is_multiplier || l.kind == RowKind::box) continue;
     for (std::int32_t k = 0; k < l.load_count; ++k)
       lemke.m[i * size + std::size_t(lemke.groups[std::size_t(l.load_first + k)])] = l.friction;
   }
-  const LemkeResult found = solve_lemke(lemke.m, lemke.q, kParting, 40 * int(size) + 100, z, room);
+  const LemkeResult found = solve_lemke(lemke.m, lemke.q, kTieBreak, 40 * int(size) + 100, z, room);
   result.pivots += found.pivots;
   for (std::size_t i = 0; i < n; ++i) x[i] = lemke.shift[i];
   for (std::size_t i = 0; i < size; ++i) {
-    const Part part = lemke.parts.at(i);
-    x[std::size_t(part.row)] += part.first * z[i];
-    if (part.second != 0.0) x[std::size_t(part.row) + 1] += part.second * z[i];
+    const Segment segment = lemke.segments.at(i);
+    x[std::size_t(segment.row)] += segment.first * z[i];
+    if (segment.second != 0.0) x[std::size_t(segment.row) + 1] += segment.second * z[i];
   }
   joined.fill(p.q, x);
   const NewtonResult polished = solve_newton(p, tolerance, kPolishSteps, x, room);
@@ -297,18 +302,19 @@ DirectSize count_direct(std::span<const RowLimits> limits) {
 
 std::size_t direct_room(const DirectSize& size, const FrictionSet& set, DirectMethod method) {
   const std::size_t n = size.rows, sides = std::size_t(set.sides);
-  std::size_t most = newton_room(n);
+  std::size_t numbers = newton_room(n);
   if (method == DirectMethod::dantzig) {
-    const std::size_t parts = n + size.cones * (sides / 2);
-    most = max(most, 3 * parts + parts * parts + parts + Dantzig::room_for(parts) + n + newton_room(n));
+    const std::size_t segments = n + size.cones * (sides / 2);
+    numbers = max(numbers, 3 * segments + segments * segments + segments + Dantzig::room_for(segments) + n +
+                               newton_room(n));
   }
   if (method == DirectMethod::lemke) {
-    // Rows with a limit on either side have three variables at the most.
+    // Rows with a limit on either side have at most three variables.
     const std::size_t z = 3 * n + size.cones * (sides + 1);
     const std::size_t own = 3 * z + z * z + z + 2 * n + n * n + n + z + Equations::room_for(size.equations);
-    most = max(most, own + lemke_room(z) + newton_room(n));
+    numbers = max(numbers, own + lemke_room(z) + newton_room(n));
   }
-  return most;
+  return numbers;
 }
 
 DirectResult solve_direct(const DenseProblem& problem, const FrictionSet& polygon, DirectMethod method,
@@ -317,8 +323,8 @@ DirectResult solve_direct(const DenseProblem& problem, const FrictionSet& polygo
   if (method == DirectMethod::dantzig) {
     run_dantzig(problem, polygon, tolerance, x, room, result);
   } else {
-    // Where rows are so redundant that pivots are rounding, more of it tells them apart.
-    for (const double compliance : {kGive, 100.0 * kGive, 10000.0 * kGive}) {
+    // More compliance separates rows so redundant that pivots are rounding.
+    for (const double compliance : {kRegularization, 100.0 * kRegularization, 10000.0 * kRegularization}) {
       run_lemke(problem, polygon, compliance, tolerance, x, room, result);
       if (result.residual <= tolerance) break;
     }

@@ -1,4 +1,5 @@
-// Direct solvers against each other, against all combinations of limits tried one by one, and against the solvers that sweep.
+// Direct solvers against each other, against an enumeration of all combinations of limits, and against
+// iterative solvers.
 #include "solver/rows/solve_direct.h"
 
 #include "math/dense.h"
@@ -25,7 +26,8 @@ std::vector<double> random_psd(Chance& chance, int n, int rank) {
   return a;
 }
 
-// All 3^n choices of (low, between, high), each solved as linear equations. The first that fits; w is unique, x need not be.
+// Solves all 3^n choices of (low, between, high) as linear equations and returns the first that fits; w is
+// unique, x need not be.
 bool enumerate(const std::vector<double>& a, const std::vector<double>& q, const std::vector<double>& low,
                const std::vector<double>& high, std::vector<double>& w) {
   const int n = int(q.size());
@@ -148,15 +150,15 @@ TEST(SolveDirect, DantzigLemkeAndNncgAgreeOnHeapsWithFriction) {
       EXPECT_LT(by_dantzig.residual, 1.0e-8) << sides << " sides, seed " << seed;
       EXPECT_LT(by_lemke.residual, 1.0e-8) << sides << " sides, seed " << seed;
       EXPECT_LT(apart(dantzig, lemke), 1.0e-6) << sides << " sides, seed " << seed;
-      Island swept = island;
-      std::vector<double> numbers(nncg_room(swept.rows.size()));
+      Island iterated = island;
+      std::vector<double> numbers(nncg_room(iterated.rows.size()));
       const GaussSeidelResult nncg =
-          solve_nncg(swept.rows, swept.bodies, polygon, 1.0e-9, 20000, NumberRoom(numbers));
+          solve_nncg(iterated.rows, iterated.bodies, polygon, 1.0e-9, 20000, NumberRoom(numbers));
       if (nncg.residual > 1.0e-8) continue;
       ++ended;
-      EXPECT_LT(apart(dantzig, swept.bodies), 1.0e-5) << sides << " sides, seed " << seed;
+      EXPECT_LT(apart(dantzig, iterated.bodies), 1.0e-5) << sides << " sides, seed " << seed;
     }
-    // Redundant joints may make a heap so ill-conditioned that sweeps do not end.
+    // Redundant joints may make a heap so ill-conditioned that iterations do not converge.
     EXPECT_GE(ended, 58) << sides;
   }
 }
@@ -175,20 +177,21 @@ TEST(SolveDirect, TrueConesAreSolvedToo) {
       EXPECT_LE(std::sqrt(x[i] * x[i] + x[i + 1] * x[i + 1]), dense.limits[i].friction * load + 1.0e-6)
           << seed;
     }
-    Island swept = island;
-    std::vector<double> numbers(nncg_room(swept.rows.size()));
-    solve_nncg(swept.rows, swept.bodies, disc, 1.0e-9, 20000, NumberRoom(numbers));
-    EXPECT_LT(apart(pushed(island, x), swept.bodies), 1.0e-5) << seed;
+    Island iterated = island;
+    std::vector<double> numbers(nncg_room(iterated.rows.size()));
+    solve_nncg(iterated.rows, iterated.bodies, disc, 1.0e-9, 20000, NumberRoom(numbers));
+    EXPECT_LT(apart(pushed(island, x), iterated.bodies), 1.0e-5) << seed;
   }
 }
 
 TEST(SolveDirect, RedundantCornersBearAThousandfoldLoad) {
-  // Four corners a face, three would do; every box bears a thousand times what it weighs.
+  // Each face has four corners where three would do; every box carries a thousand times its weight.
   const double kick = 9.81 / 240.0;
   const Island island = make_stack({1, 1, 1, 1, 1000}, kick);
   const FrictionSet polygon = make_friction_set(4);
   const Dense dense(island, polygon);
-  // A residual of r leaves speeds of r times the largest diagonal, and of the ground's impulse that times all mass.
+  // A residual of r leaves speeds of r times the largest diagonal, and in the impulse of the ground that
+  // times the total mass.
   double stiffest = 0.0;
   for (const Row& row : island.rows) stiffest = std::max(stiffest, row.diagonal);
   const auto check = [&](const char* method, double residual, const std::vector<double>& x) {
@@ -210,10 +213,10 @@ TEST(SolveDirect, RedundantCornersBearAThousandfoldLoad) {
   const NewtonResult newton =
       solve_body_newton({island.rows, island.bodies, &polygon, &plan}, 1.0e-11, 10, x, NumberRoom(numbers));
   check("Newton", newton.residual, x);
-  // What many sweeps make of the same.
-  Island swept = island;
-  for (int i = 0; i < 50; ++i) iterate_rows_once(swept.rows, swept.bodies, polygon);
-  EXPECT_GT(length(swept.bodies.back().linear), 0.5 * kick);
+  // The same by many iterations.
+  Island iterated = island;
+  for (int i = 0; i < 50; ++i) iterate_rows_once(iterated.rows, iterated.bodies, polygon);
+  EXPECT_GT(length(iterated.bodies.back().linear), 0.5 * kick);
 }
 
 TEST(SolveDirect, TheOrderOfRowsDoesNotMatter) {
@@ -236,22 +239,22 @@ TEST(SolveDirect, FrictionOfAPolygonIsBetweenItsInnerAndItsOuterCircle) {
   const double kick = 0.1, friction = 0.5;
   for (const int sides : {4, 8, 16}) {
     const FrictionSet polygon = make_friction_set(sides);
-    double least = 1.0, most = 0.0;
+    double smallest = 1.0, largest = 0.0;
     for (int k = 0; k < 64; ++k) {
       const double angle = 2.0 * double(kPi) * k / 64.0;
       Island island;
-      // A point that turns do not reach: a ball's lowest, with no inertia against turning to speak of.
+      // A point without lever arm: the lowest of a ball with almost no inertia.
       add_body(island.bodies, 1.0, 1.0, {std::cos(angle), -kick, std::sin(angle)});
       for (double& v : island.bodies[0].inverse_inertia) v = 0.0;
       add_contact(island.rows, island.bodies, -1, 0, {}, {}, {0, 1, 0}, friction);
       DirectResult result;
       const std::vector<double> x = solve_by(Dense(island, polygon), polygon, DirectMethod::dantzig, result);
       const double size = std::sqrt(x[1] * x[1] + x[2] * x[2]) / (friction * x[0]);
-      least = std::min(least, size), most = std::max(most, size);
+      smallest = std::min(smallest, size), largest = std::max(largest, size);
     }
-    EXPECT_LE(most, 1.0 + 1.0e-9);
-    EXPECT_GE(least, std::cos(double(kPi) / sides) - 1.0e-9);
-    EXPECT_NEAR(most, 1.0, 0.02) << sides;
+    EXPECT_LE(largest, 1.0 + 1.0e-9);
+    EXPECT_GE(smallest, std::cos(double(kPi) / sides) - 1.0e-9);
+    EXPECT_NEAR(largest, 1.0, 0.02) << sides;
   }
 }
 
@@ -264,7 +267,7 @@ TEST(FrictionSet, NearestPointsAreNearest) {
       const FrictionPoint p = nearest_friction(set, radius, x, y);
       const double distance = std::hypot(x - p.x, y - p.y);
       EXPECT_LE(std::hypot(p.x, p.y), radius + 1.0e-12);
-      // No other point of the set is nearer: points of the rim and the middle.
+      // No other point of the set is nearer: points of the rim and the centre.
       for (int k = 0; k < 200; ++k) {
         double ox = 0, oy = 0;
         if (sides == 0) {

@@ -26,14 +26,14 @@ class DenseNewton {
       dw[i] = sum;
     }
   }
-  bool find_step(std::span<const double> x, std::span<const double> w, double near, std::span<double> dx) {
+  bool find_step(std::span<const double> x, std::span<const double> w, double damping, std::span<double> dx) {
     for (double& value : matrix_) value = 0.0;
     for (int i = 0; i < problem_.size; ++i) {
       const RowLimits& limits = problem_.limits[std::size_t(i)];
       if (limits.kind == RowKind::cone_second) continue;
       const bool is_cone = limits.kind == RowKind::cone;
       const std::size_t k = std::size_t(i);
-      MapPoint at{{x[k], 0.0}, {w[k], 0.0}, problem_.at(i, i), 0.0, near};
+      MapPoint at{{x[k], 0.0}, {w[k], 0.0}, problem_.at(i, i), 0.0, damping};
       if (is_cone) at.x[1] = x[k + 1], at.w[1] = w[k + 1], at.rate = max(at.rate, problem_.at(i + 1, i + 1));
       if (limits.kind != RowKind::box) at.load = load_of(limits, [&](int j) { return x[std::size_t(j)]; });
       const MapEquations e =
@@ -45,7 +45,7 @@ class DenseNewton {
   }
 
  private:
-  // Equation `row` of those that begin at row i of the problem.
+  // Writes equation `row` of those that begin at row i of the problem.
   void write(const MapEquations& e, int row, int i, int count, const RowLimits& limits,
              std::span<double> right) {
     const std::size_t n = rows();
@@ -62,17 +62,17 @@ class DenseNewton {
     right[std::size_t(i + row)] = e.right[row];
   }
 
-  // Gauss's elimination with partial pivoting; false if singular.
+  // Gaussian elimination with partial pivoting; false if singular.
   bool solve(std::span<double> right) {
     const std::size_t n = rows();
     for (std::size_t k = 0; k < n; ++k) {
       std::size_t best = k;
-      double most = 0.0;
+      double largest = 0.0;
       for (std::size_t i = k; i < n; ++i) {
         const double v = matrix_[i * n + k], size = v < 0.0 ? -v : v;
-        if (size > most) most = size, best = i;
+        if (size > largest) largest = size, best = i;
       }
-      if (!(most > 1.0e-14)) return false;
+      if (!(largest > 1.0e-14)) return false;
       if (best != k) {
         for (std::size_t j = k; j < n; ++j) {
           const double v = matrix_[k * n + j];

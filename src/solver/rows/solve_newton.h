@@ -1,5 +1,5 @@
-// Newton's method (solver/rows/newton_search.h) on a dense problem: what pivoting finds is polished by it. A step is Gauss's elimination,
-// 2/3 n^3 operations.
+// Newton's method (solver/rows/newton_search.h) on a dense problem, to polish the result of pivoting. A step
+// is Gaussian elimination, 2/3 n^3 operations.
 #pragma once
 
 #include "solver/rows/newton_search.h"
@@ -8,7 +8,7 @@ namespace gyre {
 
 constexpr std::size_t newton_room(std::size_t size) { return size * size + newton_search_room(size); }
 
-// Improves `x` until the residual is at most `tolerance`; leaves the best that was found.
+// Improves `x` until the residual is at most `tolerance`, and returns the best impulses found.
 NewtonResult solve_newton(const DenseProblem& problem, double tolerance, int max_steps, std::span<double> x,
                           NumberRoom room);
 

@@ -1,6 +1,6 @@
-#include "rigid/integrate/free_rotation.h"
-
 #include "solver/motion/torque_free_rotation.h"
+
+#include "solver/motion/torque_free_rotation_kernel.h"
 
 namespace gyre {
 
@@ -19,11 +19,11 @@ Tensor inverse(const Tensor& m) {
   return {i.xx.v, i.yy.v, i.zz.v, i.xy.v, i.xz.v, i.yz.v};
 }
 
-DQuat turn_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds,
-                       double angle) {
-  const DQuatW<1> q = turn_in_steps(DQuatW<1>{start.x, start.y, start.z, start.w},
-                                    DVec3W<1>{momentum.x, momentum.y, momentum.z}, lane_of(inverse_inertia),
-                                    WideDouble<1>(seconds), WideDouble<1>(angle));
+DQuat rotate_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds,
+                         double angle) {
+  const DQuatW<1> q = rotate_in_steps(DQuatW<1>{start.x, start.y, start.z, start.w},
+                                      DVec3W<1>{momentum.x, momentum.y, momentum.z}, lane_of(inverse_inertia),
+                                      WideDouble<1>(seconds), WideDouble<1>(angle));
   return {q.x.v, q.y.v, q.z.v, q.w.v};
 }
 

@@ -1,9 +1,9 @@
-// What the kernels keep of a bundle of linkages (solver/articulation/linkage_lanes.h): bodies and joints, W of each side by side, and the way
-// between them and the records of bodies.
+// Bodies and joints of a bundle of articulations (solver/articulation/articulation_lanes.h) for the kernels,
+// W of each side by side, and the exchange with the records of bodies.
 #pragma once
 
 #include "math/wide_vec.h"
-#include "solver/articulation/linkage_matrix.h"
+#include "solver/articulation/articulation_matrix.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -13,17 +13,17 @@ struct WideBody {
   std::int32_t record[W];
   std::int32_t pressed[W];  // 1: contacts act on it
   Vec3W<W> linear,
-      angular;  // velocities, while a stage works on them, or from contacts to contacts (LaneVelocities)
+      angular;  // velocities, within a stage, or from contacts to contacts (LaneVelocities)
   Wide<W> inverse_mass;
-  Sym3W<W> inverse;      // of the inertia, raised to what a sub-step can bear
+  Sym3W<W> inverse;      // of the inertia with geometric stiffness
   Sym3W<W> own_inverse;  // of the inertia as it is
   Sym3W<W> inertia;
-  QuatW<W> turn;  // what its velocities make of a sub-step
-  // While joints are placed: the pose, and by how much tension holds it (N m/rad).
+  QuatW<W> rotation;  // rotation in the sub-step by its velocities
+  // During preparation: the pose, and the geometric stiffness (N m/rad).
   QuatW<W> orientation;
-  Vec3W<W> moved;
+  Vec3W<W> delta_position;
   Sym3W<W> geometric_stiffness;
-  Vec3W<W> center;  // while inner motion is slowed: from that of the first body
+  Vec3W<W> center;  // while inner motion is scaled: relative to the first body
 };
 
 static_assert(offsetof(WideBody<4>, angular) == offsetof(WideBody<4>, linear) + sizeof(Vec3W<4>));
@@ -43,7 +43,7 @@ struct WideJoint {
   WideLimitAxis<W> twist, swing;
   Vec3W<W> from_a, from_b, error, compliance, target_speed;
   Vec3W<W> axis, perpendicular_1, perpendicular_2, angular_error;
-  Wide<W> turn_give_1, turn_give_2, turn_wanted_1, turn_wanted_2;
+  Wide<W> angular_compliance_1, angular_compliance_2, angular_target_1, angular_target_2;
 };
 template <int W>
 struct WideDrives {
@@ -58,14 +58,14 @@ struct WideDrives {
 template <int W>
 struct WideServo {
   WideLimitAxis<W> axis;
-  Wide<W> most, target_speed, rate;
+  Wide<W> max_impulse, target_speed, rate;
 };
 static_assert(sizeof(WideDrives<1>) == sizeof(LaneDrives) && sizeof(WideServo<1>) == sizeof(LaneServo));
 static_assert(sizeof(WideLimitAxis<1>) == sizeof(LaneLimitAxis) && sizeof(WideJoint<1>) == sizeof(LaneJoint));
 static_assert(offsetof(WideJoint<1>, swing) == offsetof(LaneJoint, swing));
 static_assert(offsetof(WideJoint<1>, from_a) == offsetof(LaneJoint, from_a));
 
-// A bundle while a stage works on it.
+// A bundle within a stage.
 template <int W>
 struct WideBundle {
   const ArticulationBundle& plain;
@@ -82,12 +82,12 @@ struct WideBundle {
         servos(reinterpret_cast<WideServo<W>*>(bundle.servos)) {}
   GYRE_INLINE bool moves(std::uint32_t body) const { return body < plain.moving_count; }
 
-  // Of the matrix.
+  // Access to the matrix.
   GYRE_INLINE void set_value(std::uint32_t i, Wide<W> v) const { v.store(plain.values + i * W); }
   GYRE_INLINE void add_value(std::uint32_t i, Wide<W> v) const {
     set_value(i, Wide<W>::load(plain.values + i * W) + v);
   }
-  // Of the vector, or of one like it.
+  // Access to the vector, or one like it.
   GYRE_INLINE void set_row(std::uint32_t row, Wide<W> v) const { set_row(plain.vector, row, v); }
   GYRE_INLINE static void set_row(float* vector, std::uint32_t row, Wide<W> v) { v.store(vector + row * W); }
   GYRE_INLINE Wide<W> row(std::uint32_t row) const { return Wide<W>::load(plain.vector + row * W); }
@@ -96,10 +96,10 @@ struct WideBundle {
   }
 };
 
-// The impulse p at the joint and the turning impulse t, on b, and their opposites on a.
+// Applies the impulse p at the joint and the angular impulse t to b, and their opposites to a.
 template <int W>
-GYRE_INLINE void push_joint(const WideBundle<W>& bundle, const LaneNode& node, const WideJoint<W>& joint,
-                            Vec3W<W> p, Vec3W<W> t) {
+GYRE_INLINE void apply_joint_impulse(const WideBundle<W>& bundle, const LaneNode& node,
+                                     const WideJoint<W>& joint, Vec3W<W> p, Vec3W<W> t) {
   if (bundle.moves(node.a)) {
     WideBody<W>& a = bundle.bodies[node.a];
     a.linear -= a.inverse_mass * p;
@@ -112,7 +112,7 @@ GYRE_INLINE void push_joint(const WideBundle<W>& bundle, const LaneNode& node, c
   }
 }
 
-// `Fours` times four floats of records of `Stride` floats; of `none` where there is no record.
+// Gathers `Fours` times four floats of records of `Stride` floats; of `none` where there is no record.
 template <int Fours, int W, int Stride>
 GYRE_INLINE void gather_vec4(const float* base, const std::int32_t* indices, const float* none, int first,
                              Wide<W>* out) {
@@ -127,7 +127,7 @@ GYRE_INLINE void gather_vec4(const float* base, const std::int32_t* indices, con
   }
 }
 
-// (These two are not inline: every stage has them.)
+// (These two are not inlined: every stage has them.)
 template <int W>
 __attribute__((noinline)) void load_velocities(const WideBundle<W>& bundle, const LaneArrays& arrays) {
   for (std::uint32_t i = arrays.loads ? 0 : bundle.plain.moving_count; i < bundle.plain.body_count; ++i) {
@@ -154,7 +154,7 @@ __attribute__((noinline)) void store_velocities(const WideBundle<W>& bundle, con
   }
 }
 
-// Where the bodies are, and their inertia.
+// Loads poses and inertia of the bodies.
 template <int W>
 GYRE_INLINE void load_poses(const WideBundle<W>& bundle, const LaneArrays& arrays) {
   alignas(64) static constexpr float kZeros[kRecordFloats] = {};
@@ -165,8 +165,9 @@ GYRE_INLINE void load_poses(const WideBundle<W>& bundle, const LaneArrays& array
     Wide<W> c[8];
     gather_vec4<1, W, 4>(&arrays.orientation->x, body.record, kUnturned, 0, c);
     body.orientation = {c[0], c[1], c[2], c[3]};
-    gather_vec4<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros, kMotionMoved, c);
-    body.moved = {c[0], c[1], c[2]};
+    gather_vec4<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros,
+                                     kMotionDeltaPosition, c);
+    body.delta_position = {c[0], c[1], c[2]};
     const Wide<W> zero(0.0f);
     body.geometric_stiffness = {zero, zero, zero, zero, zero, zero};
     if (!bundle.moves(i)) {

@@ -1,5 +1,5 @@
-// Crowds of linkages for tests of their lanes (solver/articulation/linkage_lanes.h): each copy in a state of its own, solved one by one and side by
-// side.
+// Crowds of articulations for tests of their lanes (solver/articulation/articulation_lanes.h): each copy has
+// a state of its own and is solved one by one and side by side.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -17,7 +17,7 @@
 #include <cstring>
 #include <vector>
 
-namespace gyre::linkage_test {
+namespace gyre::articulation_test {
 
 inline constexpr int kBodies = 6, kJoints = 6, kCopies = 7;
 inline constexpr float kSubstep = 1.0f / 480.0f;
@@ -32,22 +32,22 @@ struct Random {
   Vec3 vector(float size) { return {size * next(), size * next(), size * next()}; }
 };
 
-// Who hangs on whom: from the world a hinge with stops, cones with and without stops, a ball, a hinge without stops, and a second
-// ball between the same two bodies, which makes a loop.
+// The articulation: from the world a hinge with limits, cones with and without limits, a ball, a hinge
+// without limits, and a second ball between the same two bodies, which makes a loop.
 struct Member {
   JointKind kind;
   std::int32_t a, b;
-  bool stops;
+  bool limits;
 };
 inline constexpr Member kMembers[kJoints] = {
     {JointKind::hinge, kNoBody, 0, true}, {JointKind::cone, 0, 1, true},  {JointKind::ball, 1, 2, false},
     {JointKind::hinge, 3, 1, false},      {JointKind::cone, 0, 4, false}, {JointKind::ball, 1, 2, false}};
 
-// What drives most of the joints: drives, motors with a frequency and friction, which are swept; or motors of hinges without one, which are
-// solved with the equations, and no stop is near.
-enum class Driven : std::uint8_t { no, swept, motors };
+// Drives of most of its joints: iterative ones (drives, motors with a frequency and friction); or motors of
+// hinges without a frequency, which are solved with the equations, with no limit near.
+enum class Driven : std::uint8_t { no, iterative, motors };
 
-// Several copies of that linkage, each in a state of its own, and the work of a step.
+// Several copies of that articulation, each in a state of its own, and the data of a step.
 struct Crowd {
   Arena arena;
   std::vector<BodyMotion> motion{std::size_t(kBodies * kCopies)};
@@ -56,7 +56,7 @@ struct Crowd {
   std::vector<JointRecord> records{std::size_t(kJoints * kCopies)};
   std::vector<JointDetail> details{std::size_t(kJoints * kCopies)};
   std::vector<JointConstraint> work{std::size_t(kJoints * kCopies)};
-  std::vector<JointOffsets> places{std::size_t(kJoints * kCopies)};
+  std::vector<JointOffsets> offsets{std::size_t(kJoints * kCopies)};
   Driven driven;
 
   explicit Crowd(float tension, Driven by = Driven::no) : driven(by) {
@@ -65,7 +65,7 @@ struct Crowd {
       motion[i].linear_velocity = random.vector(3.0f);
       motion[i].angular_velocity = random.vector(8.0f);
       motion[i].inverse_mass = inertia[i].inverse_mass = 1.0f + 0.5f * random.next();
-      motion[i].moved = random.vector(0.01f);
+      motion[i].delta_position = random.vector(0.01f);
       inertia[i].inverse = {.xx = 20 + random.next(),
                             .yy = 30 + random.next(),
                             .zz = 25 + random.next(),
@@ -76,7 +76,7 @@ struct Crowd {
     }
     for (std::size_t i = 0; i < records.size(); ++i) set_joint(i, random, tension);
     for (std::size_t i = 0; driven != Driven::no && i < records.size(); ++i) drive_joint(i, random);
-    if (driven == Driven::motors) open_stops();
+    if (driven == Driven::motors) open_limits();
     for (std::size_t i = 0; i < records.size(); ++i)
       begin_joint(records[i], detail_of(i), {}, work[i], 1.0f, arena);
   }
@@ -95,16 +95,16 @@ struct Crowd {
     joint.linear_impulse = random.vector(tension);
     const Quat a = joint.body_a == kNoBody ? Quat{} : orientation[std::size_t(joint.body_a)];
     const Quat b = orientation[std::size_t(joint.body_b)];
-    if (joint.kind == JointKind::hinge) {  // not far from where it should be
+    if (joint.kind == JointKind::hinge) {  // near its target
       joint.local_frame_b =
           conjugate(b) * (from_rotation_vector(random.vector(0.02f)) * a * joint.local_frame_a);
       joint.angular_impulse = random.vector(0.01f);
     }
-    const Vec3 moved = motion[std::size_t(joint.body_b)].moved -
-                       (joint.body_a == kNoBody ? Vec3{} : motion[std::size_t(joint.body_a)].moved);
-    places[i].offset =
+    const Vec3 moved = motion[std::size_t(joint.body_b)].delta_position -
+                       (joint.body_a == kNoBody ? Vec3{} : motion[std::size_t(joint.body_a)].delta_position);
+    offsets[i].offset =
         rotate(a, joint.local_anchor_a) - rotate(b, joint.local_anchor_b) - moved + random.vector(0.002f);
-    if (!member.stops) return;
+    if (!member.limits) return;
     joint.has_limits = true;
     joint.limits = {-0.2f, 0.1f + 0.2f * random.next()};
     joint.low_impulse = 0.003f;
@@ -118,7 +118,8 @@ struct Crowd {
       detail.axes[int(axis)].high_impulse = 0.002f;
     }
   }
-  // Stopping a body takes some 0.3 N m s: in the first copies friction holds and drives are strong, in the last ones they are weak.
+  // It takes some 0.3 N m s to stop a body: in the first copies friction holds and drives are strong, in the
+  // last ones they are weak.
   void drive_joint(std::size_t i, Random& random) {
     const std::size_t member = i % kJoints;
     const float strength = 8.0f / (1.0f + 3.0f * float(i / kJoints));
@@ -128,12 +129,12 @@ struct Crowd {
       joint.motor_force = 100.0f * strength;
       joint.motor_velocity = 3.0f * random.next();
       joint.motor_impulse = 0.01f * random.next();
-      joint.has_motor_target = kMembers[member].stops;
+      joint.has_motor_target = kMembers[member].limits;
       joint.motor_position = random.next();
       if (driven == Driven::motors) return;
       joint.motor_frequency = 6.0f;
       JointAxisRecord& axis = detail.axes[int(JointAxis::angular_x)];
-      if (!kMembers[member].stops) return;
+      if (!kMembers[member].limits) return;
       axis.friction = 60.0f * strength;
       axis.friction_impulse = 0.01f * random.next();
       return;
@@ -148,8 +149,8 @@ struct Crowd {
     detail.drive.angular_velocity = random.vector(2.0f);
     detail.drive_torque_impulse = random.vector(0.01f);
   }
-  // None is near its stops.
-  void open_stops() {
+  // None is near its limits.
+  void open_limits() {
     for (JointRecord& joint : records) joint.limits = {-10.0f, 10.0f}, joint.low_impulse = 0.0f;
     for (JointDetail& detail : details) {
       detail.swing_y = detail.swing_z = kPi;
@@ -158,20 +159,20 @@ struct Crowd {
   }
   JointDetail* detail_of(std::size_t i) {
     const Member& member = kMembers[i % kJoints];
-    return driven != Driven::no || (member.stops && member.kind != JointKind::hinge) ? &details[i] : nullptr;
+    return driven != Driven::no || (member.limits && member.kind != JointKind::hinge) ? &details[i] : nullptr;
   }
 
   ArticulationSolve solve() {
     return {.records = records,
             .work = work,
-            .places = places,
+            .offsets = offsets,
             .bodies = {motion.data(), inertia.data(), orientation.data()},
             .settings = kSettings,
             .compliance = 1.0e-4f};
   }
 };
 
-// The plan and the couplings, and the lanes' form of them.
+// The plan and the couplings, in scalar form and in that of lanes.
 struct Shape {
   Arena arena;
   BlockPlan plan;
@@ -255,25 +256,17 @@ inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
   for (std::size_t i = 0; i < crowd.records.size(); ++i) finish_joint(crowd.records[i], crowd.work[i]);
 }
 
-// What happens between the two parts of solve_side_by_side.
+// Changes between the two half steps of solve_side_by_side.
 struct Between {
-  float turn = 0.0f;    // rad: how far the second body of every other copy turns
-  bool forget = false;  // nothing of the first part is kept but impulses
-  // What speed came from taking errors back is left to the second part, or not.
+  float turn = 0.0f;    // rad: rotation of the second body of every other copy
+  bool forget = false;  // only impulses remain of the first half step
+  // The stage between the half steps: none, that between half steps, or that at the end of a step.
   enum class Ends : std::uint8_t { no, passes, finishes } ends = Ends::no;
-  bool asks = true;  // what the second part begins with is asked for by itself too
+  bool computes_bias = true;  // the bias of the second half step is computed by itself too
 };
 
-inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKernels& kernels,
-                               const Between& between) {
-  const ArticulationSolve solve = crowd.solve();
-  const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
-  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.compliance,
-                              add_geometric_stiffness};
-  const LaneStart start{.substep = kSubstep, .softness = kSettings.softness};
-  for (std::size_t i = 0; i < kJoints; ++i)
-    ASSERT_TRUE(fits_lane(crowd.records[i], crowd.detail_of(i), start, shape.nodes[i]));
-  Arena arena;
+// The bundle of one block of lanes.
+inline ArticulationBundle make_bundle(Shape& shape, const ArticulationKernels& kernels, Arena& arena) {
   const std::size_t lanes = std::size_t(kernels.width);
   ArticulationBundle bundle;
   bundle.kernels = &kernels;
@@ -307,7 +300,21 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
   bundle.vector = arena.make<float>(lanes * shape.plan.rows).data();
   bundle.room = arena.make<float>(lanes * shape.plan.widest).data();
   bundle.is_factored = arena.make<bool>(1).data();
-  bundle.stops = arena.make<std::byte>(kernels.limit_room(bundle)).data();
+  bundle.limits = arena.make<std::byte>(kernels.limit_room(bundle)).data();
+  return bundle;
+}
+
+inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKernels& kernels,
+                               const Between& between) {
+  const ArticulationSolve solve = crowd.solve();
+  const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
+  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.compliance,
+                              add_geometric_stiffness};
+  const LaneStart start{.substep = kSubstep, .softness = kSettings.softness};
+  for (std::size_t i = 0; i < kJoints; ++i)
+    ASSERT_TRUE(fits_lane(crowd.records[i], crowd.detail_of(i), start, shape.nodes[i]));
+  Arena arena;
+  const ArticulationBundle bundle = make_bundle(shape, kernels, arena);
   for (int first = 0; first < kCopies; first += kernels.width) {
     const int used = std::min(kernels.width, kCopies - first);
     clear_lanes(bundle);
@@ -318,7 +325,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
       }
     };
     for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
-      load_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i), crowd.places[i].offset, start);
+      load_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i), crowd.offsets[i].offset, start);
       set_lane_body(bundle, lane, shape.nodes[n].a, crowd.records[i].body_a, false);
       set_lane_body(bundle, lane, shape.nodes[n].b, crowd.records[i].body_b, false);
     });
@@ -335,10 +342,10 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
         }
         if (between.forget) kernels.begin(bundle);
       }
-      // Passing on comes after placing, and asks.
+      // end_half_step follows preparation, and computes the bias.
       const bool passed = part == 1 && between.ends == Between::Ends::passes;
       if (!passed) kernels.prepare(bundle, arrays, settings);
-      if (!passed || between.asks) kernels.compute_bias(bundle, arrays, settings);
+      if (!passed || between.computes_bias) kernels.compute_bias(bundle, arrays, settings);
       kernels.solve(bundle, arrays, settings);
       kernels.solve_after_contacts(bundle, arrays, settings);
     }
@@ -349,19 +356,19 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
   }
 }
 inline void solve_side_by_side(Crowd& crowd, Shape& shape, int width, const Between& between = {}) {
-  solve_side_by_side(crowd, shape, select_kernels(width).linkages, between);
+  solve_side_by_side(crowd, shape, select_kernels(width).articulations, between);
 }
 
 inline double apart(Vec3 a, Vec3 b) { return double(length(a - b)); }
 
-// Rounding to float in some ten solutions of a system with a condition of about a thousand.
+// Rounding to float in some ten solves of a system with a condition of about a thousand.
 inline constexpr double kRounding = 2.0e-4;
 
-// How a joint bends in the second part is asked with or without the speeds that errors gave in the first, some 0.8 rad/s beside 8: over a
-// part that makes so many rad/s.
+// Difference of the second half step's bias with or without the speeds of error removal in the first, some
+// 0.8 rad/s beside 8, as rad/s over a half step.
 inline constexpr double kLeftOver = 0.8 * 8.0 * double(kSubstep);
 
-// `times`: so much more than rounding may they differ.
+// `times`: allowed difference as a multiple of rounding.
 inline void expect_same(const Crowd& one, const Crowd& other, double times = 1.0) {
   const double rounding = times * kRounding;
   for (std::size_t i = 0; i < one.motion.size(); ++i) {
@@ -372,7 +379,7 @@ inline void expect_same(const Crowd& one, const Crowd& other, double times = 1.0
   }
   for (std::size_t i = 0; i < one.records.size(); ++i) {
     const JointRecord &a = one.records[i], &b = other.records[i];
-    if (i % kJoints != 2 && i % kJoints != 5) {  // the two balls that share their load by the give alone
+    if (i % kJoints != 2 && i % kJoints != 5) {  // the two balls that share their load by compliance alone
       EXPECT_LT(apart(a.linear_impulse, b.linear_impulse), 3.0 * rounding) << "joint " << i;
       EXPECT_LT(apart(a.total_linear, b.total_linear), 3.0 * rounding) << "joint " << i;
     }
@@ -396,4 +403,4 @@ inline void expect_same(const Crowd& one, const Crowd& other, double times = 1.0
   }
 }
 
-}  // namespace gyre::linkage_test
+}  // namespace gyre::articulation_test

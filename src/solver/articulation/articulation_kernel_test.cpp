@@ -1,15 +1,15 @@
-// Linkages side by side against the same linkages one by one: the equations are the same, so the results agree to rounding; and
-// each lane has the same bits whatever the width.
-#include "solver/articulation/linkage_matrix.h"
-#include "solver/articulation/linkage_test_kit.h"
+// Articulations side by side against the same articulations one by one: the equations are the same, so
+// results agree to rounding; and each lane has the same bits at every width.
+#include "solver/articulation/articulation_matrix.h"
+#include "solver/articulation/articulation_test_kit.h"
 
 #include <cmath>
 
-namespace gyre::linkage_test {
+namespace gyre::articulation_test {
 namespace {
 
-TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
-  for (const float tension : {0.05f, 50.0f}) {  // the second raises inertias
+TEST(ArticulationKernel, LanesMatchOneArticulation) {
+  for (const float tension : {0.05f, 50.0f}) {  // the second adds geometric stiffness
     SCOPED_TRACE(tension);
     Shape shape;
     Crowd one_by_one(tension), side_by_side(tension), untouched(tension);
@@ -20,13 +20,13 @@ TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
   }
 }
 
-TEST(LinkageKernel, DrivesAndFrictionInLanesDoWhatTheyDoInOneLinkage) {
+TEST(ArticulationKernel, DrivesAndFrictionInLanesMatchOneArticulation) {
   Shape shape;
-  Crowd one_by_one(0.05f, Driven::swept), side_by_side(0.05f, Driven::swept);
+  Crowd one_by_one(0.05f, Driven::iterative), side_by_side(0.05f, Driven::iterative);
   solve_one_by_one(one_by_one, shape);
   solve_side_by_side(side_by_side, shape, 0);
   expect_same(one_by_one, side_by_side);
-  // Some slip, and some hold.
+  // Some slip, and some stick.
   int slipping = 0, holding = 0;
   const auto count = [&](float size, float most) {
     ++(size < 0.999f * kSubstep * most ? holding : slipping);
@@ -41,13 +41,14 @@ TEST(LinkageKernel, DrivesAndFrictionInLanesDoWhatTheyDoInOneLinkage) {
   EXPECT_GT(holding, 3);
 }
 
-// Strong ones keep what they are told, weak ones give all they have.
-TEST(LinkageKernel, MotorsInLanesDoWhatTheyDoInOneLinkage) {
+// Strong ones reach their targets, weak ones act with all their force.
+TEST(ArticulationKernel, MotorsInLanesMatchOneArticulation) {
   Shape shape;
   Crowd one_by_one(0.05f, Driven::motors), side_by_side(0.05f, Driven::motors);
   solve_one_by_one(one_by_one, shape);
   solve_side_by_side(side_by_side, shape, 0);
-  // Sweeps over several motors end where none changes a speed by 1e-4 rad/s: 4e-4 N m s where least of the linkage turns.
+  // Iterations over several motors end where none changes a speed by 1e-4 rad/s: 4e-4 N m s for the smallest
+  // inertia of the articulation.
   expect_same(one_by_one, side_by_side, 5.0);
   int weak = 0, strong = 0;
   for (const JointRecord& joint : side_by_side.records) {
@@ -73,7 +74,7 @@ void expect_same_bits_at_every_width(float tension, Driven driven, const Between
                                         &select_kernels(8), &select_kernels(16)}) {
     const int width = kernels->width;
     Crowd crowd = start();
-    solve_side_by_side(crowd, shape, kernels->linkages, between);
+    solve_side_by_side(crowd, shape, kernels->articulations, between);
     const std::size_t motions = crowd.motion.size() * sizeof(BodyMotion);
     EXPECT_EQ(std::memcmp(crowd.motion.data(), reference.motion.data(), motions), 0) << "width " << width;
     const auto same = [](const JointRecord& a, const JointRecord& b) {
@@ -95,23 +96,24 @@ void expect_same_bits_at_every_width(float tension, Driven driven, const Between
   }
 }
 
-TEST(LinkageKernel, EveryWidthHasTheSameBits) {
-  for (const Driven driven : {Driven::no, Driven::swept, Driven::motors}) {
+TEST(ArticulationKernel, EveryWidthHasTheSameBits) {
+  for (const Driven driven : {Driven::no, Driven::iterative, Driven::motors}) {
     for (const float tension : {0.05f, 50.0f}) {
-      // Some lanes keep what others find anew; some spin so fast that they lose what errors gave them at once.
+      // Some lanes have cached entries that others compute anew; some spin so fast that they lose the speed
+      // of error removal at once.
       expect_same_bits_at_every_width(tension, driven, {.turn = 0.4f}, 1.0f);
       expect_same_bits_at_every_width(tension, driven, {.ends = Between::Ends::passes}, 6.0f);
     }
   }
 }
 
-// All of a copy hangs as it should, within its stops, but for speeds of about `noise`.
-void calm(Crowd& crowd, int copy, float noise) {
+// Brings a copy into position, within its limits, with speeds of about `noise`.
+void settle(Crowd& crowd, int copy, float noise) {
   Random random{std::uint32_t(copy)};
   for (std::size_t i = std::size_t(copy * kBodies); i < std::size_t((copy + 1) * kBodies); ++i) {
     crowd.motion[i].linear_velocity = random.vector(noise);
     crowd.motion[i].angular_velocity = random.vector(noise);
-    crowd.motion[i].moved = {};
+    crowd.motion[i].delta_position = {};
     crowd.orientation[i] = {};
   }
   for (std::size_t i = std::size_t(copy * kJoints); i < std::size_t((copy + 1) * kJoints); ++i) {
@@ -121,7 +123,7 @@ void calm(Crowd& crowd, int copy, float noise) {
     joint.low_impulse = 0.0f;
     joint.limits = {-0.2f, 0.2f};
     for (JointAxisRecord& axis : crowd.details[i].axes) axis.high_impulse = 0.0f, axis.limits = joint.limits;
-    crowd.places[i].offset = joint.local_anchor_a - joint.local_anchor_b;
+    crowd.offsets[i].offset = joint.local_anchor_a - joint.local_anchor_b;
   }
 }
 
@@ -130,7 +132,7 @@ bool same_motion(const Crowd& a, const Crowd& b, int copy) {
   return std::memcmp(&a.motion[first], &b.motion[first], kBodies * sizeof(BodyMotion)) == 0;
 }
 
-TEST(LinkageKernel, WaysOfStopsAreKeptUntilAJointHasTurnedFar) {
+TEST(ArticulationKernel, DelassusEntriesStayCachedUntilAJointRotatesFar) {
   Shape shape;
   Crowd kept(0.05f), forgotten(0.05f), still(0.05f);
   solve_side_by_side(kept, shape, 0, {.turn = 0.4f});
@@ -144,27 +146,27 @@ TEST(LinkageKernel, WaysOfStopsAreKeptUntilAJointHasTurnedFar) {
       EXPECT_TRUE(same_motion(kept, forgotten, copy)) << "copy " << copy;
     }
   }
-  // Those that hardly turn go on with what they have: to rounding as with what would be found anew.
-  Crowd nearly_kept(0.05f), nearly_forgotten(0.05f);
-  solve_side_by_side(nearly_kept, shape, 0, {.turn = 0.02f});
+  // Copies that hardly rotate go on with cached entries: equal to new ones up to rounding.
+  Crowd nearly_cached(0.05f), nearly_forgotten(0.05f);
+  solve_side_by_side(nearly_cached, shape, 0, {.turn = 0.02f});
   solve_side_by_side(nearly_forgotten, shape, 0, {.turn = 0.02f, .forget = true});
-  expect_same(nearly_kept, nearly_forgotten);
-  int kept_copies = 0;  // not all have a stop in question
+  expect_same(nearly_cached, nearly_forgotten);
+  int cached_copies = 0;  // not all have an active limit
   for (int copy = 1; copy < kCopies; copy += 2)
-    kept_copies += same_motion(nearly_kept, nearly_forgotten, copy) ? 0 : 1;
-  EXPECT_GE(kept_copies, 2) << "nothing is kept";
+    cached_copies += same_motion(nearly_cached, nearly_forgotten, copy) ? 0 : 1;
+  EXPECT_GE(cached_copies, 2) << "nothing is kept";
 }
 
-TEST(LinkageKernel, WhatMissesNothingButRoundingIsLeftAsItIs) {
+TEST(ArticulationKernel, WhatMissesNothingButRoundingIsLeftAsItIs) {
   Shape shape;
-  const auto calm_every_other = [](Crowd& crowd) {
-    for (int copy = 0; copy < kCopies; copy += 2) calm(crowd, copy, copy == 2 ? 1.0e-4f : 1.0e-6f);
+  const auto settle_every_other = [](Crowd& crowd) {
+    for (int copy = 0; copy < kCopies; copy += 2) settle(crowd, copy, copy == 2 ? 1.0e-4f : 1.0e-6f);
   };
   Crowd before(0.05f);
-  calm_every_other(before);
+  settle_every_other(before);
   for (const int width : {0, 1, 4, 8, 16}) {
     Crowd after(0.05f);
-    calm_every_other(after);
+    settle_every_other(after);
     solve_side_by_side(after, shape, width);
     for (int copy = 0; copy < kCopies; ++copy)
       EXPECT_EQ(same_motion(before, after, copy), copy % 2 == 0 && copy != 2)
@@ -172,18 +174,18 @@ TEST(LinkageKernel, WhatMissesNothingButRoundingIsLeftAsItIs) {
   }
 }
 
-// Rounding of sums of a dozen impulses, which go back and forth and are larger in between than what is left of them: so many of a
-// float's steps of all that a body has and got.
+// Rounding of sums of a dozen impulses that alternate and are larger in between than their sum, as a number
+// of float steps of all momentum and impulses of a body.
 constexpr double kSumRounding = 32 * 0x1p-23;
 
-TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
+TEST(ArticulationKernel, SpeedFromErrorsMayStayForTheNextHalfStep) {
   Shape shape;
   Crowd left(0.05f), taken(0.05f), before(0.05f);
-  for (Crowd* crowd : {&left, &taken}) crowd->open_stops();
+  for (Crowd* crowd : {&left, &taken}) crowd->open_limits();
   solve_side_by_side(left, shape, 0, {.ends = Between::Ends::passes});
   solve_side_by_side(taken, shape, 0, {.ends = Between::Ends::finishes});
   std::vector<Vec3> given(left.motion.size());
-  std::vector<float> sizes(left.motion.size());  // of all that was given, N s
+  std::vector<float> sizes(left.motion.size());  // of all impulses, N s
   const auto compliance = [&](std::int32_t body, Vec3 impulse) {
     given[std::size_t(body)] += impulse;
     sizes[std::size_t(body)] += length(impulse);
@@ -204,27 +206,27 @@ TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
   }
 }
 
-// What is swept would hold against it.
-TEST(LinkageKernel, WhatCameFromErrorsIsTakenAwayWhereSomethingIsSwept) {
+// Drives would hold against it.
+TEST(ArticulationKernel, SpeedFromErrorsIsRemovedWithIterativeDrives) {
   Shape shape;
-  Crowd passed(0.05f, Driven::swept), finished(0.05f, Driven::swept);
-  for (Crowd* crowd : {&passed, &finished}) crowd->open_stops();
+  Crowd passed(0.05f, Driven::iterative), finished(0.05f, Driven::iterative);
+  for (Crowd* crowd : {&passed, &finished}) crowd->open_limits();
   solve_side_by_side(passed, shape, 0, {.ends = Between::Ends::passes});
   solve_side_by_side(finished, shape, 0, {.ends = Between::Ends::finishes});
   for (int copy = 0; copy < kCopies; ++copy)
     EXPECT_TRUE(same_motion(passed, finished, copy)) << "copy " << copy;
 }
 
-TEST(LinkageKernel, PassingOnAsksForWhatTheNextPartBeginsWith) {
+TEST(ArticulationKernel, EndOfHalfStepComputesTheNextBias) {
   Shape shape;
   Crowd passed(0.05f), asked(0.05f);
-  solve_side_by_side(passed, shape, 0, {.ends = Between::Ends::passes, .asks = false});
+  solve_side_by_side(passed, shape, 0, {.ends = Between::Ends::passes, .computes_bias = false});
   solve_side_by_side(asked, shape, 0, {.ends = Between::Ends::passes});
   for (int copy = 0; copy < kCopies; ++copy) EXPECT_TRUE(same_motion(passed, asked, copy)) << "copy " << copy;
 }
 
-// More columns than a word has bits. Two branches of a tree, every other column each, that meet where the last of them is.
-TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
+// More columns than a word has bits: two branches of a tree, with alternating columns, that meet at the last.
+TEST(ArticulationMatrix, WhatEliminationReachesHasABitForEachColumn) {
   constexpr std::uint32_t kColumns = 151, kMeet = 140;
   std::vector<BlockColumn> columns(kColumns);
   std::vector<BlockEntry> entries(kColumns - 1);
@@ -257,7 +259,7 @@ TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
   };
   expect(even, 20);
   expect(odd, 67);
-  // Their product is over the columns from the meeting on. (Of numbers that floats hold, sums included.)
+  // Their product is over the columns from the meeting on. (All numbers and sums are exact in floats.)
   std::vector<float> a(rows), b(rows);
   float sum = 0.0f;
   for (std::uint32_t row = 0; row < rows; ++row) {
@@ -275,4 +277,4 @@ TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
 }
 
 }  // namespace
-}  // namespace gyre::linkage_test
+}  // namespace gyre::articulation_test

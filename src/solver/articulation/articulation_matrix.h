@@ -1,24 +1,25 @@
-// Factors and solves the matrices of a bundle of linkages: the elimination of math/block_ldlt.cpp with a lane for each linkage. Blocks
-// have three rows (a point) or five (a hinge).
+// Factors and solves the matrices of a bundle of articulations: the elimination of math/block_ldlt.cpp with a
+// lane for each articulation. Blocks have three rows (a point) or five (a hinge).
 //
-// In floats, where that of a linkage alone is in doubles: rows give way by a share of their own diagonal (LaneSettings::give), so no
-// pivot falls below that share, and the factors are those of a matrix that differs by some 1e-6 of its diagonal, a hundredth of what
-// rows are made to give way anyway (N. Higham, "Accuracy and Stability of Numerical Algorithms", 2002, chapter 10). That holds of
-// elimination row by row; with the inverses of whole blocks it does not: a block's condition goes into all that comes later, and limbs
-// thrown together at random flew apart. Speeds are measured anew for each solution.
+// The matrices are in float, that of a scalar articulation in double. Rows have a compliance of a share of
+// their own diagonal (LaneSettings::compliance), so no pivot falls below that share. The factors are those of
+// a matrix that differs by some 1e-6 of its diagonal, a hundredth of the compliance (N. Higham, "Accuracy and
+// Stability of Numerical Algorithms", 2002, chapter 10). This holds for elimination row by row. With inverses
+// of whole blocks the condition of a block spreads to all later ones, and limbs thrown together at random
+// flew apart. Speeds are measured anew for each solve.
 #pragma once
 
 #include "math/wide.h"
-#include "solver/articulation/linkage_lanes.h"
+#include "solver/articulation/articulation_lanes.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// A pivot below this share of its own diagonal element is only rounding, as in math/dense.h.
+// A pivot below this share of its diagonal element is only rounding, as in math/dense.h.
 constexpr float kMinPivot = 1.0e-6f;
 
-// A diagonal block of which the lower triangle is read, as L P L^T: L below the diagonal, and on it the inverses of the pivots, zero
-// where one was dropped.
+// Factors a diagonal block, whose lower triangle is read, as L P L^T: L below the diagonal, and on it the
+// inverse pivots, zero for dropped ones.
 template <int W, int N>
 void factor_diagonal(float* block) {
   using V = Wide<W>;
@@ -42,7 +43,7 @@ void factor_diagonal(float* block) {
   }
 }
 
-// b L^-T in place of b, with b of R by N, and that times the inverse pivots in `scaled`.
+// b L^-T in place of b, with b of R by N, and its product with the inverse pivots in `scaled`.
 template <int W, int R, int N>
 void scale_block(const float* diagonal, float* b, float* scaled) {
   using V = Wide<W>;
@@ -59,7 +60,7 @@ void scale_block(const float* diagonal, float* b, float* scaled) {
   }
 }
 
-// out -= S B^T, with S of R by C and B of Q by C; of a diagonal block only the lower triangle.
+// out -= S B^T, with S of R by C and B of Q by C; only the lower triangle of a diagonal block.
 template <int W, int R, int Q, int C>
 void subtract_product(const float* s, const float* b, float* out, bool lower_only) {
   using V = Wide<W>;
@@ -118,7 +119,7 @@ void eliminate_column(const ArticulationBundle& bundle, const BlockColumn& colum
 
 // y -= B x, with B of R by C.
 template <int W, int R, int C>
-GYRE_INLINE void push_down(const float* b, const Wide<W> (&x)[C], float* y) {
+GYRE_INLINE void substitute_down(const float* b, const Wide<W> (&x)[C], float* y) {
   using V = Wide<W>;
   GYRE_UNROLL
   for (int r = 0; r < R; ++r) {
@@ -130,7 +131,7 @@ GYRE_INLINE void push_down(const float* b, const Wide<W> (&x)[C], float* y) {
 }
 // own -= B^T x.
 template <int W, int R, int C>
-GYRE_INLINE void pull_up(const float* b, const float* x, Wide<W> (&own)[C]) {
+GYRE_INLINE void substitute_up(const float* b, const float* x, Wide<W> (&own)[C]) {
   using V = Wide<W>;
   GYRE_UNROLL
   for (int r = 0; r < R; ++r) {
@@ -161,14 +162,14 @@ void solve_column_down(const ArticulationBundle& bundle, const BlockColumn& colu
     const float* const b = bundle.values + std::size_t(entry.offset) * W;
     float* const y = vector + std::size_t(row.row) * W;
     if (row.size == 3) {
-      push_down<W, 3, C>(b, own, y);
+      substitute_down<W, 3, C>(b, own, y);
     } else {
-      push_down<W, 5, C>(b, own, y);
+      substitute_down<W, 5, C>(b, own, y);
     }
   }
 }
 
-// out = P^-1 x, of the column's rows.
+// out = P^-1 x, for the rows of the column.
 template <int W, int C>
 GYRE_INLINE void scale_column(const ArticulationBundle& bundle, const BlockColumn& column,
                               const float* vector, float* out) {
@@ -194,9 +195,9 @@ void solve_column_up(const ArticulationBundle& bundle, const BlockColumn& column
     const float* const b = bundle.values + std::size_t(entry.offset) * W;
     const float* const known = vector + std::size_t(row.row) * W;
     if (row.size == 3) {
-      pull_up<W, 3, C>(b, known, own);
+      substitute_up<W, 3, C>(b, known, own);
     } else {
-      pull_up<W, 5, C>(b, known, own);
+      substitute_up<W, 5, C>(b, known, own);
     }
   }
   GYRE_UNROLL
@@ -210,8 +211,8 @@ void solve_column_up(const ArticulationBundle& bundle, const BlockColumn& column
 
 template <int W>
 void factor_lanes(const ArticulationBundle& bundle) {
-  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-    const BlockColumn& column = bundle.columns[place];
+  for (std::uint32_t index = 0; index < bundle.column_count; ++index) {
+    const BlockColumn& column = bundle.columns[index];
     if (column.size == 3) {
       eliminate_column<W, 3>(bundle, column);
     } else {
@@ -222,16 +223,16 @@ void factor_lanes(const ArticulationBundle& bundle) {
 
 template <int W>
 void solve_lanes(const ArticulationBundle& bundle) {
-  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-    const BlockColumn& column = bundle.columns[place];
+  for (std::uint32_t index = 0; index < bundle.column_count; ++index) {
+    const BlockColumn& column = bundle.columns[index];
     if (column.size == 3) {
       solve_column_down<W, 3>(bundle, column, bundle.vector);
     } else {
       solve_column_down<W, 5>(bundle, column, bundle.vector);
     }
   }
-  for (std::uint32_t place = bundle.column_count; place-- > 0;) {
-    const BlockColumn& column = bundle.columns[place];
+  for (std::uint32_t index = bundle.column_count; index-- > 0;) {
+    const BlockColumn& column = bundle.columns[index];
     if (column.size == 3) {
       solve_column_up<W, 3>(bundle, column, bundle.vector);
     } else {
@@ -240,13 +241,14 @@ void solve_lanes(const ArticulationBundle& bundle) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------- right sides of few rows
+// ---------------------------------------------------------------------------------------------- sparse right sides
 
-// The columns that elimination reaches from such a right side: a bit for each, by its place.
+// The columns that elimination reaches from a sparse right side: a bit for each, by its index.
 using ReachedColumns = std::uint64_t*;
 constexpr std::uint32_t reach_words(std::uint32_t columns) { return (columns + 63) / 64; }
 
-// Calls run(column) for those of the bundle's columns whose bits are set, in their order; word(i) tells the bits from 64 i on.
+// Calls run(column) for the columns of the bundle whose bits are set, in their order; word(i) returns the
+// bits from 64 i on.
 template <class Word, class Run>
 GYRE_INLINE void for_columns(const ArticulationBundle& bundle, const Word& word, const Run& run) {
   const std::uint32_t words = reach_words(bundle.column_count);
@@ -255,11 +257,11 @@ GYRE_INLINE void for_columns(const ArticulationBundle& bundle, const Word& word,
       run(bundle.columns[64 * i + std::uint32_t(__builtin_ctzll(left))]);
 }
 
-// Marks, beside the columns that are marked, those that elimination reaches from them: all come later.
+// Marks the columns that elimination reaches from the marked ones; all come later.
 inline void reach_columns(const ArticulationBundle& bundle, ReachedColumns reached) {
-  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-    if ((reached[place / 64] >> place % 64 & 1u) == 0) continue;
-    const BlockColumn& column = bundle.columns[place];
+  for (std::uint32_t index = 0; index < bundle.column_count; ++index) {
+    if ((reached[index / 64] >> index % 64 & 1u) == 0) continue;
+    const BlockColumn& column = bundle.columns[index];
     for (std::uint32_t i = column.begin; i < column.end; ++i) {
       const std::uint32_t other = bundle.entries[i].index;
       reached[other / 64] |= std::uint64_t{1} << other % 64;
@@ -267,7 +269,7 @@ inline void reach_columns(const ArticulationBundle& bundle, ReachedColumns reach
   }
 }
 
-// Clears their rows in x.
+// Clears the rows of the columns in x.
 template <int W>
 void clear_reached(const ArticulationBundle& bundle, const ReachedColumns reached, float* x) {
   const auto own = [&](std::uint32_t i) { return reached[i]; };
@@ -276,7 +278,7 @@ void clear_reached(const ArticulationBundle& bundle, const ReachedColumns reache
   });
 }
 
-// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds P^-1 y.
+// Replaces the right side x of the reached columns by y of L y = x, and computes P^-1 y.
 template <int W>
 void solve_reached_down(const ArticulationBundle& bundle, const ReachedColumns reached, float* x,
                         float* scaled) {
