@@ -31,7 +31,7 @@ Vec3 semi_axes(Vec3 moments, float mass) {
 }
 
 void add_body(const RigidWorld& w, std::uint32_t body, DVec3 origin, BodyTable& out) {
-  const BodyPose& place = w.bodies.places[body];
+  const BodyPose& place = w.bodies.poses[body];
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyMass& mass = w.bodies.masses[body];
   const bool movable = is_movable(w.bodies.flags[body]);

@@ -53,7 +53,7 @@ void add_point(const RigidWorld& w, const Contact& contact, const Manifold& mani
   out.bodies.push_back(contact.body_b);
   out.shapes.push_back(contact.shape_a);
   out.shapes.push_back(contact.shape_b);
-  append(out.positions, difference(w.bodies.places[contact.body_a].center, origin) + point.from_a);
+  append(out.positions, difference(w.bodies.poses[contact.body_a].center, origin) + point.from_a);
   append(out.normals, manifold.normal);
   const Vec3 tangent = any_perpendicular(manifold.normal);
   append(out.tangents, tangent);

@@ -110,7 +110,7 @@ Color Drawing::body_color(std::size_t row) const {
 
 // How large to draw what belongs to a body; planes and bodies without shapes have no extent.
 float Drawing::reach(std::uint32_t body) const {
-  const float r = w_.bodies.masses[body].reach;
+  const float r = w_.bodies.masses[body].bounding_radius;
   return r > 0.0f && r < kUnbounded ? r : 0.5f;
 }
 
@@ -131,7 +131,7 @@ void Drawing::geometry() {
   w_.shapes.ids.for_each_live([&](std::uint32_t shape) {
     lines.clear();
     add_wireframe(w_.shapes.geometry[shape], lines, paint_.options().segments);
-    const Pose pose = origin_pose(w_.bodies, w_.shapes.bodies[shape]) * w_.shapes.places[shape];
+    const Pose pose = origin_pose(w_.bodies, w_.shapes.bodies[shape]) * w_.shapes.body_from_shape[shape];
     const Transform seen{difference(pose.position, paint_.options().origin), pose.orientation};
     const Color color = w_.shapes.proxies[shape].sensor ? kYellow : shape_color(shape);
     for (std::size_t i = 0; i < lines.size() / 6; ++i) {

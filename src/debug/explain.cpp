@@ -15,7 +15,7 @@ namespace {
 class Inquiry {
  public:
   Inquiry(const RigidWorld& w, std::uint32_t body)
-      : w_(w), body_(body), pull_(length(w.settings.gravity)), islands_(find_islands(w)) {}
+      : w_(w), body_(body), gravity_(length(w.settings.gravity)), islands_(find_islands(w)) {}
 
   void answer(Explanation& out);
 
@@ -24,7 +24,7 @@ class Inquiry {
   bool is_awake_member(std::uint32_t body) const {
     return islands_.roots[body] == islands_.roots[body_] && w_.bodies.flags[body].awake != 0;
   }
-  std::uint32_t min_still() const;
+  std::uint32_t shortest_still() const;
   std::uint32_t moving_support() const;
   void find_reason(Explanation& out) const;
   void find_touching(Explanation& out) const;
@@ -32,7 +32,7 @@ class Inquiry {
 
   const RigidWorld& w_;
   std::uint32_t body_;
-  float pull_;
+  float gravity_;
   IslandMap islands_;
 };
 
@@ -45,20 +45,20 @@ AwakeReason Inquiry::own_reason(std::uint32_t body) const {
   if (flags.awake == 0) return AwakeReason::asleep;
   if (w_.settings.sleeping == 0) return AwakeReason::sleeping_off;
   if (flags.can_sleep == 0) return AwakeReason::may_not_sleep;
-  const SleepTest rest = test_sleep(w_, body, pull_);
-  if (!rest.allowed && flags.touched == 0) return AwakeReason::unsupported;
-  if (rest.speed > rest.rest_speed) return AwakeReason::moving;
+  const SleepTest test = test_sleep(w_, body, gravity_);
+  if (!test.allowed && flags.constraint_use == 0) return AwakeReason::unsupported;
+  if (test.speed > test.rest_speed) return AwakeReason::moving;
   return AwakeReason::settling;
 }
 
 // Who in the island has rested for the shortest time: the whole island waits for it. Among equals the explained body.
-std::uint32_t Inquiry::min_still() const {
-  std::uint32_t least = body_;
+std::uint32_t Inquiry::shortest_still() const {
+  std::uint32_t shortest = body_;
   w_.bodies.ids.for_each_live([&](std::uint32_t i) {
     if (!is_movable(w_.bodies.flags[i]) || !is_awake_member(i)) return;
-    if (w_.bodies.sleep[i].still_time < w_.bodies.sleep[least].still_time) least = i;
+    if (w_.bodies.sleep[i].still_time < w_.bodies.sleep[shortest].still_time) shortest = i;
   });
-  return least;
+  return shortest;
 }
 
 // The lowest kinematic body that moves and that somebody of the island lies on or hangs on; the body itself if none.
@@ -79,11 +79,11 @@ std::uint32_t Inquiry::moving_support() const {
 void Inquiry::find_reason(Explanation& out) const {
   out.reason = own_reason(body_);
   if (out.reason != AwakeReason::settling) return;
-  const std::uint32_t least = min_still();
-  if (least != body_) {
+  const std::uint32_t shortest = shortest_still();
+  if (shortest != body_) {
     out.reason = AwakeReason::neighbor;
-    out.cause = body_id(w_, least);
-    out.cause_reason = own_reason(least);
+    out.cause = body_id(w_, shortest);
+    out.cause_reason = own_reason(shortest);
     return;
   }
   const std::uint32_t support = moving_support();
@@ -141,9 +141,9 @@ void Inquiry::answer(Explanation& out) {
   find_joints(out);
   const std::uint32_t root = islands_.roots[body_];
   if (root != kNoIsland) {
-    const SleepTest rest = test_sleep(w_, body_, pull_);
-    out.speed = rest.speed;
-    out.rest_speed = rest.rest_speed;
+    const SleepTest test = test_sleep(w_, body_, gravity_);
+    out.speed = test.speed;
+    out.rest_speed = test.rest_speed;
     out.still_seconds = w_.bodies.sleep[body_].still_time;
     out.seconds_to_sleep = kTimeToSleep;
     out.island = body_id(w_, root);

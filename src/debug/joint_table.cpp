@@ -19,7 +19,7 @@ struct End {
 End find_end(const RigidWorld& w, std::int32_t body, Vec3 local_anchor, Quat local_frame, DVec3 world_anchor,
              DVec3 origin) {
   if (body == kNoBody) return {{}, difference(world_anchor, origin), local_frame};
-  const BodyPose& place = w.bodies.places[body];
+  const BodyPose& place = w.bodies.poses[body];
   return {body_id(w, std::uint32_t(body)),
           difference(place.center, origin) + rotate(place.orientation, local_anchor),
           normalized(place.orientation * local_frame)};

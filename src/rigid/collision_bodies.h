@@ -28,7 +28,7 @@ class CollisionBodies {
 
   void make(TaskSystem& tasks, Arena& arena);
 
-  std::span<const CollisionBody> collision_bodies() const { return looks_; }
+  std::span<const CollisionBody> collision_bodies() const { return bodies_; }
   std::span<const BodyCenter> centers() const { return centers_; }
   std::span<const std::uint8_t> awake() const { return awake_; }
 
@@ -36,11 +36,11 @@ class CollisionBodies {
   std::size_t count() const { return w_.bodies.motion.size(); }
   // Bits by body.
   std::span<std::uint64_t> find_needed(Arena& arena) const;
-  void look_at(std::uint32_t i);
+  void describe(std::uint32_t i);
 
   const RigidWorld& w_;
   float seconds_;
-  std::span<CollisionBody> looks_;
+  std::span<CollisionBody> bodies_;
   std::span<BodyCenter> centers_;
   std::span<std::uint8_t> awake_;
 };

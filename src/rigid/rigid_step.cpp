@@ -32,14 +32,14 @@ PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
 // Bodies that a joint keeps from touching stay beside each other: their pairs are found whenever one moves.
 void drop_blocked_pairs(const RigidWorld& w, Array<std::uint64_t>& keys, std::size_t from) {
   if (w.joints.blocked.empty()) return;
-  std::size_t kept = from;
+  std::size_t count = from;
   for (std::size_t i = from; i < keys.size(); ++i) {
     const std::uint64_t key = keys[i];
     const std::uint32_t a = w.shapes.bodies[std::uint32_t(key >> 32)],
                         b = w.shapes.bodies[std::uint32_t(key)];
-    if (!w.joints.blocked.contains(pair_key(a, b))) keys[kept++] = key;
+    if (!w.joints.blocked.contains(pair_key(a, b))) keys[count++] = key;
   }
-  keys.resize_uninitialized(kept);
+  keys.resize_uninitialized(count);
 }
 
 void report_begin(RigidWorld& w, const Contact& contact) {
@@ -58,9 +58,9 @@ bool finite_state(const BodyMotion& motion, Quat orientation) {
   // What is not finite is no zero when taken from itself, nor is a sum with that.
   const Vec3 nothing = (motion.linear_velocity - motion.linear_velocity) +
                        (motion.angular_velocity - motion.angular_velocity) + (motion.moved - motion.moved);
-  const float turn = (orientation.x - orientation.x) + (orientation.y - orientation.y) +
+  const float rotation = (orientation.x - orientation.x) + (orientation.y - orientation.y) +
                      (orientation.z - orientation.z) + (orientation.w - orientation.w);
-  return nothing.x + nothing.y + nothing.z + turn == 0.0f;
+  return nothing.x + nothing.y + nothing.z + rotation == 0.0f;
 }
 
 void list_marked(RigidWorld& w, std::span<const std::uint32_t> bodies) {
@@ -86,7 +86,7 @@ bool ensure_fat_box_covers_motion(RigidWorld& w, std::uint32_t shape, float seco
 void list_if_moving(RigidWorld& w, std::uint32_t shape) {
   const BodyMotion& motion = w.bodies.motion[w.shapes.bodies[shape]];
   if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{})
-    w.shapes.hurried.push_back(shape);
+    w.shapes.moved_shapes.push_back(shape);
 }
 
 // The promise of collision/broadphase/fat_box.h as a step begins.
@@ -102,21 +102,21 @@ void ensure_fat_boxes_cover_motion(RigidWorld& w, TaskSystem& tasks, float secon
     });
     list_marked(w, w.bodies.awake);
   } else {
-    for (const std::uint32_t shape : w.shapes.hurried) {
+    for (const std::uint32_t shape : w.shapes.moved_shapes) {
       if (!w.shapes.ids.live(shape)) continue;
       if (ensure_fat_box_covers_motion(w, shape, seconds)) w.shapes.changed.push_back(shape);
     }
   }
   w.shapes.fat_box_horizon = seconds;
-  w.clocks.hurried.trim(w.shapes.hurried, w.shapes.hurried.size());
-  w.shapes.hurried.clear();
+  w.clocks.moved_shapes.trim(w.shapes.moved_shapes, w.shapes.moved_shapes.size());
+  w.shapes.moved_shapes.clear();
 }
 
 // Takes a body whose state went wrong back to where it last was and keeps it there. Impulses that are no numbers must not
 // stay with its contacts and joints: they would go over to the next body, and the bits of a NaN differ between processors.
 void freeze(RigidWorld& w, std::uint32_t body) {
   w.bodies.motion[body] = {};
-  w.bodies.orientations[body] = w.bodies.places[body].orientation;
+  w.bodies.orientations[body] = w.bodies.poses[body].orientation;
   w.bodies.flags[body].frozen = 1;
   w.bodies.inertia[body] = {};
   w.bodies.awake_stale = true;
@@ -223,7 +223,7 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
   CollisionBodies bodies(w, arena, seconds);
   bodies.make(tasks, arena);
   const CollideInput input{w.shapes.colliders, bodies.collision_bodies(), bodies.centers(), bodies.awake(),
-                           w.shapes.proxies,   w.awake_links.contacts,    recycle_contacts};
+                           w.shapes.proxies,   w.active_constraints.contacts,    recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
   remove_internal_edge_contacts(w.contacts, input, w.touches.beside_resting, arena, tasks, w.internal_edges);
 }
@@ -237,10 +237,10 @@ void link_islands(RigidWorld& w) {
   });
   w.touches.began.for_each_set([&](std::size_t slot) { report_begin(w, w.contacts.contacts[slot]); });
   remove_gone(w.contacts, w.touches.gone, [](std::uint32_t, const Contact&) {});
-  const std::size_t told = w.events.sleep_changes.size();
+  const std::size_t first_woken = w.events.sleep_changes.size();
   wake_touched(w);
   refresh_awake(w.bodies);
-  for (std::size_t i = told; i < w.events.sleep_changes.size(); ++i)
+  for (std::size_t i = first_woken; i < w.events.sleep_changes.size(); ++i)
     collect_ccd_blockers(w, w.events.sleep_changes[i].body.index);
 }
 
@@ -248,11 +248,11 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
                    Array<std::uint32_t>& frozen, bool last) {
   const ArenaScope scope(arena);
   BodyStore& bodies = w.bodies;
-  const auto went_wrong = [&](std::uint32_t n) {
+  const auto is_not_finite = [&](std::uint32_t n) {
     const std::uint32_t i = bodies.awake[n];
     return !finite_state(bodies.motion[i], bodies.orientations[i]);
   };
-  for (const std::uint32_t n : parallel_filter(tasks, arena, bodies.awake.size(), went_wrong).list)
+  for (const std::uint32_t n : parallel_filter(tasks, arena, bodies.awake.size(), is_not_finite).list)
     frozen.push_back(bodies.awake[n]);
   for (const std::uint32_t i : frozen) freeze(w, i);
   refresh_awake(bodies);
@@ -266,8 +266,8 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
   for_blocks(tasks, int(awake.size()), kBodiesPerBlock, [&](int begin, int, int) {
     const std::span<const std::uint32_t> block = block_at(std::size_t(begin));
     for (const std::uint32_t i : block) {
-      bodies.places[i].center += bodies.motion[i].moved;
-      bodies.places[i].orientation = bodies.orientations[i];
+      bodies.poses[i].center += bodies.motion[i].moved;
+      bodies.poses[i].orientation = bodies.orientations[i];
       if (last) {
         bodies.forces[i].force = {};
         bodies.forces[i].torque = {};
@@ -282,16 +282,16 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
 }
 
 void break_joints(RigidWorld& w, float seconds) {
-  const auto goes = [&](std::int32_t body) {
+  const auto moves = [&](std::int32_t body) {
     return body != kNoBody && is_simulated(w.bodies.flags[std::size_t(body)]);
   };
-  w.awake_links.joints.for_each_set([&](std::size_t number) {
+  w.active_constraints.joints.for_each_set([&](std::size_t number) {
     const auto slot = std::uint32_t(number);
     if (!w.joints.ids.live(slot)) return;
     const JointRecord& joint = w.joints.records[slot];
     if (joint.break_force <= 0.0f && joint.break_torque <= 0.0f) return;
     // What sleeps still has the impulses of the step in which it fell asleep, which it withstood.
-    if (!goes(joint.body_a) && !goes(joint.body_b)) return;
+    if (!moves(joint.body_a) && !moves(joint.body_b)) return;
     const float force = length(joint.total_linear) / seconds;
     const float torque = length(joint.total_angular) / seconds;
     if ((joint.break_force > 0.0f && force > joint.break_force) ||

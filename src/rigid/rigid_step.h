@@ -12,7 +12,7 @@ namespace gyre {
 // Kept from step to step only for its memory.
 struct ContinuousScratch {
   Array<FastBody> fast;
-  Array<SavedMotion> kept;
+  Array<SavedMotion> saved;
   Array<std::uint32_t> found;
   Bitset listed;
   Bitset near_stops;  // by shape

@@ -10,7 +10,7 @@
 namespace gyre {
 namespace {
 
-ActiveConstraints& links_of(World& world) { return world.state().rigid.awake_links; }
+ActiveConstraints& links_of(World& world) { return world.state().rigid.active_constraints; }
 
 // `columns` stacks of two boxes each, side by side on a thin plate.
 World make_stacks(int columns) {

@@ -72,16 +72,16 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
     mass.center = given.center;
   }
   for (const ShapeId id : bodies.shapes[body]) {
-    const Transform& place = w.shapes.places[id.index];
+    const Transform& place = w.shapes.body_from_shape[id.index];
     const float reach = outer_radius(w.shapes.colliders[id.index].shape, inverse_times(place, mass.center));
-    mass.reach = max(mass.reach, reach);
+    mass.bounding_radius = max(mass.bounding_radius, reach);
   }
   bodies.masses.set(body, mass);
   // The velocity belongs to the centre of mass: where that moves in the body, so does it.
   BodyMotion& motion = bodies.motion[body];
   const Vec3 carried = cross(motion.angular_velocity, rotate(origin.orientation, mass.center - old_center));
   motion.linear_velocity = finite_or(motion.linear_velocity + carried, motion.linear_velocity);
-  bodies.places[body] = {origin * mass.center, origin.orientation};
+  bodies.poses[body] = {origin * mass.center, origin.orientation};
   shift_joint_ends(w, body, mass.center - old_center);
   bodies.orientations[body] = origin.orientation;
   refresh_inertia(bodies, body);
@@ -109,7 +109,7 @@ void erase_index(List& list, std::uint32_t index) {
 ShapeId attach_shape(RigidWorld& w, std::uint32_t body, const ShapeDef& def) {
   const std::uint32_t shape = add_shape_slot(w.shapes).index;
   w.shapes.bodies[shape] = body;
-  w.shapes.places.set(shape, {def.local.position, normalized(def.local.orientation)});
+  w.shapes.body_from_shape.set(shape, {def.local.position, normalized(def.local.orientation)});
   w.shapes.geometry[shape] = def.geometry;
   w.shapes.density[shape] = def.density;
   w.shapes.materials.set(shape, def.material);
@@ -213,7 +213,7 @@ CommandResult execute(WorldState& s, const SetPose& c) {
   wake_if_movable(w, body);
   wake_neighbours(w, body);
   const Pose pose{c.pose.position, normalized(c.pose.orientation)};
-  w.bodies.places[body] = {pose * w.bodies.masses[body].center, pose.orientation};
+  w.bodies.poses[body] = {pose * w.bodies.masses[body].center, pose.orientation};
   w.bodies.orientations[body] = pose.orientation;
   refresh_inertia(w.bodies, body);
   for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
@@ -238,9 +238,9 @@ CommandResult execute(WorldState& s, const MoveKinematic& c) {
   const Pose pose{c.pose.position, orientation};
   const DVec3 center = pose * w.bodies.masses[body].center;
   BodyMotion& motion = w.bodies.motion[body];
-  motion.linear_velocity = finite_or((1.0f / c.seconds) * difference(center, w.bodies.places[body].center) + Vec3{}, {});
+  motion.linear_velocity = finite_or((1.0f / c.seconds) * difference(center, w.bodies.poses[body].center) + Vec3{}, {});
   motion.angular_velocity =
-      finite_or((1.0f / c.seconds) * rotation_between(w.bodies.places[body].orientation, orientation) + Vec3{}, {});
+      finite_or((1.0f / c.seconds) * rotation_between(w.bodies.poses[body].orientation, orientation) + Vec3{}, {});
   mark_moved(w, body);
   return {true, {}, {}, {}};
 }
@@ -401,8 +401,8 @@ CommandResult execute(WorldState& s, const SetCombineRules& c) {
 
 // Sums that leave a float's range are held at its ends.
 Vec3 bounded(Vec3 v) {
-  constexpr float kMost = 3.0e38f;
-  return {clamp(v.x, -kMost, kMost), clamp(v.y, -kMost, kMost), clamp(v.z, -kMost, kMost)};
+  constexpr float kMax = 3.0e38f;
+  return {clamp(v.x, -kMax, kMax), clamp(v.y, -kMax, kMax), clamp(v.z, -kMax, kMax)};
 }
 CommandResult execute(WorldState& s, const AddForce& c) {
   const std::uint32_t body = c.body.index;

@@ -74,7 +74,7 @@ struct JointEnd {
 };
 JointEnd joint_end(const RigidWorld& w, std::int32_t body, DVec3 anchor, Quat world_from_joint) {
   if (body == kNoBody) return {{}, world_from_joint, anchor};
-  const BodyPose& place = w.bodies.places[body];
+  const BodyPose& place = w.bodies.poses[body];
   return {rotate_inverse(place.orientation, difference(anchor, place.center)),
           normalized(conjugate(place.orientation) * world_from_joint), anchor};
 }
@@ -132,7 +132,7 @@ double mass_along(const RigidWorld& w, const JointRecord& joint, DVec3 anchor_a,
   const auto add = [&](std::int32_t body, DVec3 anchor) {
     if (body == kNoBody) return;
     const std::size_t i = std::size_t(body);
-    const BodyPose& place = w.bodies.places[i];
+    const BodyPose& place = w.bodies.poses[i];
     const BodyInertia at = world_inertia(w.bodies.masses[i], w.bodies.flags[i], place.orientation);
     const Vec3 arm = cross(difference(anchor, place.center), way);
     inverse += double(at.inverse_mass) + double(dot(arm, at.inverse * arm));
@@ -331,10 +331,10 @@ void fill_detail(RigidWorld& w, const JointRecord& joint, JointDetail& detail, c
   if (def.kind == JointKind::cone) detail.drive.max_force = 0.0f;
   if (def.kind == JointKind::mouse) detail.drive.max_torque = 0.0f;
   const auto orientation = [&](std::int32_t body) {
-    return body == kNoBody ? Quat{} : w.bodies.places[std::size_t(body)].orientation;
+    return body == kNoBody ? Quat{} : w.bodies.poses[std::size_t(body)].orientation;
   };
   const auto center = [&](std::int32_t body, DVec3 anchor) {
-    return body == kNoBody ? anchor : w.bodies.places[std::size_t(body)].center;
+    return body == kNoBody ? anchor : w.bodies.poses[std::size_t(body)].center;
   };
   if (def.kind == JointKind::rack_and_pinion) {
     const DVec3 from = center(joint.body_a, a.world_anchor), to = center(joint.body_b, b.world_anchor);
@@ -477,7 +477,7 @@ void shift_joint_ends(RigidWorld& w, std::uint32_t body, Vec3 by) {
     if (joint.kind != JointKind::rack_and_pinion) continue;
     // Its way is counted from centre to centre.
     const auto orientation = [&](std::int32_t of) {
-      return of == kNoBody ? Quat{} : w.bodies.places[std::size_t(of)].orientation;
+      return of == kNoBody ? Quat{} : w.bodies.poses[std::size_t(of)].orientation;
     };
     const Vec3 along = rotate(orientation(joint.body_b) * joint.local_frame_b, {1, 0, 0});
     const float further = dot(rotate(orientation(std::int32_t(body)), by), along);

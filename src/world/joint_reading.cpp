@@ -20,7 +20,7 @@ JointState state_of(const RigidWorld& w, const JointRecord& joint) {
     return body == kNoBody ? BodyMotion{} : w.bodies.motion[std::size_t(body)];
   };
   const auto orientation = [&](std::int32_t body) {
-    return body == kNoBody ? Quat{} : w.bodies.places[std::size_t(body)].orientation;
+    return body == kNoBody ? Quat{} : w.bodies.poses[std::size_t(body)].orientation;
   };
   const JointAnchors anchors = joint_anchors(w, joint);
   JointState s;
@@ -50,7 +50,7 @@ float line_speed(const RigidWorld& w, const JointRecord& joint, const JointDetai
     case JointKind::pulley: {
       const JointAnchors anchors = joint_anchors(w, joint);
       const auto speed = [&](const BodyMotion& m, std::int32_t body, DVec3 anchor, DVec3 ground) {
-        const Vec3 arm = difference(anchor, w.bodies.places[std::size_t(body)].center);
+        const Vec3 arm = difference(anchor, w.bodies.poses[std::size_t(body)].center);
         return dot(m.linear_velocity + cross(m.angular_velocity, arm),
                    normalized(difference(anchor, ground)));
       };
@@ -108,7 +108,7 @@ float force_in_record(const JointRecord& joint, const JointState& s) {
 JointAnchors joint_anchors(const RigidWorld& w, const JointRecord& joint) {
   const auto place = [&](std::int32_t body, Vec3 local, DVec3 world) {
     if (body == kNoBody) return world;
-    const BodyPose& at = w.bodies.places[std::size_t(body)];
+    const BodyPose& at = w.bodies.poses[std::size_t(body)];
     return at.center + rotate(at.orientation, local);
   };
   return {place(joint.body_a, joint.local_anchor_a, joint.world_anchor_a),

@@ -15,7 +15,7 @@ namespace {
 
 #if defined(GYRE_VALIDATE) && GYRE_VALIDATE
 // Large worlds are walked now and then only: a walk costs several times what a stage does.
-bool is_walked(const WorldState& s, StageName stage) {
+bool is_validated(const WorldState& s, StageName stage) {
   constexpr std::size_t kSmall = 2000;
   constexpr std::uint64_t kEvery = 16;
   const RigidWorld& w = s.rigid;
@@ -24,7 +24,7 @@ bool is_walked(const WorldState& s, StageName stage) {
 }
 
 void validate_after(const WorldState& s, StageName stage) {
-  if (!is_walked(s, stage)) return;
+  if (!is_validated(s, stage)) return;
   const Error fault = validate_state(s, stage);
   if (fault.code != ErrorCode::none) check_failed(kStageNames[int(stage)], fault.message, __FILE__, __LINE__);
 }
@@ -53,7 +53,7 @@ void begin_step(WorldState& s) {
 
 // Joints that broke go after the step's own reading of them.
 void remove_broken_joints(WorldState& s) {
-  for (const JointBroken& broken : s.shown.broken) remove_joint_now(s, broken.joint.index);
+  for (const JointBroken& broken : s.published_events.broken) remove_joint_now(s, broken.joint.index);
 }
 
 void report_frozen(WorldState& s) {
@@ -76,12 +76,12 @@ void report_stiffness(WorldState& s) {
   if (step <= longest) return;
   const JointRecord& joint = w.joints.records[mode.joint];
   const std::int32_t body = joint.body_b != kNoBody ? joint.body_b : joint.body_a;
-  constexpr double kTurn = 6.283185307179586;
+  constexpr double kRadiansPerTurn = 6.283185307179586;
   report_problem(s, ErrorCode::unstable, body_id(w, std::uint32_t(body)),
                  "%s cannot follow the explicit springs (%.4g Hz, most of it joint %u): it moves by %.4g s "
                  "at a time, the critical "
                  "step is %.4g s; use more sub-steps or springs 'implicit'",
-                 to_string(motion.integrator), mode.frequency / kTurn, mode.joint, step, longest);
+                 to_string(motion.integrator), mode.frequency / kRadiansPerTurn, mode.joint, step, longest);
 }
 
 // A method that was asked for by name does not take islands of any size.
@@ -100,12 +100,12 @@ void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.c
 // Right after the stage, which leaves contacts that it did not look at as they were.
 void count_manifold_updates(WorldState& s) {
   if (!s.profile.enabled()) return;
-  std::size_t full_looks = 0;
+  std::size_t updates = 0;
   for (const Contact& contact : s.rigid.contacts.contacts) {
     if (contact.manifold_room == 0 || contact.ended != 0 || contact.recycled != 0) continue;
-    if (may_move(s.rigid, contact.body_a) || may_move(s.rigid, contact.body_b)) ++full_looks;
+    if (may_move(s.rigid, contact.body_a) || may_move(s.rigid, contact.body_b)) ++updates;
   }
-  count(s, CounterName::full_looks, full_looks);
+  count(s, CounterName::full_looks, updates);
 }
 
 // What the profiler is told of a step's work, from what the stages left behind.
@@ -146,14 +146,14 @@ void finish_step(WorldState& s, float seconds, float whole, bool last) {
 void solve_to_tolerance(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
   MotionSettings& motion = w.motion_settings[0];
-  const std::int32_t least = w.settings.substeps;
+  const std::int32_t min_substeps = w.settings.substeps;
   const std::size_t hits = w.events.hits.size();
-  std::int32_t substeps = clamp(motion.planned_substeps, least, max(least, kMaxPlanned / 2));
-  s.impacts.before.keep(w);
+  std::int32_t substeps = clamp(motion.planned_substeps, min_substeps, max(min_substeps, kMaxPlanned / 2));
+  s.impacts.before.save(w);
   const auto solve = [&] {
     w.settings.substeps = substeps;
     solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
-    w.settings.substeps = least;
+    w.settings.substeps = min_substeps;
   };
   solve();
   motion.planned_substeps = 0;
@@ -161,7 +161,7 @@ void solve_to_tolerance(WorldState& s, float seconds) {
   double error = 0.0;
   while (2 * substeps <= kMaxPlanned) {
     s.impacts.other = w.bodies.motion;
-    s.impacts.before.put_back(w);
+    s.impacts.before.restore(w);
     w.events.hits.resize(hits);
     substeps *= 2;
     solve();
@@ -170,13 +170,13 @@ void solve_to_tolerance(WorldState& s, float seconds) {
   }
   // The next step begins with half of these, or with a quarter where that should do.
   const std::int32_t planned = error < 0.25 * double(motion.tolerance) ? substeps / 4 : substeps / 2;
-  if (planned > least) motion.planned_substeps = planned;
+  if (planned > min_substeps) motion.planned_substeps = planned;
   const int a_substep = w.solver.empty() ? 2 : 1;
   s.solve.report.parts = max(s.solve.report.parts, a_substep * substeps);
   s.solve.report.error = max(s.solve.report.error, float(error));
 }
 
-void step_at_once(WorldState& s, float seconds) {
+void step_undivided(WorldState& s, float seconds) {
   detect_collisions(s, seconds);
   s.rigid.now = s.time;
   run_stage(s, StageName::solve, [&] {
@@ -196,8 +196,8 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
   RigidWorld& w = s.rigid;
   const std::int32_t substeps = w.settings.substeps;
   const std::size_t hits = w.events.hits.size();
-  const bool bounded = w.waiting.empty();
-  if (!bounded) s.impacts.before.keep(w);
+  const bool bounded = w.inactive_contacts.empty();
+  if (!bounded) s.impacts.before.save(w);
   double length = left;
   is_impact = false;
   for (int n = 0;; ++n) {
@@ -207,8 +207,8 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
     if (bounded || n + 1 == kMaxTries) break;
     const FirstImpact first = find_first_impact(w, s.impacts.before, length);
     if (!(first.time < length)) break;
-    is_impact = !first.turn;
-    s.impacts.before.put_back(w);
+    is_impact = !first.is_turning_point;
+    s.impacts.before.restore(w);
     w.events.hits.resize(hits);
     length = max(first.time, kShortest * double(seconds));
   }
@@ -217,10 +217,10 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
 }
 
 // Strikes what has met; then who touches whom must be asked again, since others are ahead of those that were struck.
-void strike(WorldState& s, float threshold, float seconds, float left) {
+void apply_impacts(WorldState& s, float threshold, float seconds, float left) {
   RigidWorld& w = s.rigid;
   if (!resolve_impacts(w, s.impacts, threshold)) return;
-  for (const std::uint32_t body : s.impacts.struck) {
+  for (const std::uint32_t body : s.impacts.hit_bodies) {
     for (const ShapeId id : w.bodies.shapes[body]) refit_shape(w, id.index, seconds);
   }
   detect_collisions(s, left);
@@ -230,18 +230,18 @@ void strike(WorldState& s, float threshold, float seconds, float left) {
 // infinitely often in finite time comes to rest.
 void step_to_impacts(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
-  const std::int32_t most = motion_settings(w).max_impacts;
+  const std::int32_t max_impacts = motion_settings(w).max_impacts;
   const float threshold = max(length(w.settings.gravity) * seconds / 128.0f, 1.0e-6f);
   StepReport report;
   double left = double(seconds);
-  for (int part = 0; left > 0.0; ++part) {
+  for (int piece = 0; left > 0.0; ++piece) {
     w.now = s.time + (double(seconds) - left);
     detect_collisions(s, float(left));
-    report.bounded = report.impacts >= most || part > 3 * most;
+    report.bounded = report.impacts >= max_impacts || piece > 3 * max_impacts;
     if (report.bounded) {
-      w.waiting.clear();
+      w.inactive_contacts.clear();
     } else {
-      strike(s, threshold, seconds, float(left));
+      apply_impacts(s, threshold, seconds, float(left));
       list_inactive_contacts(w, threshold);
     }
     double length = left;
@@ -254,7 +254,7 @@ void step_to_impacts(WorldState& s, float seconds) {
     finish_step(s, float(length), seconds, last);
     left = last ? 0.0 : left - length;
   }
-  w.waiting.clear();
+  w.inactive_contacts.clear();
   s.solve.report = report;
 }
 
@@ -262,18 +262,18 @@ void end_step(WorldState& s, float seconds) {
   s.time += double(seconds);
   ++s.step_count;
   // What commands add from now on belongs to the next step.
-  std::swap(s.shown, s.rigid.events);
+  std::swap(s.published_events, s.rigid.events);
   RigidEvents& next = s.rigid.events;
   next.begins.clear(), next.ends.clear(), next.hits.clear();
   next.sensors.clear(), next.broken.clear(), next.sleep_changes.clear();
-  const RigidEvents& e = s.shown;
+  const RigidEvents& e = s.published_events;
   ScratchClocks& clocks = s.rigid.clocks;
-  clocks.begins.trim(next.begins, s.shown.begins);
-  clocks.ends.trim(next.ends, s.shown.ends);
-  clocks.hits.trim(next.hits, s.shown.hits);
-  clocks.sensors.trim(next.sensors, s.shown.sensors);
-  clocks.broken.trim(next.broken, s.shown.broken);
-  clocks.sleep_changes.trim(next.sleep_changes, s.shown.sleep_changes);
+  clocks.begins.trim(next.begins, s.published_events.begins);
+  clocks.ends.trim(next.ends, s.published_events.ends);
+  clocks.hits.trim(next.hits, s.published_events.hits);
+  clocks.sensors.trim(next.sensors, s.published_events.sensors);
+  clocks.broken.trim(next.broken, s.published_events.broken);
+  clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
   s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes};
   s.stepping = false;
 }
@@ -289,7 +289,7 @@ void step_world(WorldState& s, float seconds) {
     if (motion_settings(s.rigid).time == TimeStepping::adaptive)
       step_to_impacts(s, seconds);
     else
-      step_at_once(s, seconds);
+      step_undivided(s, seconds);
   }
   end_step(s, seconds);
   report_frozen(s);

@@ -29,7 +29,7 @@ class StateValidator {
   // Whether the step has come at least so far; between steps it has.
   bool is_past(StageName stage) const { return !after_ || *after_ >= stage; }
   // The solver has moved velocities and orientations on, and nobody has looked yet whether they are finite.
-  bool is_on_the_way() const {
+  bool is_within_solve() const {
     return after_ && *after_ >= StageName::solve && *after_ < StageName::finish_bodies;
   }
   bool is_right_after(StageName stage) const { return after_ && *after_ == stage; }
@@ -37,9 +37,9 @@ class StateValidator {
   void list_changed();
   Error lists_of_bodies() const;
   Error list_of_awake() const;
-  Error awake_links() const;
+  Error active_constraints() const;
   Error blocked_bodies() const;
-  Error places() const;
+  Error poses() const;
   Error fat_boxes() const;
   Error contacts_have_pairs() const;
   Error pairs_have_contacts() const;
@@ -47,9 +47,9 @@ class StateValidator {
   Error groups_of_batch(const BatchScratch& solve) const;
   Error everything_is_solved() const;
   Error islands() const;
-  Error nobody_sleeps_beside_motion() const;
+  Error no_sleeper_touches_motion() const;
 
-  bool was_shown(std::uint32_t shape) const { return changed_mark_[shape] == 0; }
+  bool is_in_broadphase(std::uint32_t shape) const { return changed_mark_[shape] == 0; }
 
   const WorldState& s_;
   const RigidWorld& w_;
@@ -104,36 +104,36 @@ Error StateValidator::lists_of_bodies() const {
 
 Error StateValidator::list_of_awake() const {
   if (w_.bodies.awake_stale) return {};
-  std::size_t next = 0, sleepers = 0;
+  std::size_t next = 0, sleeping_count = 0;
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
     const BodyFlags& flags = w_.bodies.flags[body];
     const bool awake =
         w_.bodies.ids.live(body) && flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
-    sleepers += w_.bodies.ids.live(body) && is_movable(flags) && flags.awake == 0 ? 1 : 0;
+    sleeping_count += w_.bodies.ids.live(body) && is_movable(flags) && flags.awake == 0 ? 1 : 0;
     const bool listed = next < w_.bodies.awake.size() && w_.bodies.awake[next] == body;
     if (awake != listed)
       return broken("body %u is %s but %s listed so", body, awake ? "awake" : "not awake",
                     listed ? "is" : "is not");
     if (listed) ++next;
   }
-  if (sleepers != w_.bodies.sleepers) return broken("%zu bodies sleep, not %zu", sleepers, w_.bodies.sleepers);
+  if (sleeping_count != w_.bodies.sleeping_count) return broken("%zu bodies sleep, not %zu", sleeping_count, w_.bodies.sleeping_count);
   return next == w_.bodies.awake.size() ? Error{}
                                         : broken("the list of awake bodies has more than there are");
 }
 
 // Bodies that a joint keeps from colliding are known as such, as often as there are such joints.
 // Whatever has a body that goes along is asked; that others are too costs time only.
-Error StateValidator::awake_links() const {
-  const auto goes = [&](std::uint32_t body) { return is_simulated(w_.bodies.flags[body]); };
+Error StateValidator::active_constraints() const {
+  const auto moves = [&](std::uint32_t body) { return is_simulated(w_.bodies.flags[body]); };
   for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
     const Contact& contact = w_.contacts.contacts[slot];
-    if (contact.manifold_room == 0 || w_.awake_links.contacts.test(slot)) continue;
-    if (goes(contact.body_a) || goes(contact.body_b)) return broken("contact %u has an awake body, but nobody asks it", slot);
+    if (contact.manifold_room == 0 || w_.active_constraints.contacts.test(slot)) continue;
+    if (moves(contact.body_a) || moves(contact.body_b)) return broken("contact %u has an awake body, but nobody asks it", slot);
   }
   for (std::uint32_t slot = 0; slot < w_.joints.ids.capacity(); ++slot) {
-    if (!w_.joints.ids.live(slot) || w_.awake_links.joints.test(slot)) continue;
+    if (!w_.joints.ids.live(slot) || w_.active_constraints.joints.test(slot)) continue;
     const JointRecord& joint = w_.joints.records[slot];
-    if ((joint.body_a != kNoBody && goes(std::uint32_t(joint.body_a))) || (joint.body_b != kNoBody && goes(std::uint32_t(joint.body_b))))
+    if ((joint.body_a != kNoBody && moves(std::uint32_t(joint.body_a))) || (joint.body_b != kNoBody && moves(std::uint32_t(joint.body_b))))
       return broken("joint %u has an awake body, but nobody asks it", slot);
   }
   return {};
@@ -155,11 +155,11 @@ Error StateValidator::blocked_bodies() const {
 }
 
 // What is derived from the place of the centre of mass is what derivation gives.
-Error StateValidator::places() const {
-  if (is_on_the_way()) return {};
+Error StateValidator::poses() const {
+  if (is_within_solve()) return {};
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
     if (!w_.bodies.ids.live(body)) continue;
-    if (!(w_.bodies.orientations[body] == w_.bodies.places[body].orientation))
+    if (!(w_.bodies.orientations[body] == w_.bodies.poses[body].orientation))
       return broken("body %u has two orientations", body);
   }
   return {};
@@ -195,7 +195,7 @@ Error StateValidator::contacts_have_pairs() const {
       return broken("contact %u is of bodies %u and %u, which a joint keeps from colliding", slot,
                     contact.body_a, contact.body_b);
     // Pairs that have come apart go in link_islands.
-    if (!is_past(StageName::link_islands) || !was_shown(contact.shape_a) || !was_shown(contact.shape_b))
+    if (!is_past(StageName::link_islands) || !is_in_broadphase(contact.shape_a) || !is_in_broadphase(contact.shape_b))
       continue;
     if (!overlap(a.fat_box, b.fat_box))
       return broken("contact %u is of shapes %u and %u, whose fat boxes are apart", slot, contact.shape_a,
@@ -208,12 +208,12 @@ Error StateValidator::pairs_have_contacts() const {
   if (w_.broadphase_stale || !is_past(StageName::find_pairs)) return {};
   Array<std::uint32_t> found;
   for (std::uint32_t shape = 0; shape < w_.shapes.ids.capacity(); ++shape) {
-    if (!w_.shapes.ids.live(shape) || !was_shown(shape)) continue;
+    if (!w_.shapes.ids.live(shape) || !is_in_broadphase(shape)) continue;
     const Proxy& proxy = w_.shapes.proxies[shape];
     found.clear();
     w_.broadphase->query(w_.shapes.proxies, proxy.fat_box, found);
     for (const std::uint32_t other : found) {
-      if (other <= shape || !was_shown(other)) continue;
+      if (other <= shape || !is_in_broadphase(other)) continue;
       const Proxy& other_proxy = w_.shapes.proxies[other];
       if (!may_pair(proxy, other_proxy) || w_.joints.blocked.contains(pair_key(proxy.body, other_proxy.body)))
         continue;
@@ -317,20 +317,20 @@ Error StateValidator::islands() const {
     b = root_of(b);
     parent[max(a, b)] = min(a, b);
   });
-  std::vector<std::uint8_t> was_restless(parent.size(), 0);
+  std::vector<std::uint8_t> fell_asleep_moving(parent.size(), 0);
   for (const BodySleep& sleep : w_.bodies.sleep) {
-    if (sleep.group != kNoGroup && sleep.still_time < kTimeToSleep) was_restless[sleep.group] = 1;
+    if (sleep.group != kNoGroup && sleep.still_time < kTimeToSleep) fell_asleep_moving[sleep.group] = 1;
   }
   for (std::uint32_t body = 0; body < parent.size(); ++body) {
     const std::uint32_t group = w_.bodies.sleep[body].group;
-    if (group == kNoGroup || was_restless[group] != 0) continue;
+    if (group == kNoGroup || fell_asleep_moving[group] != 0) continue;
     if (root_of(body) != root_of(group))
       return broken("body %u sleeps in the group of body %u, but nothing links them", body, group);
   }
   return {};
 }
 
-Error StateValidator::nobody_sleeps_beside_motion() const {
+Error StateValidator::no_sleeper_touches_motion() const {
   Error error;
   for_each_island_edge(w_, [&](std::uint32_t a, std::uint32_t b) {
     const auto check = [&](std::uint32_t sleeper, std::uint32_t other) {
@@ -345,7 +345,7 @@ Error StateValidator::nobody_sleeps_beside_motion() const {
 }
 
 Error StateValidator::run() {
-  Error error = is_on_the_way() ? Error{} : check_columns(w_);
+  Error error = is_within_solve() ? Error{} : check_columns(w_);
   const auto next = [&](Error (StateValidator::*rule)() const, bool holds = true) {
     if (error.code == ErrorCode::none && holds) error = (this->*rule)();
   };
@@ -354,14 +354,14 @@ Error StateValidator::run() {
   next(&StateValidator::lists_of_bodies);
   next(&StateValidator::list_of_awake);
   next(&StateValidator::blocked_bodies);
-  next(&StateValidator::places);
+  next(&StateValidator::poses);
   next(&StateValidator::contacts_have_pairs);
   next(&StateValidator::fat_boxes);
   next(&StateValidator::pairs_have_contacts);
   next(&StateValidator::groups_of_constraints);
   next(&StateValidator::islands);
-  next(&StateValidator::nobody_sleeps_beside_motion, is_right_after(StageName::link_islands));
-  next(&StateValidator::awake_links);
+  next(&StateValidator::no_sleeper_touches_motion, is_right_after(StageName::link_islands));
+  next(&StateValidator::active_constraints);
   next(&StateValidator::everything_is_solved, is_right_after(StageName::solve));
   return error;
 }

@@ -153,10 +153,10 @@ TEST(Walk, FindsListsThatDisagree) {
                     "body 1 lists joint 1, which is between others"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.awake.pop_back(); }),
                     "body 8 is awake but is not listed so"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { ++s.rigid.bodies.sleepers; }), "4 bodies sleep, not 5"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.awake_links.contacts.reset_all(); }),
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { ++s.rigid.bodies.sleeping_count; }), "4 bodies sleep, not 5"));
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.active_constraints.contacts.reset_all(); }),
                     "has an awake body, but nobody asks it"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.awake_links.joints.reset_all(); }),
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.active_constraints.joints.reset_all(); }),
                     "joint 0 has an awake body, but nobody asks it"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.joints.blocked.clear(); }),
                     "joint 1 keeps its bodies from colliding, but they are not known"));

@@ -84,7 +84,7 @@ template <class Ask>
 void ask_world(const WorldState& s, const QueryFilter& filter, Ask&& ask) {
   const RigidWorld& w = s.rigid;
   const auto pose_of = [&](std::uint32_t shape) {
-    return origin_pose(w.bodies, w.shapes.bodies[shape]) * w.shapes.places[shape];
+    return origin_pose(w.bodies, w.shapes.bodies[shape]) * w.shapes.body_from_shape[shape];
   };
   const auto is_accepted = [&](std::uint32_t shape) { return accepts(w, filter, shape); };
   const QueryInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, pose_of,
@@ -303,9 +303,9 @@ Error ask_each(WorldState& s, std::span<const Question> questions, std::size_t r
   }
   show_changes(s);
   const std::unique_lock<std::mutex> workers(s.batch_lock, std::try_to_lock);
-  constexpr std::size_t kMost = 1u << 30;  // what a loop in blocks can count
-  for (std::size_t first = 0; first < questions.size(); first += kMost) {
-    const auto count = int(min(questions.size() - first, kMost));
+  constexpr std::size_t kMaxQuestions = 1u << 30;  // what a loop in blocks can count
+  for (std::size_t first = 0; first < questions.size(); first += kMaxQuestions) {
+    const auto count = int(min(questions.size() - first, kMaxQuestions));
     const auto answer_some = [&](int begin, int end, int) {
       for (std::size_t i = first + std::size_t(begin); i < first + std::size_t(end); ++i)
         ask(i, questions[i]);

@@ -49,7 +49,7 @@ BodyColumns read_bodies(const WorldState& s, bool only_awake) {
 
 // Angular momentum about the centre of mass, world frame, in double.
 DVec3 spin_momentum(const BodyStore& bodies, std::uint32_t i) {
-  const Quat q = bodies.places[i].orientation;
+  const Quat q = bodies.poses[i].orientation;
   return DVec3(rotate(q, bodies.masses[i].inertia * rotate_inverse(q, bodies.motion[i].angular_velocity)));
 }
 
@@ -64,7 +64,7 @@ Pose World::pose(BodyId body) const {
   return exists(body) ? origin_pose(state_->rigid.bodies, body.index) : Pose{};
 }
 DVec3 World::center_of_mass(BodyId body) const {
-  return exists(body) ? state_->rigid.bodies.places[body.index].center : DVec3{};
+  return exists(body) ? state_->rigid.bodies.poses[body.index].center : DVec3{};
 }
 Vec3 World::linear_velocity(BodyId body) const {
   return exists(body) ? state_->rigid.bodies.motion[body.index].linear_velocity : Vec3{};
@@ -103,7 +103,7 @@ const AnyShape* World::geometry(ShapeId shape) const {
   return exists(shape) ? &state_->rigid.shapes.geometry[shape.index] : nullptr;
 }
 Transform World::local_transform(ShapeId shape) const {
-  return exists(shape) ? state_->rigid.shapes.places[shape.index] : Transform{};
+  return exists(shape) ? state_->rigid.shapes.body_from_shape[shape.index] : Transform{};
 }
 Material World::material(ShapeId shape) const {
   return exists(shape) ? state_->rigid.shapes.materials[shape.index] : Material{};
@@ -158,7 +158,7 @@ std::size_t World::contacts(std::span<ContactPoint> out) const {
         point.shape_b = shape_id(w, contact.shape_b);
         point.body_a = body_id(w, contact.body_a);
         point.body_b = body_id(w, contact.body_b);
-        point.position = w.bodies.places[contact.body_a].center + from.from_a;
+        point.position = w.bodies.poses[contact.body_a].center + from.from_a;
         point.normal = manifold.normal;
         point.tangent_1 = any_perpendicular(manifold.normal);
         point.tangent_2 = cross(manifold.normal, point.tangent_1);
@@ -279,7 +279,7 @@ Energy World::energy() const {
     energy.kinetic += 0.5 * mass * length_squared(DVec3(motion.linear_velocity)) +
                       0.5 * dot(spin_momentum(w.bodies, i), DVec3(motion.angular_velocity));
     energy.potential -=
-        mass * double(w.bodies.forces[i].gravity_scale) * dot(gravity, w.bodies.places[i].center);
+        mass * double(w.bodies.forces[i].gravity_scale) * dot(gravity, w.bodies.poses[i].center);
   });
   w.joints.ids.for_each_live([&](std::uint32_t slot) { energy.elastic += spring_energy(w, slot); });
   return energy;
@@ -293,7 +293,7 @@ Momentum World::momentum() const {
     if (!is_movable(w.bodies.flags[i])) return;
     const DVec3 p = double(w.bodies.masses[i].mass) * DVec3(w.bodies.motion[i].linear_velocity);
     momentum.linear += p;
-    momentum.angular += cross(w.bodies.places[i].center, p) + spin_momentum(w.bodies, i);
+    momentum.angular += cross(w.bodies.poses[i].center, p) + spin_momentum(w.bodies, i);
   });
   return momentum;
 }

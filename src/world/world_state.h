@@ -60,7 +60,7 @@ struct WorldState {
   CommandLog* log = nullptr;
   Array<Problem> problems;
   Array<std::uint32_t> frozen;
-  RigidEvents shown;              // events of the last step; rigid.events collects those of the next
+  RigidEvents published_events;              // events of the last step; rigid.events collects those of the next
   Events events;                  // spans into `shown`
   bool stepping = false;
   bool walks = true;              // builds with GYRE_VALIDATE: after each stage all structures are walked
@@ -113,7 +113,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("body_ids", s.rigid.bodies.ids);
   visit("body_motion", s.rigid.bodies.motion);
   visit("body_last_moves", s.rigid.bodies.last_moves);
-  visit("body_places", s.rigid.bodies.places);
+  visit("body_places", s.rigid.bodies.poses);
   visit("body_masses", s.rigid.bodies.masses);
   visit("body_forces", s.rigid.bodies.forces);
   visit("body_flags", s.rigid.bodies.flags);
@@ -122,7 +122,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("body_user_data", s.rigid.bodies.user_data);
   visit("shape_ids", s.rigid.shapes.ids);
   visit("shape_bodies", s.rigid.shapes.bodies);
-  visit("shape_places", s.rigid.shapes.places);
+  visit("shape_places", s.rigid.shapes.body_from_shape);
   visit("shape_proxies", s.rigid.shapes.proxies);
   visit("shape_materials", s.rigid.shapes.materials);
   visit("shape_geometry", s.rigid.shapes.geometry);

@@ -32,7 +32,7 @@ class ColliderShapes {
       const Shapes& shapes)  // NOLINT: either form is all that is needed
       : records_(std::span<const ColliderShape>(shapes).data()) {}
   ColliderShapes(const InternedColumn<ColliderShape>& shapes)  // NOLINT
-      : records_(shapes.records()), places_(shapes.places()) {}
+      : records_(shapes.records()), places_(shapes.body_from_shape()) {}
   const ColliderShape& operator[](std::uint32_t shape) const {
     return records_[places_ != nullptr ? places_[shape] : shape];
   }

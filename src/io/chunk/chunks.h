@@ -67,7 +67,7 @@ class ChunkReader {
 
  private:
   std::span<const std::byte> bytes_;
-  std::size_t place_ = 0;
+  std::size_t offset_ = 0;
   std::uint32_t number_ = 0;
   std::uint64_t layout_ = 0;
 };

@@ -83,20 +83,20 @@ class BitReader {
   void fail() { failed_ = true; }
   bool failed() const { return failed_; }
   // Nothing wrong, and no more left than zeros that fill the last byte.
-  bool finished() const { return !failed_ && place_ == bytes_.size() && filled_ < 8 && word_ == 0; }
+  bool finished() const { return !failed_ && offset_ == bytes_.size() && filled_ < 8 && word_ == 0; }
   // How many bits are left at most.
   std::uint64_t left() const {
-    return failed_ ? 0 : 8 * std::uint64_t(bytes_.size() - place_) + std::uint64_t(filled_);
+    return failed_ ? 0 : 8 * std::uint64_t(bytes_.size() - offset_) + std::uint64_t(filled_);
   }
 
  private:
   std::uint64_t get(int count) {
     for (; filled_ < count; filled_ += 8) {
-      if (place_ == bytes_.size()) {
+      if (offset_ == bytes_.size()) {
         failed_ = true;
         return 0;
       }
-      word_ |= std::uint64_t(bytes_[place_++]) << filled_;
+      word_ |= std::uint64_t(bytes_[offset_++]) << filled_;
     }
     const std::uint64_t value = word_ & ((std::uint64_t(1) << count) - 1);
     word_ >>= count;
@@ -105,7 +105,7 @@ class BitReader {
   }
 
   std::span<const std::byte> bytes_;
-  std::size_t place_ = 0;
+  std::size_t offset_ = 0;
   std::uint64_t word_ = 0;
   int filled_ = 0;  // bits of `word_` not yet given
   bool failed_ = false;
@@ -120,10 +120,10 @@ void code_count(Bits& bits, std::uint64_t& value, int order) {
   const std::uint64_t shifted = value + (std::uint64_t(1) << order);
   int extra = Bits::kReads ? 0 : int(std::bit_width(shifted)) - 1 - order;
   for (int zeros = 0;; ++zeros) {
-    std::uint64_t stop = zeros == extra;
-    bits.code_bits(stop, 1);
-    if constexpr (Bits::kReads) extra = stop ? zeros : zeros + 1;
-    if (stop) break;
+    std::uint64_t end_bit = zeros == extra;
+    bits.code_bits(end_bit, 1);
+    if constexpr (Bits::kReads) extra = end_bit ? zeros : zeros + 1;
+    if (end_bit) break;
     if (bits.failed() || order + zeros >= kMaxBits) {
       if constexpr (Bits::kReads) bits.fail();
       value = 0;

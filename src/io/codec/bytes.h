@@ -45,7 +45,7 @@ Bits load_little(const std::byte* from) {
 // How many values an enum has; those from outside must be below. Every enum that is stored has its line here or beside
 // its codec.
 template <class E>
-constexpr int kEnumCount = E::no_count_is_known_for_this_enum;
+constexpr int kEnumCount = E::missing_enum_count;
 
 // Turns bits back into a value. False for a bool or enum value that does not exist.
 template <class T>
@@ -85,8 +85,8 @@ class ByteWriter {
   }
   // Overwrites what stands at `place`.
   template <class T>
-  void patch(std::size_t place, T value) {
-    store_little(bytes_.data() + place, to_bits(value));
+  void patch(std::size_t offset, T value) {
+    store_little(bytes_.data() + offset, to_bits(value));
   }
   // Makes room for `count` bytes and returns where to write them; valid until the next call.
   std::byte* grow(std::size_t count) {
@@ -121,8 +121,8 @@ class ByteReader {
       fail();
       return {};
     }
-    const std::span<const std::byte> part = bytes_.subspan(place_, std::size_t(count));
-    place_ += std::size_t(count);
+    const std::span<const std::byte> part = bytes_.subspan(offset_, std::size_t(count));
+    offset_ += std::size_t(count);
     return part;
   }
   // A count of things that take at least `min_bytes` each; 0, and failed, if that many cannot follow.
@@ -149,20 +149,20 @@ class ByteReader {
   bool failed() const { return failed_; }
   // Nothing left and nothing wrong.
   bool finished() const { return !failed_ && left() == 0; }
-  std::size_t place() const { return place_; }
-  std::size_t left() const { return failed_ ? 0 : bytes_.size() - place_; }
+  std::size_t offset() const { return offset_; }
+  std::size_t left() const { return failed_ ? 0 : bytes_.size() - offset_; }
 
  private:
   const std::byte* take(std::size_t count) {
     if (count > left()) fail();
     if (failed_) return nullptr;
-    const std::byte* const from = bytes_.data() + place_;
-    place_ += count;
+    const std::byte* const from = bytes_.data() + offset_;
+    offset_ += count;
     return from;
   }
 
   std::span<const std::byte> bytes_;
-  std::size_t place_ = 0;
+  std::size_t offset_ = 0;
   bool failed_ = false;
 };
 

@@ -33,7 +33,7 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
 }
 
 void clear_reports(WorldState& state) {
-  clear_events(state.shown);
+  clear_events(state.published_events);
   state.events = {};
   state.problems.clear();
   state.frozen.clear();

@@ -53,8 +53,8 @@ class FieldReader {
   void shape(AnyShape& value) { value = read_shape(in_, geometry_); }
   template <class T>
   void count(std::vector<T>& list) {
-    constexpr std::size_t kLeast = std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
-    list.resize(in_.get_count(kLeast));
+    constexpr std::size_t kMinBytes = std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
+    list.resize(in_.get_count(kMinBytes));
   }
   template <class T>
   bool has(std::optional<T>& value) {
@@ -210,7 +210,7 @@ requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>>) void fields(C
   for (auto& item : list) all(c, item);
 }
 // What only kinds beyond these five say: a recording of these stays as short as it was, and older ones open.
-constexpr bool says_more(JointKind kind) { return kind > JointKind::distance; }
+constexpr bool has_extra_fields(JointKind kind) { return kind > JointKind::distance; }
 template <class C, Is<JointDef> T>
 void fields(C& c, T& v) {
   auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
@@ -220,7 +220,7 @@ void fields(C& c, T& v) {
   all(c, kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
       damping, frequency, damping_ratio, break_force, break_torque, collide_connected);
   all(c, friction, limit_frequency, limit_damping);
-  if (!says_more(kind)) return;
+  if (!has_extra_fields(kind)) return;
   all(c, axis_b, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y,
       angular_z, drive, path, path_closed, path_orientation);
 }

@@ -246,8 +246,8 @@ Result<Geometry> read_field(ByteReader& in) {
 }  // namespace
 
 bool GeometryTable::add(const Geometry& geometry) {
-  if (!geometry || place_of_.contains(geometry.content_hash())) return false;
-  place_of_.insert(geometry.content_hash(), std::uint32_t(items_.size()));
+  if (!geometry || index_of_.contains(geometry.content_hash())) return false;
+  index_of_.insert(geometry.content_hash(), std::uint32_t(items_.size()));
   items_.push_back(geometry);
   return true;
 }
@@ -258,7 +258,7 @@ bool GeometryTable::add(const AnyShape& shape) {
 }
 
 const Geometry* GeometryTable::find(std::uint64_t content_hash) const {
-  const std::uint32_t* const place = place_of_.find(content_hash);
+  const std::uint32_t* const place = index_of_.find(content_hash);
   return place != nullptr ? &items_[*place] : nullptr;
 }
 
@@ -266,12 +266,12 @@ void write_geometry(ByteWriter& out, const Geometry& geometry) {
   const CookedGeometry& data = *geometry.data();
   out.put(data.kind);
   out.put(data.content_hash);
-  const std::size_t length_place = out.size();
+  const std::size_t length_offset = out.size();
   out.put(std::uint64_t(0));
   if (data.kind == ShapeKind::hull) write_hull(out, *data.hull);
   if (data.kind == ShapeKind::mesh) write_mesh(out, *data.mesh);
   if (data.kind == ShapeKind::height_field) write_field(out, *data.field);
-  out.patch(length_place, std::uint64_t(out.size() - length_place - sizeof(std::uint64_t)));
+  out.patch(length_offset, std::uint64_t(out.size() - length_offset - sizeof(std::uint64_t)));
 }
 
 Result<Geometry> read_geometry(ByteReader& in, const GeometryTable& known) {

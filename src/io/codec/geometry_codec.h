@@ -26,7 +26,7 @@ class GeometryTable {
 
  private:
   std::vector<Geometry> items_;
-  FlatMap<std::uint32_t> place_of_;
+  FlatMap<std::uint32_t> index_of_;
 };
 
 inline void put_vector(ByteWriter& out, Vec3 v) { out.put(v.x), out.put(v.y), out.put(v.z); }

@@ -211,7 +211,7 @@ Result<Difference> first_difference(std::span<const std::byte> recording, const 
   if (!plain) return plain.error();
   StateCopy before;  // the last state that is known to be the recorded one
   std::uint64_t first = 0;
-  before.keep(suspect->state());
+  before.save(suspect->state());
   for (std::uint64_t i = 0; i < opened->steps.size(); ++i) {
     WorldState& state = suspect->state();
     const RecordedStep& step = opened->steps[std::size_t(i)];
@@ -219,12 +219,12 @@ Result<Difference> first_difference(std::span<const std::byte> recording, const 
     submit(state, Step{seconds});
     if (has_recorded_hash(step, state)) {
       if (!step.is_whole) continue;
-      before.keep(state);
+      before.save(state);
       first = i + 1;
       continue;
     }
-    before.put_back(state);
-    before.put_back(plain->state());
+    before.restore(state);
+    before.restore(plain->state());
     return explain_steps(*opened, first, i, state, plain->state());
   }
   return no_difference();

@@ -76,7 +76,7 @@ TEST(Difference, OfDerivedDataShowsWhereItIsUsed) {
   BodyStore& bodies = worlds.b.state().rigid.bodies;
   std::uint32_t touching = 0;
   for (std::uint32_t i = 0; i < bodies.flags.size(); ++i) {
-    if (bodies.flags[i].type == BodyType::dynamic && bodies.flags[i].touched != 0) touching = i;
+    if (bodies.flags[i].type == BodyType::dynamic && bodies.flags[i].constraint_use != 0) touching = i;
   }
   ASSERT_NE(touching, 0u);
   bodies.inertia[touching].inverse.xx *= 1.5f;

@@ -30,8 +30,8 @@ struct Recorder::Log final : CommandLog {
   // Commands wait for the step that they belong to, unless they become this many bytes.
   static constexpr std::size_t kMaxPending = std::size_t(1) << 20;
 
-  Log(WorldState& recorded, ByteSink& to, const RecordOptions& wanted)
-      : state(&recorded), sink(to), options(wanted) {}
+  Log(WorldState& recorded, ByteSink& to, const RecordOptions& record_options)
+      : state(&recorded), sink(to), options(record_options) {}
 
   void on_command(const Command& command) override {
     whole_hash_due = false;

@@ -17,7 +17,7 @@ class Keyframes {
   void offer(std::uint64_t position, const WorldState& state) {
     if (position % interval_ != 0 || (!frames_.empty() && frames_.back().position >= position)) return;
     frames_.push_back({position, {}});
-    frames_.back().state.keep(state);
+    frames_.back().state.save(state);
     bytes_ += frames_.back().state.bytes();
     while (frames_.size() > 2 && (frames_.size() > kMaxFrames || bytes_ > kMaxBytes)) thin_out();
   }
@@ -103,7 +103,7 @@ Error Replay::seek(std::uint64_t step) {
   std::uint64_t found = 0;
   const StateCopy* const frame = player.keyframes.find(step, found);
   if (frame != nullptr && (step < player.position || found > player.position)) {
-    frame->put_back(player.world.state());
+    frame->restore(player.world.state());
     player.position = found;
   }
   while (player.position < step) player.step(nullptr);

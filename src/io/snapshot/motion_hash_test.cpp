@@ -41,7 +41,7 @@ TEST(MotionHash, EveryBitOfWhatMovesMatters) {
   };
   const std::uint32_t last = state.rigid.bodies.awake.back();
   BodyMotion& motion = state.rigid.bodies.motion[last];
-  BodyPose& place = state.rigid.bodies.places[last];
+  BodyPose& place = state.rigid.bodies.poses[last];
   try_bits(motion.linear_velocity), try_bits(motion.angular_velocity);
   try_bits(place.center), try_bits(place.orientation);
   try_bits(state.time), try_bits(state.step_count), try_bits(state.rigid.contacts.live);
@@ -66,7 +66,7 @@ TEST(MotionHash, IncludesWhatFellAsleepInTheStep) {
   const BodyId box = scenes::add_moving(world, {0, 0.5, 0}, Box{});
   while (world.is_awake(box)) world.step(scenes::kStepSeconds);
   const std::uint64_t hash = hash_motion(world.state());
-  world.state().rigid.bodies.places[box.index].center.x += 0.25;
+  world.state().rigid.bodies.poses[box.index].center.x += 0.25;
   EXPECT_NE(hash_motion(world.state()), hash);
 }
 

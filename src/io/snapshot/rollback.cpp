@@ -25,21 +25,21 @@ void Rollback::save(const World& world) {
   std::vector<Ring::Slot>& slots = ring_->slots;
   // What a rewound world steps through again replaces what was kept of that step, and all later steps are of a future
   // that will not come.
-  std::size_t place = ring_->next;
+  std::size_t index = ring_->next;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (!slots[i].used || slots[i].state.step_count() < step) continue;
-    if (slots[i].state.step_count() == step) place = i;
+    if (slots[i].state.step_count() == step) index = i;
     slots[i].used = false;
   }
-  slots[place].state.keep(world.state());
-  slots[place].used = true;
-  ring_->next = (place + 1) % slots.size();
+  slots[index].state.save(world.state());
+  slots[index].used = true;
+  ring_->next = (index + 1) % slots.size();
 }
 
 bool Rollback::restore(World& world, std::uint64_t step) const {
   for (const Ring::Slot& slot : ring_->slots) {
     if (!slot.used || slot.state.step_count() != step) continue;
-    slot.state.put_back(world.state());
+    slot.state.restore(world.state());
     return true;
   }
   return false;

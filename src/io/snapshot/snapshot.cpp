@@ -15,8 +15,8 @@ namespace {
 
 constexpr char kSnapshotMagic[9] = "GYRESNAP";
 constexpr std::size_t kSnapshotHeaderBytes = 8 + 4 + 4 + 8 + 8;
-constexpr std::size_t kBodyLengthPlace = 16;
-constexpr std::size_t kBodyChecksumPlace = 24;
+constexpr std::size_t kBodyLengthOffset = 16;
+constexpr std::size_t kBodyChecksumOffset = 24;
 
 Error bad_snapshot(const char* what) { return make_error(ErrorCode::invalid_data, "snapshot: %s", what); }
 
@@ -272,14 +272,14 @@ void write_snapshot(ByteWriter& out, const WorldState& state, GeometryTable& geo
   collect_geometry(state, own);
   for (const Geometry& item : own.items()) geometry.add(item);
   write_geometry_table(out, own);
-  const std::size_t count_place = out.size();
+  const std::size_t count_offset = out.size();
   out.put(std::uint32_t(0));
   ColumnWriter writer(out);
   for_each_column(state, writer);
-  out.patch(count_place, writer.count);
+  out.patch(count_offset, writer.count);
   const std::span<const std::byte> body = out.view().subspan(start + kSnapshotHeaderBytes);
-  out.patch(start + kBodyLengthPlace, std::uint64_t(body.size()));
-  out.patch(start + kBodyChecksumPlace, hash_bytes(body.data(), body.size()));
+  out.patch(start + kBodyLengthOffset, std::uint64_t(body.size()));
+  out.patch(start + kBodyChecksumOffset, hash_bytes(body.data(), body.size()));
 }
 
 Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number, GeometryTable& geometry,
@@ -309,8 +309,8 @@ std::uint64_t state_layout() {
 void reseal_snapshot(std::span<std::byte> bytes) {
   if (bytes.size() < kSnapshotHeaderBytes) return;
   const std::span<std::byte> body = bytes.subspan(kSnapshotHeaderBytes);
-  store_little(bytes.data() + kBodyLengthPlace, std::uint64_t(body.size()));
-  store_little(bytes.data() + kBodyChecksumPlace, hash_bytes(body.data(), body.size()));
+  store_little(bytes.data() + kBodyLengthOffset, std::uint64_t(body.size()));
+  store_little(bytes.data() + kBodyChecksumOffset, hash_bytes(body.data(), body.size()));
 }
 
 std::vector<std::byte> save_snapshot(const World& world) {

@@ -279,7 +279,7 @@ TEST(SnapshotCheck, EveryLinkIsChecked) {
   EXPECT_FALSE(refused([](RigidWorld&) {}));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.settings.substeps = 0; }));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.settings.last_substep = __builtin_nanf(""); }));
-  EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.places[2].center.x = __builtin_nan(""); }));
+  EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.poses[2].center.x = __builtin_nan(""); }));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.motion[2].linear_velocity.y = __builtin_inff(); }));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.flags.pop_back(); }));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.flags[3].awake = 0; }));

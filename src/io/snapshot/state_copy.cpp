@@ -20,14 +20,14 @@ std::size_t padded(std::size_t bytes) { return (bytes + kMemoryAlign - 1) / kMem
 // A manifold with `count` points is kept as two runs of its bytes: up to its last point, and from behind the room for points to its
 // last anchor.
 constexpr std::size_t kHeadBytes = offsetof(Manifold, points);
-constexpr std::size_t kTailPlace = offsetof(Manifold, age);
-static_assert(kTailPlace == kHeadBytes + kMaxManifoldPoints * sizeof(ContactPointState) &&
+constexpr std::size_t kTailOffset = offsetof(Manifold, age);
+static_assert(kTailOffset == kHeadBytes + kMaxManifoldPoints * sizeof(ContactPointState) &&
                   offsetof(Manifold, anchors) + kMaxManifoldPoints * sizeof(PointAnchor) == sizeof(Manifold),
               "points and anchors end the runs, with all there is in one of them");
 
 std::size_t point_bytes(int count) { return std::size_t(count) * sizeof(ContactPointState); }
 std::size_t tail_bytes(int count) {
-  return offsetof(Manifold, anchors) - kTailPlace + std::size_t(count) * sizeof(PointAnchor);
+  return offsetof(Manifold, anchors) - kTailOffset + std::size_t(count) * sizeof(PointAnchor);
 }
 std::size_t manifold_bytes(int count) { return kHeadBytes + point_bytes(count) + tail_bytes(count); }
 
@@ -77,17 +77,17 @@ struct Packer {
   template <class T>
   void operator()(const char*, const Array<T>& column) {
     static_assert(std::is_trivially_copyable_v<T>, "records are packed as bytes");
-    put_count(column.size());
+    write_count(column.size());
     if (!column.empty()) std::memcpy(to, column.data(), column.size() * sizeof(T));
     to += padded(column.size() * sizeof(T));
   }
   void operator()(const char*, const Manifolds& column) {
-    put_count(column.size());
+    write_count(column.size());
     for_each_manifold(store, [&](const Manifold& manifold) {
       const auto* const from = reinterpret_cast<const std::byte*>(&manifold);
       const std::size_t head = kHeadBytes + point_bytes(manifold.count), tail = tail_bytes(manifold.count);
       std::memcpy(to, from, head);
-      std::memcpy(to + head, from + kTailPlace, tail);
+      std::memcpy(to + head, from + kTailOffset, tail);
       to += head + tail;
     });
   }
@@ -95,7 +95,7 @@ struct Packer {
   void operator()(const char*, const Column&) {}
 
  private:
-  void put_count(std::size_t count) {
+  void write_count(std::size_t count) {
     std::memcpy(to, &count, sizeof count);
     to += padded(sizeof count);
   }
@@ -111,9 +111,9 @@ struct Unpacker {
 
   template <class T>
   void operator()(const char*, Array<T>& column) {
-    const std::span<const T> kept = next<T>();
-    if constexpr (std::is_same_v<T, Proxy>) same_count = list_differing(column.view(), kept, differing);
-    column.assign(kept);
+    const std::span<const T> saved = next<T>();
+    if constexpr (std::is_same_v<T, Proxy>) same_count = list_differing(column.view(), saved, differing);
+    column.assign(saved);
   }
   void operator()(const char*, Manifolds& column) {
     column.resize(get_count());
@@ -123,7 +123,7 @@ struct Unpacker {
       std::memcpy(to, from, kHeadBytes);
       const std::size_t points = point_bytes(manifold.count), tail = tail_bytes(manifold.count);
       std::memcpy(to + kHeadBytes, from + kHeadBytes, points);
-      std::memcpy(to + kTailPlace, from + kHeadBytes + points, tail);
+      std::memcpy(to + kTailOffset, from + kHeadBytes + points, tail);
       from += kHeadBytes + points + tail;
     });
   }
@@ -140,22 +140,22 @@ struct Unpacker {
   template <class T>
   std::span<const T> next() {
     const std::size_t count = get_count();
-    const std::byte* const place = from;
+    const std::byte* const data = from;
     from += padded(count * sizeof(T));
-    return {reinterpret_cast<const T*>(place), count};
+    return {reinterpret_cast<const T*>(data), count};
   }
 };
 
 // The columns that are not packed: from a list of where they are, in the order of for_each_column.
 struct OtherColumns {
-  static constexpr std::size_t kMost = 64;
-  const void* places[kMost];
+  static constexpr std::size_t kMaxColumns = 64;
+  const void* columns[kMaxColumns];
   std::size_t count = 0;
 
   template <class Column>
   void operator()(const char*, const Column& column) {
-    GYRE_ASSERT(count < kMost, "the list has room for every column");
-    places[count++] = &column;
+    GYRE_ASSERT(count < kMaxColumns, "the list has room for every column");
+    columns[count++] = &column;
   }
 };
 
@@ -171,7 +171,7 @@ struct OtherCopier {
   template <class Column>
   void operator()(const char*, Column& column) {
     // Both walks are of for_each_column, so the n-th columns are of one type.
-    column = *static_cast<const Column*>(from.places[next++]);
+    column = *static_cast<const Column*>(from.columns[next++]);
   }
 };
 
@@ -201,7 +201,7 @@ struct OtherSize {
 
 }  // namespace
 
-void StateCopy::keep(const WorldState& state) {
+void StateCopy::save(const WorldState& state) {
   const ContactStore& store = state.rigid.contacts;
   PackedSize size{store};
   for_each_column(state, size);
@@ -213,17 +213,17 @@ void StateCopy::keep(const WorldState& state) {
   changed_ = state.rigid.shapes.changed;
 }
 
-void StateCopy::put_back(WorldState& state) const {
+void StateCopy::restore(WorldState& state) const {
   RigidWorld& w = state.rigid;
   Array<std::uint32_t> changed = std::move(w.shapes.changed);
   for_each_manifold(w.contacts, [](Manifold& manifold) { manifold = Manifold{}; });
   Unpacker unpacker{w.contacts, packed_.data(), changed};
   for_each_column(state, unpacker);
   copy_others(others_, state);
-  const bool knows_boxes = !w.broadphase_stale && unpacker.same_count;
+  const bool can_keep_broadphase = !w.broadphase_stale && unpacker.same_count;
   derive_state(w);
   state.queried_changes.store(kNothingQueried, std::memory_order_relaxed);
-  if (knows_boxes) {
+  if (can_keep_broadphase) {
     // What the broad phase has not seen of the present state, of the kept one, and what differs between the two.
     changed.append(changed_);
     w.shapes.changed = std::move(changed);

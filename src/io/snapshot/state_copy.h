@@ -9,10 +9,10 @@ namespace gyre {
 // geometry is shared, not copied.
 class StateCopy {
  public:
-  void keep(const WorldState& state);
+  void save(const WorldState& state);
   // Puts a world back to exactly what keep() saw. The world must be the one that was kept, or one whose columns came from
   // it: nothing is checked.
-  void put_back(WorldState& state) const;
+  void restore(WorldState& state) const;
   std::uint64_t step_count() const { return others_.step_count; }
   std::size_t bytes() const;
 

@@ -57,20 +57,20 @@ TEST_P(KeptStates, ArePutBackToTheLastBit) {
   for (int i = 0; i < 60; ++i) step_scene(scene, world, i);
   const std::uint64_t hash = world.hash();
   StateCopy kept;
-  kept.keep(world.state());
+  kept.save(world.state());
   EXPECT_EQ(kept.step_count(), world.step_count());
-  kept.put_back(world.state());
+  kept.restore(world.state());
   EXPECT_EQ(world.hash(), hash);
   for (int i = 60; i < 120; ++i) step_scene(scene, world, i);
   const std::uint64_t later = world.hash();
-  kept.put_back(world.state());
+  kept.restore(world.state());
   EXPECT_EQ(world.hash(), hash);
   EXPECT_EQ(find_fault(world.state().rigid.contacts), nullptr);
   for (int i = 60; i < 120; ++i) step_scene(scene, world, i);
   EXPECT_EQ(world.hash(), later);
 
   World other = *World::create();
-  kept.put_back(other.state());
+  kept.restore(other.state());
   EXPECT_EQ(other.hash(), hash);
   EXPECT_EQ(find_fault(other.state().rigid.contacts), nullptr);
 }
@@ -85,11 +85,11 @@ TEST_P(KeptStates, ReplaceEachOther) {
   for (int i = 0; i < 90; ++i) {
     if (i % 30 == 0) {
       hash = world.hash();
-      kept.keep(world.state());
+      kept.save(world.state());
     }
     step_scene(scene, world, i);
   }
-  kept.put_back(world.state());
+  kept.restore(world.state());
   EXPECT_EQ(world.hash(), hash);
   EXPECT_EQ(world.step_count(), 60u);
 }
@@ -108,7 +108,7 @@ TEST(StateCopy, KeepsWhatWaitsForTheNextStep) {
   world.remove_body(low);
   world.set_pose(wall, {{0.99, 0, 0}, {}});
   StateCopy kept;
-  kept.keep(world.state());
+  kept.save(world.state());
   std::uint64_t hash = 0;
   for (int run = 0; run < 2; ++run) {
     world.step(scenes::kStepSeconds);
@@ -116,7 +116,7 @@ TEST(StateCopy, KeepsWhatWaitsForTheNextStep) {
     EXPECT_EQ(world.events().begins.size(), 1u) << run;
     if (run == 0) hash = world.hash();
     EXPECT_EQ(world.hash(), hash);
-    kept.put_back(world.state());
+    kept.restore(world.state());
   }
 }
 
@@ -131,7 +131,7 @@ TEST(StateCopy, HoldsNothingOfManifoldsThatAreNotInUse) {
   ColumnBytes all;
   for_each_column(world.state(), all);
   StateCopy kept;
-  kept.keep(world.state());
+  kept.save(world.state());
   // Arrays begin on cache lines of their own and grow by an eighth.
   EXPECT_LT(kept.bytes(), (all.bytes - count.room * sizeof(Manifold)) * 9 / 8 + 32 * 128);
 }

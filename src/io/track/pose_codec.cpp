@@ -56,14 +56,14 @@ RoundedPose round_pose(const Pose& pose, PoseSteps steps) {
     rounded.position[i] = scaled >= limit ? kMaxPosition : scaled <= -limit ? -kMaxPosition : nearest(scaled);
   }
   const Quat q = pose.orientation == Quat{0, 0, 0, 0} ? Quat{} : pose.orientation;
-  const double parts[4] = {double(q.x), double(q.y), double(q.z), double(q.w)};
+  const double components[4] = {double(q.x), double(q.y), double(q.z), double(q.w)};
   double square = 0.0;
-  for (const double part : parts) square += part * part;
+  for (const double component : components) square += component * component;
   const double scale = power_of_two(steps.orientation_bits) / std::sqrt(square);
-  for (int i = 0; i < 4; ++i) rounded.orientation[i] = nearest(parts[i] * scale);
+  for (int i = 0; i < 4; ++i) rounded.orientation[i] = nearest(components[i] * scale);
   rounded.largest = largest_of(rounded.orientation);
   if (rounded.orientation[rounded.largest] < 0) {
-    for (std::int64_t& part : rounded.orientation) part = -part;
+    for (std::int64_t& component : rounded.orientation) component = -component;
   }
   complete_orientation(rounded, steps);
   return rounded;
@@ -72,15 +72,15 @@ RoundedPose round_pose(const Pose& pose, PoseSteps steps) {
 Pose unrounded(const RoundedPose& pose, PoseSteps steps) {
   const double metre = power_of_two(-steps.position_bits);
   const double unit = power_of_two(-steps.orientation_bits);
-  float parts[4];
+  float components[4];
   for (int i = 0; i < 4; ++i) {
-    const double part =
+    const double component =
         i == pose.largest ? std::sqrt(double(left_for_largest(pose, steps))) : double(pose.orientation[i]);
-    parts[i] = float(part * unit);
+    components[i] = float(component * unit);
   }
   return {
       {double(pose.position[0]) * metre, double(pose.position[1]) * metre, double(pose.position[2]) * metre},
-      {parts[0], parts[1], parts[2], parts[3]}};
+      {components[0], components[1], components[2], components[3]}};
 }
 
 // Three parts of the quaternion are off by half a step each, and the largest, which is at least 1/2 but for

@@ -90,10 +90,10 @@ void code_difference(Bits& bits, std::int64_t& difference, std::int64_t& size) {
   } else {
     const std::uint64_t folded = fold_sign(difference), high = folded >> low_bits;
     if (high < kMaxHigh) {
-      constexpr int kMaxAtOnce = 64 - int(kMaxHigh);
+      constexpr int kMaxLowBitsWithUnary = 64 - int(kMaxHigh);
       const std::uint64_t ones = (std::uint64_t(1) << high) - 1, low = folded & ((std::uint64_t(1) << low_bits) - 1);
       const int unary = int(high) + 1;
-      if (low_bits <= kMaxAtOnce) {
+      if (low_bits <= kMaxLowBitsWithUnary) {
         bits.code_bits(low << unary | ones, unary + low_bits);
       } else {
         bits.code_bits(ones, unary);

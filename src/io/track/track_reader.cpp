@@ -18,7 +18,7 @@ struct ListedFrame {
 
 // Adds what `read` fills in, if it can.
 template <class Item, class Read>
-bool keep(std::vector<Item>& items, Read&& read) {
+bool append(std::vector<Item>& items, Read&& read) {
   Item item;
   const bool good = read(item);
   if (good) items.push_back(std::move(item));
@@ -54,21 +54,21 @@ struct PoseTrack::Reader {
   std::vector<std::uint8_t> awake;
   std::vector<std::uint32_t> model_of;
 
-  bool take(const Chunk& chunk, Error& why);
-  bool take_start(const Chunk& chunk, Error& why);
-  bool take_frame(const Chunk& chunk);
+  bool read_chunk(const Chunk& chunk, Error& why);
+  bool read_start(const Chunk& chunk, Error& why);
+  bool read_frame_chunk(const Chunk& chunk);
   bool decode(std::size_t frame);
-  void show(std::size_t frame);
+  void publish(std::size_t frame);
 };
 
-bool PoseTrack::Reader::take_start(const Chunk& chunk, Error& why) {
+bool PoseTrack::Reader::read_start(const Chunk& chunk, Error& why) {
   if (started) return false;
   why = read_track_start(chunk.payload, start);
   started = why.code == ErrorCode::none;
   return started;
 }
 
-bool PoseTrack::Reader::take_frame(const Chunk& chunk) {
+bool PoseTrack::Reader::read_frame_chunk(const Chunk& chunk) {
   if (!started || chunk.payload.size() < kFrameHeadBytes) return false;
   const std::size_t number = frames.size();
   if (chunk.kind == ChunkKind::track_keyframe) {
@@ -81,29 +81,29 @@ bool PoseTrack::Reader::take_frame(const Chunk& chunk) {
 }
 
 // False ends the reading: what came before can be looked at.
-bool PoseTrack::Reader::take(const Chunk& chunk, Error& why) {
+bool PoseTrack::Reader::read_chunk(const Chunk& chunk, Error& why) {
   if (closed) return false;
   switch (chunk.kind) {
     case ChunkKind::track_start:
-      return take_start(chunk, why);
+      return read_start(chunk, why);
     case ChunkKind::track_keyframe:
     case ChunkKind::track_frame:
-      return take_frame(chunk);
+      return read_frame_chunk(chunk);
     case ChunkKind::track_geometry: {
       const Result<Geometry> read = read_track_geometry(chunk.payload);
       if (read) geometry.push_back(*read);
       return read.has_value();
     }
     case ChunkKind::track_model:
-      return keep(models,
+      return append(models,
                   [&](TrackModel& model) { return read_track_model(chunk.payload, geometry, model); });
     case ChunkKind::track_label:
-      if (!keep(labels, [&](StoredLabel& label) { return read_track_label(chunk.payload, label); }))
+      if (!append(labels, [&](StoredLabel& label) { return read_track_label(chunk.payload, label); }))
         return false;
       label_of.insert(label_key(labels.back().body), std::uint32_t(labels.size() - 1));
       return true;
     case ChunkKind::track_note:
-      return keep(notes, [&](StoredNote& note) { return read_track_note(chunk.payload, note); });
+      return append(notes, [&](StoredNote& note) { return read_track_note(chunk.payload, note); });
     case ChunkKind::end:
       closed = true;
       return true;
@@ -126,7 +126,7 @@ bool PoseTrack::Reader::decode(std::size_t frame) {
   return true;
 }
 
-void PoseTrack::Reader::show(std::size_t frame) {
+void PoseTrack::Reader::publish(std::size_t frame) {
   position = frame;
   head = read_frame_head(frames[frame].payload);
   ids.clear();
@@ -153,7 +153,7 @@ Result<PoseTrack> PoseTrack::open(std::vector<std::byte> bytes) {
   Error why = chunks.read_header();
   if (why.code != ErrorCode::none) return why;
   Chunk chunk;
-  while (chunks.next(chunk) && reader->take(chunk, why)) {
+  while (chunks.next(chunk) && reader->read_chunk(chunk, why)) {
   }
   if (why.code != ErrorCode::none) return why;
   if (reader->frames.empty()) {
@@ -166,7 +166,7 @@ Result<PoseTrack> PoseTrack::open(std::vector<std::byte> bytes) {
   if (!reader->decode(0)) {
     return make_error(ErrorCode::invalid_data, "recording: its first frame holds what it cannot");
   }
-  reader->show(0);
+  reader->publish(0);
   return PoseTrack(std::move(reader));
 }
 
@@ -207,7 +207,7 @@ Error PoseTrack::seek(std::size_t frame) {
                       "seek: frame %llu, or one that it follows from, holds what it cannot",
                       static_cast<unsigned long long>(frame));
   }
-  reader_->show(frame);
+  reader_->publish(frame);
   return {};
 }
 

@@ -30,24 +30,24 @@ class TrackWriter {
     TrackedBody body;
     bool present = false;
     bool moved = false;    // `next` is to be written
-    int same = 0;          // frames since `next` was another
+    int unchanged_frames = 0;          // frames since `next` was another
     bool settled = false;  // and so are its bits, `rest`, until it is not
-    int rest_size = 0;
-    std::uint64_t rest = 0;
+    int settled_size = 0;
+    std::uint64_t settled_bits = 0;
     RoundedPose next;
     // `next` is the rounded pose wherever the body is so near to where it was seen.
-    RoundingTolerance slack;
-    BodyPose seen{};
-    Vec3 seen_mass_center{};
+    RoundingTolerance tolerance;
+    BodyPose reference{};
+    Vec3 reference_mass_center{};
   };
   struct Change {
     std::uint32_t index;
     BodyChange kind;
   };
 
-  void look_at(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit);
-  void look_at_known(const WorldState& state, WrittenBody& written);
-  void round_again(const BodyPose& place, const BodyMass& mass, WrittenBody& written);
+  void update_body(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit);
+  void update_known_body(const WorldState& state, WrittenBody& written);
+  void update_rounded_pose(const BodyPose& body_pose, const BodyMass& mass, WrittenBody& written);
   void write_next(BitWriter& bits, WrittenBody& written);
   void settle(WrittenBody& written) const;
   std::vector<std::byte> frame_bits();

@@ -23,18 +23,18 @@ namespace gyre {
 // A body on which fields act in this step.
 struct FieldBody {
   std::uint32_t body = 0;
-  std::span<const std::uint32_t> acting{};  // slots of fields
+  std::span<const std::uint32_t> fields{};  // slots of fields
   std::span<Mat6> drags{};                  // D of each of these, zero for those that are no media
   Mat6 drag;                                // their sum
-  bool dragged = false;
-  bool has_extreme_mass_ratio = false;  // its lift is implicit
-  bool alone = false;                  // no constraint acts on the body
+  bool has_drag = false;
+  bool has_implicit_lift = false;  // its lift is implicit
+  bool unconstrained = false;                  // no constraint acts on the body
   Vec3 linear_before, angular_before;  // u0
 };
 
 // What fields do to a body at one moment, with drag as it is then: for integrators that look at forces at several stages.
 Vec6 force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
-                     const BodyStance& stance, double time);
+                     const BodyState& state, double time);
 
 // Stages of the program of sub-steps, over blocks of kFieldBodiesPerBlock bodies; their context is this.
 struct FieldSolve {

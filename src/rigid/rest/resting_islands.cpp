@@ -11,16 +11,16 @@ namespace {
 struct RestSpeed {
   float speed, scale;
 
-  RestSpeed(const RigidWorld& w, std::uint32_t body, float geometric_stiffness) {
+  RestSpeed(const RigidWorld& w, std::uint32_t body, float gravity) {
     const BodyMotion& motion = w.bodies.motion[body];
-    const float reach = w.bodies.masses[body].reach;
-    speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
-    scale = std::sqrt(geometric_stiffness * reach);
+    const float radius = w.bodies.masses[body].bounding_radius;
+    speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
+    scale = std::sqrt(gravity * radius);
   }
   bool is_below(float share) const { return speed <= share * scale; }
 };
 // and bound to no axes.
-bool is_unbound(const RigidWorld& w, std::uint32_t body) {
+bool is_unlocked(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   return !needs_exact_rotation(w.bodies, body, w.settings.last_substep) && flags.locked_linear == 0 &&
          flags.locked_angular == 0;
@@ -37,60 +37,60 @@ bool is_still(const RigidWorld& w, std::int32_t body) {
 
 RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
                                std::span<const ColoringPair> pairs, std::span<const JointEdge> joints,
-                               const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena)
+                               const SolveBatch& batch, std::span<const std::uint32_t> local_index, Arena& arena)
     : w_(w),
       batch_(batch),
-      places_(places),
+      local_index_(local_index),
       parent_(arena.make<std::uint32_t>(batch.bodies.size())),
       counts_(arena.make<IslandCount>(batch.bodies.size())) {
   for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i, counts_[i] = {};
-  unite_all(pairs, joints);
+  unite_constrained(pairs, joints);
   refuse_jointed(joints);
   count_bodies();
   count_contacts(constraints, pairs);
 }
 
-std::uint32_t RestingIslands::root(std::uint32_t place) {
-  while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
-  return place;
+std::uint32_t RestingIslands::root(std::uint32_t index) {
+  while (parent_[index] != index) index = parent_[index] = parent_[parent_[index]];
+  return index;
 }
 
-void RestingIslands::unite(std::uint32_t place_a, std::uint32_t place_b) {
+void RestingIslands::unite(std::uint32_t index_a, std::uint32_t index_b) {
   // Most are in one island by the time they are asked.
-  if (parent_[place_a] == parent_[place_b]) return;
-  const std::uint32_t a = root(place_a), b = root(place_b);
+  if (parent_[index_a] == parent_[index_b]) return;
+  const std::uint32_t a = root(index_a), b = root(index_b);
   parent_[max(a, b)] = min(a, b);
 }
 
-void RestingIslands::unite_all(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints) {
+void RestingIslands::unite_constrained(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints) {
   for (const ColoringPair& pair : pairs) {
     if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) unite(pair.a, pair.b);
   }
   for (const JointEdge& joint : joints) {
     if (joint.body_a != kNoBody && joint.body_b != kNoBody)
-      unite(places_[std::size_t(joint.body_a)], places_[std::size_t(joint.body_b)]);
+      unite(local_index_[std::size_t(joint.body_a)], local_index_[std::size_t(joint.body_b)]);
   }
   // Who is lower has its root by now.
   for (std::uint32_t& parent : parent_) parent = parent_[parent];
 }
 
 void RestingIslands::count_bodies() {
-  const float geometric_stiffness = length(w_.settings.gravity);
-  for (std::uint32_t place = 0; place < batch_.bodies.size(); ++place) {
-    const std::uint32_t body = batch_.bodies[place];
+  const float gravity = length(w_.settings.gravity);
+  for (std::uint32_t index = 0; index < batch_.bodies.size(); ++index) {
+    const std::uint32_t body = batch_.bodies[index];
     if (!is_movable(w_.bodies.flags[body])) continue;
-    IslandCount& count = counts_[parent_[place]];
+    IslandCount& count = counts_[parent_[index]];
     if (count.refused) continue;
-    const RestSpeed slowness(w_, body, geometric_stiffness);
-    const float reach = w_.bodies.masses[body].reach;
-    count.smallest = count.bodies == 0 ? reach : min(count.smallest, reach);
+    const RestSpeed rest_speed(w_, body, gravity);
+    const float radius = w_.bodies.masses[body].bounding_radius;
+    count.smallest = count.bodies == 0 ? radius : min(count.smallest, radius);
     ++count.bodies;
-    if (!is_unbound(w_, body) || !slowness.is_below(kSlowSpeedShare)) {
+    if (!is_unlocked(w_, body) || !rest_speed.is_below(kSlowSpeedShare)) {
       count.refused = true;
-    } else if (!slowness.is_below(kCalmSpeedShare)) {
+    } else if (!rest_speed.is_below(kCalmSpeedShare)) {
       count.not_calm = true;
-    } else if (!slowness.is_below(kSettledShare)) {
-      count.settling = true;
+    } else if (!rest_speed.is_below(kSettledSpeedShare)) {
+      count.not_settled = true;
     }
   }
 }
@@ -104,12 +104,12 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
     const ContactConstraint& c = constraints[i];
     ++count.contacts;
     if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
-    if (c.point_count < 3) count.balances = true;
-    if (c.point_count == 1) ++count.corners;
-    if (c.hold == ContactStiffness::held) count.held = true;
-    if (c.hold == ContactStiffness::sprung) count.springs = true;
+    if (c.point_count < 3) count.has_narrow_contact = true;
+    if (c.point_count == 1) ++count.single_point_contacts;
+    if (c.hold == ContactStiffness::held) count.has_rigid_contact = true;
+    if (c.hold == ContactStiffness::sprung) count.has_soft_contact = true;
     if (active_a && active_b) continue;
-    ++count.grounded;
+    ++count.ground_contacts;
     count.first = i;
     if (!is_still(w_, active_a ? c.body_b : c.body_a)) count.refused = true;
   }
@@ -117,13 +117,13 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
 
 void RestingIslands::refuse_jointed(std::span<const JointEdge> joints) {
   for (const JointEdge& joint : joints)
-    for_moving(joint, [&](std::uint32_t body) { counts_[parent_[places_[body]]].refused = true; });
+    for_moving(joint, [&](std::uint32_t body) { counts_[parent_[local_index_[body]]].refused = true; });
 }
 
 IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std::size_t bodies,
                                         Arena& arena) {
   IncidentContacts links{arena.make<std::uint32_t>(bodies), arena.make<std::uint32_t>(2 * pairs.size())};
-  for (std::uint32_t& f : links.first) f = kNoPlace;
+  for (std::uint32_t& f : links.first) f = kNoIndex;
   for (std::uint32_t i = std::uint32_t(pairs.size()); i-- > 0;) {
     const std::uint32_t ends[2] = {pairs[i].a, pairs[i].b};
     for (std::uint32_t side = 0; side < 2; ++side) {
@@ -136,13 +136,13 @@ IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std
   return links;
 }
 
-std::span<std::uint32_t> find_kernel_places(std::span<const std::uint32_t> order, std::size_t constraints,
+std::span<std::uint32_t> find_kernel_positions(std::span<const std::uint32_t> order, std::size_t constraints,
                                             Arena& arena) {
-  const std::span<std::uint32_t> places = arena.make<std::uint32_t>(constraints);
+  const std::span<std::uint32_t> positions = arena.make<std::uint32_t>(constraints);
   for (std::uint32_t i = 0; i < order.size(); ++i) {
-    if (order[i] != kNoPlace) places[order[i]] = i;
+    if (order[i] != kNoIndex) positions[order[i]] = i;
   }
-  return places;
+  return positions;
 }
 
 }  // namespace gyre

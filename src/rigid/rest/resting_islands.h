@@ -11,7 +11,7 @@
 
 namespace gyre {
 
-constexpr std::uint32_t kNoPlace = 0xffffffffu;
+constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
 // Slower than this share of sqrt(gravity * reach) counts as at rest.
 constexpr float kSlowSpeedShare = 0.1f;
@@ -20,22 +20,22 @@ constexpr float kCalmSpeedShare = 0.02f;
 // Slower than this share of it a sweep has left nothing to solve.
 constexpr float kStillSpeedShare = 1.0e-7f;
 // The same of an island with loops, whose loads have more rounding.
-constexpr float kStructureStillShare = 1.0e-6f;
+constexpr float kStructureStillSpeedShare = 1.0e-6f;
 // An island with loops that is slower than this as a step begins has nothing to lose but what the step's forces give it.
-constexpr float kSettledShare = 1.0e-4f;
+constexpr float kSettledSpeedShare = 1.0e-4f;
 
 // What is counted about an island, as long as it is not refused.
 struct IslandCount {
-  std::uint32_t bodies = 0, contacts = 0, grounded = 0;
-  std::uint32_t corners = 0;       // contacts of a single point
-  std::uint32_t first = kNoPlace;  // its last contact with the fixed world
+  std::uint32_t bodies = 0, contacts = 0, ground_contacts = 0;
+  std::uint32_t single_point_contacts = 0;       // contacts of a single point
+  std::uint32_t first = kNoIndex;  // its last contact with the fixed world
   float smallest = 0.0f;           // m: the least reach of its bodies
   bool refused = false;   // cannot be at rest: fast or bound bodies, joints, moving ground, no friction
   bool not_calm = false;  // a body at rest is not calm
-  bool settling = false;  // one is not settled
-  bool balances = false;  // a contact has one or two points
-  bool springs = false;   // a contact bore load in the last step and was not solved directly
-  bool held = false;      // and one was
+  bool not_settled = false;  // one is not settled
+  bool has_narrow_contact = false;  // a contact has one or two points
+  bool has_soft_contact = false;   // a contact bore load in the last step and was not solved directly
+  bool has_rigid_contact = false;      // and one was
 };
 
 class RestingIslands {
@@ -44,26 +44,26 @@ class RestingIslands {
   // bodies (solve_batches.h).
   RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
                  std::span<const ColoringPair> pairs, std::span<const JointEdge> joints,
-                 const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena);
+                 const SolveBatch& batch, std::span<const std::uint32_t> local_index, Arena& arena);
 
   // By place of a body in the batch. Only roots have counts.
-  bool is_root(std::uint32_t place) const {
-    return parent_[place] == place && is_movable(w_.bodies.flags[batch_.bodies[place]]);
+  bool is_root(std::uint32_t index) const {
+    return parent_[index] == index && is_movable(w_.bodies.flags[batch_.bodies[index]]);
   }
-  const IslandCount& at_root(std::uint32_t place) const { return counts_[place]; }
-  std::uint32_t root_of(std::uint32_t place) const { return parent_[place]; }
+  const IslandCount& at_root(std::uint32_t index) const { return counts_[index]; }
+  std::uint32_t root_of(std::uint32_t index) const { return parent_[index]; }
 
  private:
-  std::uint32_t root(std::uint32_t place);
-  void unite(std::uint32_t place_a, std::uint32_t place_b);
-  void unite_all(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints);
+  std::uint32_t root(std::uint32_t index);
+  void unite(std::uint32_t index_a, std::uint32_t index_b);
+  void unite_constrained(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints);
   void refuse_jointed(std::span<const JointEdge> joints);
   void count_bodies();
   void count_contacts(std::span<const ContactConstraint> constraints, std::span<const ColoringPair> pairs);
 
   const RigidWorld& w_;
   const SolveBatch& batch_;
-  std::span<const std::uint32_t> places_;
+  std::span<const std::uint32_t> local_index_;
   std::span<std::uint32_t> parent_;
   std::span<IslandCount> counts_;
 };
@@ -77,7 +77,7 @@ IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std
                                         Arena& arena);
 
 // Where the kernels keep each constraint: `order` has `width` constraint indices a block. By constraint: its place in `order`.
-std::span<std::uint32_t> find_kernel_places(std::span<const std::uint32_t> order, std::size_t constraints,
+std::span<std::uint32_t> find_kernel_positions(std::span<const std::uint32_t> order, std::size_t constraints,
                                             Arena& arena);
 
 }  // namespace gyre

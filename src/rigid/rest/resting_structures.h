@@ -9,12 +9,12 @@
 namespace gyre {
 
 // Of one batch; `pairs` are its constraints' bodies. Large islands that did not hold in the last step are looked at only now and then.
-std::span<RestingStructure> find_contact_structures(const RigidWorld& w, std::span<const ColoringPair> pairs,
+std::span<RestingStructure> find_resting_structures(const RigidWorld& w, std::span<const ColoringPair> pairs,
                                                     const SolveBatch& batch, const RestingIslands& islands,
                                                     Arena& arena);
 
 // Tells the contacts where the kernels of `width` lanes keep them (find_kernel_places()).
-void place_structure_contacts(std::span<RestingStructure> structures, std::span<const std::uint32_t> places,
+void set_structure_positions(std::span<RestingStructure> structures, std::span<const std::uint32_t> positions,
                               int width);
 
 }  // namespace gyre

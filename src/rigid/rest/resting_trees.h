@@ -15,11 +15,11 @@ struct RestingTrees {
 };
 
 // Of one batch; `pairs` are its constraints' bodies. Marks the constraints that are in trees as rigid.
-RestingTrees find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
+RestingTrees find_resting_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
                                 std::span<const ColoringPair> pairs, const SolveBatch& batch,
                                 const RestingIslands& islands, Arena& arena);
 
 // Tells the nodes where the kernels of `width` lanes keep their contacts (find_kernel_places()).
-void place_tree_nodes(RestingTrees& forest, std::span<const std::uint32_t> places, int width);
+void set_tree_positions(RestingTrees& trees, std::span<const std::uint32_t> positions, int width);
 
 }  // namespace gyre

@@ -15,7 +15,7 @@ constexpr float kTimeToSleep = 0.5f;  // s
 // More is not counted, so that what rested for long is not excused for longer.
 constexpr float kMaxStillTime = 2.0f * kTimeToSleep;
 // Motion that counts as none: this share of sqrt(gravity * reach), the body's natural speed.
-constexpr float kRestShare = 0.015f;
+constexpr float kSleepSpeedShare = 0.015f;
 // Being pushed apart counts as faster motion than it is: a heap that falls asleep keeps the overlap that it has then.
 constexpr float kPushoutWeight = 4.0f;
 
@@ -40,7 +40,7 @@ void for_each_island_edge(const RigidWorld& w, Fn&& fn) {
 // wakes a body, those of its contacts and joints that are yet to come are among them.
 template <class Fn>
 void for_each_active_edge(const RigidWorld& w, Fn&& fn) {
-  const ActiveConstraints& links = w.awake_links;
+  const ActiveConstraints& links = w.active_constraints;
   for (std::size_t slot = links.contacts.find_next(0); slot < links.contacts.size(); slot = links.contacts.find_next(slot + 1))
     visit_contact_edge(w.contacts.contacts[slot], fn);
   for (std::size_t slot = links.joints.find_next(0); slot < links.joints.size(); slot = links.joints.find_next(slot + 1))
@@ -55,11 +55,11 @@ struct SleepTest {
   bool allowed =
       false;  // it is allowed to, no force acts on it, and something holds it up (or nothing pulls or moves it)
   float speed = 0.0f;       // m/s, of its centre of mass and of its farthest point about that
-  float pushed = 0.0f;      // m, by overlap in the last step
+  float pushout = 0.0f;      // m, by overlap in the last step
   float rest_speed = 0.0f;  // m/s, slower is still
 };
 // `pull`: the length of gravity, m/s^2.
-SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float geometric_stiffness);
+SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float gravity);
 
 // Wakes a body's group; nothing if it is awake. Events are added to w.events.
 void wake(RigidWorld& w, std::uint32_t body);

@@ -15,7 +15,7 @@ void mark_rolling_lanes(BatchContext& solve, std::uint32_t blocks, Arena& arena)
     for (std::uint32_t lane = 0; lane < width; ++lane) {
       const std::uint32_t constraint = solve.scratch.order[block * width + lane];
       const std::uint32_t place =
-          constraint == kNoPlace ? kNotRolling : solve.rolling.of_constraint[constraint];
+          constraint == kNoIndex ? kNotRolling : solve.rolling.of_constraint[constraint];
       solve.rolling_places[block * width + lane] = place;
       if (place != kNotRolling) lanes |= 1u << lane;
     }
@@ -68,7 +68,7 @@ void order_alike(const BatchContext& solve, std::span<const std::uint32_t> membe
     }
   }
   const std::size_t first = order.size();
-  order.resize(first + (place + width - 1) / width * width, kNoPlace);
+  order.resize(first + (place + width - 1) / width * width, kNoIndex);
   for (const std::uint32_t member : members) order[first + starts[kind_of(member)]++] = member;
   if (domains > 1 && bounds != nullptr)
     set_partition_bounds(std::span(firsts).first(domains), place, width, bounds);
@@ -91,7 +91,7 @@ std::span<Group> lay_out_contacts(BatchContext& solve, std::span<Group> groups) 
                             ? nullptr
                             : &solve.group_bounds[used * std::size_t(solve.domains.count() + 1)];
     if (serial) {
-      s.order.resize(s.order.size() + members.size() * width, kNoPlace);
+      s.order.resize(s.order.size() + members.size() * width, kNoIndex);
       for (std::size_t i = 0; i < members.size(); ++i) s.order[(blocks + i) * width] = members[i];
     } else {
       order_alike(solve, members, s.order, bounds);

@@ -63,7 +63,7 @@ struct IslandRows {
 
 int sweeps_of(const SolverSettings& settings) {
   if (settings.options.iterations > 0) return settings.options.iterations;
-  return settings.kind == SolverKind::lcp ? kNncgSweeps : kSequentialSweeps;
+  return settings.kind == SolverKind::lcp ? kNncgIterations : kSequentialIterations;
 }
 bool pivots(LcpMethod method) { return method == LcpMethod::dantzig || method == LcpMethod::lemke; }
 
@@ -382,11 +382,11 @@ void show_bodies(BatchContext& solve) {
   RigidWorld& w = solve.w;
   for (const std::uint32_t slot : solve.batch.joints) {
     const JointRecord& joint = w.joints.records[slot];
-    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].touched = kPoseRead;
-    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].touched = kPoseRead;
+    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].constraint_use = kPoseRead;
+    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].constraint_use = kPoseRead;
   }
   for (const std::uint32_t body : solve.batch.bodies) {
-    std::uint8_t& touched = w.bodies.flags[body].touched;
+    std::uint8_t& touched = w.bodies.flags[body].constraint_use;
     if (touched != kNotConstrained) touched = kPoseRead;
   }
 }

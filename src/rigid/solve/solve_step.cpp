@@ -63,17 +63,17 @@ void find_resting(BatchContext& solve, Arena& arena) {
   const std::span<const ColoringPair> pairs = solve.scratch.pairs;
   const RestingIslands islands(solve.w, constraints, pairs, solve.joint_edges, solve.batch, solve.places,
                                arena);
-  solve.forest = find_contact_trees(solve.w, constraints, pairs, solve.batch, islands, arena);
-  solve.structures = find_contact_structures(solve.w, pairs, solve.batch, islands, arena);
+  solve.forest = find_resting_trees(solve.w, constraints, pairs, solve.batch, islands, arena);
+  solve.structures = find_resting_structures(solve.w, pairs, solve.batch, islands, arena);
 }
 void place_resting(BatchContext& solve, Arena& arena) {
   if (solve.forest.nodes.empty() && solve.structures.empty()) return;
   const BatchScratch& scratch = solve.scratch;
   const int width = solve.kernels.width;
   const std::span<const std::uint32_t> places =
-      find_kernel_places(scratch.order, scratch.constraints.size(), arena);
-  place_tree_nodes(solve.forest, places, width);
-  place_structure_contacts(solve.structures, places, width);
+      find_kernel_positions(scratch.order, scratch.constraints.size(), arena);
+  set_tree_positions(solve.forest, places, width);
+  set_structure_positions(solve.structures, places, width);
   BodyMotion* motion = solve.contact_bodies.motion;
   solve.tree_solve = {solve.forest.nodes, solve.forest.work, scratch.constraints,        motion,
                       &solve.kernels,     solve.blocks,      solve.contact_settings.step};
@@ -196,7 +196,7 @@ SubStepping plan_substeps(RigidWorld& w, float seconds, bool by_rows) {
   plan.h = seconds / float(plan.parts);
   plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
   // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
-  if (!w.waiting.empty()) plan.warm_scale = min(plan.warm_scale, kMaxWarm);
+  if (!w.inactive_contacts.empty()) plan.warm_scale = min(plan.warm_scale, kMaxWarm);
   w.settings.last_substep = plan.h;
   w.settings.last_step = seconds;
   return plan;
@@ -233,7 +233,7 @@ void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
   for_blocks(tasks, int(w.bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       const std::uint32_t body = w.bodies.awake[i];
-      w.bodies.flags[body].touched = 0;
+      w.bodies.flags[body].constraint_use = 0;
       w.bodies.motion[body].moved = {};
       w.bodies.motion[body].turned = {};
       w.bodies.motion[body].pushed = 0.0f;
@@ -255,7 +255,7 @@ void begin_scratch(BatchScratch& scratch) {
 // What constraints moved has its velocity from them.
 void forget_moves(RigidWorld& w) {
   for (const std::uint32_t body : w.bodies.awake) {
-    if (w.bodies.flags[body].touched != kNotConstrained) w.bodies.last_moves[body] = {};
+    if (w.bodies.flags[body].constraint_use != kNotConstrained) w.bodies.last_moves[body] = {};
   }
 }
 

@@ -32,7 +32,7 @@ struct BodyMass {
   Vec3 center;              // body frame
   Sym3 inertia;             // kg m^2
   Sym3 inverse_inertia;     // locked axes are taken off in the world frame, not here
-  float reach = 0.0f;       // m, farthest point of any shape from the centre of mass
+  float bounding_radius = 0.0f;       // m, farthest point of any shape from the centre of mass
   float size = 0.0f;        // m, inner radius of its thinnest shape: the scale of tolerances
   std::uint32_t isotropic = 0;  // 1 when all principal moments are equal: no gyroscopic effect
 };
@@ -57,7 +57,7 @@ struct BodyFlags {
   std::uint8_t frozen = 0;        // quarantined: its state stopped being finite
   std::uint8_t locked_linear = 0;   // bits 0 to 2: world x, y, z
   std::uint8_t locked_angular = 0;
-  std::uint8_t touched = 0;       // a constraint row acted on it in the last step
+  std::uint8_t constraint_use = 0;       // a constraint row acted on it in the last step
 };
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
@@ -78,7 +78,7 @@ struct BodyOverrides {
 
 inline auto interning_key(const BodyMass& m) {
   static_assert(sizeof(BodyMass) == 80, "every field is among the bits");
-  return words_of(m.mass, m.inverse_mass, m.center, m.inertia, m.inverse_inertia, m.reach, m.size, m.isotropic);
+  return words_of(m.mass, m.inverse_mass, m.center, m.inertia, m.inverse_inertia, m.bounding_radius, m.size, m.isotropic);
 }
 inline auto interning_key(const BodyOverrides& o) {
   static_assert(sizeof(BodyOverrides) == 44, "every field is among the bits");
@@ -90,7 +90,7 @@ struct BodyStore {
   IdPool ids;
   Array<BodyMotion> motion;
   Array<BodyInertia> inertia;       // world axes, of the present orientation; can be rebuilt
-  Array<BodyPose> places;
+  Array<BodyPose> poses;
   Array<Quat> orientations;         // beside `places` for the solver's gathers; equal to places[i].orientation between steps
   InternedColumn<BodyMass> masses;
   Array<BodyForces> forces;
@@ -103,7 +103,7 @@ struct BodyStore {
   // By body, as far as one needed it (most worlds have no joints): joints_of(); ascending index; derived.
   Array<SmallArray<std::uint32_t, 2>> joints;
   Array<std::uint32_t> awake;       // dynamic bodies that are awake and kinematic ones, ascending; derived
-  std::size_t sleepers = 0;         // dynamic bodies that are not, and not frozen; derived
+  std::size_t sleeping_count = 0;         // dynamic bodies that are not, and not frozen; derived
   bool awake_stale = false;         // the two must be found anew before use
 };
 
@@ -124,15 +124,15 @@ BodyInertia world_inertia(const BodyMass& mass, const BodyFlags& flags, Quat ori
 void refresh_inertia(BodyStore& store, std::uint32_t body);
 // The pose of the body's origin, from the place of its centre of mass. It is not kept: rounding would make the kept one
 // differ from what a world that is loaded can know.
-inline Pose origin_pose(const BodyPose& place, const BodyMass& mass) {
-  return {place.center - rotate(place.orientation, mass.center), place.orientation};
+inline Pose origin_pose(const BodyPose& pose, const BodyMass& mass) {
+  return {pose.center - rotate(pose.orientation, mass.center), pose.orientation};
 }
 inline Pose origin_pose(const BodyStore& store, std::uint32_t body) {
-  return origin_pose(store.places[body], store.masses[body]);
+  return origin_pose(store.poses[body], store.masses[body]);
 }
 void refresh_awake(BodyStore& store);
 // Whether the body's world inertia changes as it turns.
-inline bool inertia_turns(const BodyMass& mass, const BodyFlags& flags) {
+inline bool inertia_rotates(const BodyMass& mass, const BodyFlags& flags) {
   return mass.isotropic == 0 || flags.locked_angular != 0;
 }
 inline bool is_movable(const BodyFlags& flags) { return flags.type == BodyType::dynamic && flags.frozen == 0; }

@@ -68,12 +68,12 @@ struct RigidEvents {
 
 // When memory that only busy steps need was last needed.
 struct ScratchClocks {
-  ShrinkPolicy changed, hurried, new_pairs, sort_scratch;
+  ShrinkPolicy changed, moved_shapes, new_pairs, sort_scratch;
   ShrinkPolicy begins, ends, hits, sensors, broken, sleep_changes;
 };
 
 // How a body that fields act on fared in a step; by body, in worlds with fields.
-constexpr std::uint8_t kNoFields = 0, kFieldsToo = 1, kFieldsAlone = 2;
+constexpr std::uint8_t kNoFields = 0, kFieldsAndConstraints = 1, kFieldsOnly = 2;
 struct FieldRest {
   Vec3 linear, angular;            // velocity as the step began
   std::uint8_t acts = kNoFields;   // beside constraints, or alone
@@ -95,7 +95,7 @@ struct RigidWorld {
   // Not state: can be rebuilt or lives for one step.
   std::unique_ptr<Broadphase> broadphase;
   bool broadphase_stale = true;        // must be rebuilt from all proxies
-  ActiveConstraints awake_links;
+  ActiveConstraints active_constraints;
   TouchChanges touches;
   InternalEdgeScratch internal_edges;  // contacts at flush edges, in the last step
   Array<std::uint64_t> new_pairs;
@@ -108,7 +108,7 @@ struct RigidWorld {
   RigidEvents events;
   ScratchClocks clocks;
   Array<std::uint8_t>
-      waiting;  // by contact: it does not act (rigid/time/toi_stepping.h); adaptive steps, else empty
+      inactive_contacts;  // by contact: it does not act (rigid/time/toi_stepping.h); adaptive steps, else empty
   std::uint16_t world_number = 0;      // for ids in events
 };
 

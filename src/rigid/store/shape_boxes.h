@@ -19,6 +19,6 @@ ShapeBox find_box(const RigidWorld& w, std::uint32_t shape, float seconds);
 bool refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float seconds);
 
 // For each of the bodies, which move: whether all its shapes stay in their fat boxes on their way in this step. True is certain.
-void find_staying(const RigidWorld& w, std::span<const std::uint32_t> bodies, std::span<bool> stay);
+void find_within_fat_boxes(const RigidWorld& w, std::span<const std::uint32_t> bodies, std::span<bool> stay);
 
 }  // namespace gyre

@@ -29,7 +29,7 @@ inline auto interning_key(const ColliderShape& c) {
 struct ShapeStore {
   IdPool ids;
   Array<std::uint32_t> bodies;      // owner of each shape
-  InternedColumn<Transform> places;         // body_from_shape
+  InternedColumn<Transform> body_from_shape;         // body_from_shape
   InternedColumn<ColliderShape> colliders;  // inner form of all that; borrows from `geometry`; derived
   Array<Proxy> proxies;             // fat boxes are state: they decide when pairs begin
   InternedColumn<Material> materials;
@@ -39,7 +39,7 @@ struct ShapeStore {
   Array<std::uint32_t> changed;     // proxies that the broad phase has not seen yet, in no order; derived
   // The fat boxes of what is awake hold its way in a step of this length (s), but for those of `hurried`; derived.
   float fat_box_horizon = 0.0f;
-  Array<std::uint32_t> hurried;     // shapes that commands placed or set moving since
+  Array<std::uint32_t> moved_shapes;     // shapes that commands placed or set moving since
 };
 
 IdPool::Slot add_shape_slot(ShapeStore& store);

@@ -17,8 +17,8 @@ struct SolverSettings {
 const char* fault_in(const SolverSettings& solver);
 
 // What iterations 0 stands for.
-constexpr int kSequentialSweeps = 10;
-constexpr int kNncgSweeps = 200;
+constexpr int kSequentialIterations = 10;
+constexpr int kNncgIterations = 200;
 
 // What a step's islands had to say, the sub-steps together.
 struct RowStats {

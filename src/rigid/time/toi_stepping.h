@@ -20,8 +20,8 @@ namespace gyre {
 // What a tried step changes, to take it back.
 class StepCheckpoint {
  public:
-  void keep(const RigidWorld& w);
-  void put_back(RigidWorld& w) const;
+  void save(const RigidWorld& w);
+  void restore(RigidWorld& w) const;
   const BodyMotion& motion(std::uint32_t body) const { return motion_[body]; }
 
  private:
@@ -40,9 +40,9 @@ struct ImpactScratch {
   StepCheckpoint before;
   Array<BodyMotion> other;  // what the step was with half the sub-steps
   Array<ImpactContact> impacts;
-  Array<std::uint32_t> slots;   // of each
-  Array<std::uint8_t> fast;     // of each: to be told as a hit
-  Array<std::uint32_t> struck;  // bodies
+  Array<std::uint32_t> contacts;   // of each
+  Array<std::uint8_t> is_hit;     // of each: to be told as a hit
+  Array<std::uint32_t> hit_bodies;  // bodies
 };
 
 // How near shapes are that touch, m, by the size of their contact.
@@ -60,7 +60,7 @@ void list_inactive_contacts(RigidWorld& w, float threshold);
 constexpr double kNoImpact = 1.0e30;
 struct FirstImpact {
   double time = kNoImpact;
-  bool turn = false;
+  bool is_turning_point = false;
 };
 FirstImpact find_first_impact(const RigidWorld& w, const StepCheckpoint& before, double seconds);
 
