@@ -1,4 +1,4 @@
-// read_bodies: what there is to see of bodies, as columns. See <gyre/debug.h>.
+// read_bodies: the state of bodies as columns. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/islands.h"

@@ -14,7 +14,7 @@ struct Collector {
   DVec3 origin;
   BoxTable& out;
 
-  // Corners are rounded outward, so that what lies in a box still does when both are seen from the origin.
+  // Corners are rounded outward, so that a box still contains its contents relative to the origin of the table.
   void add(const WorldBox& box, BoxKind kind, int depth, std::uint32_t shape) {
     const Aabb seen = round_outward({box.low - origin, box.high - origin});
     if (is_unbounded(seen)) return;

@@ -11,7 +11,7 @@ namespace gyre {
 
 namespace {
 
-// The solver's groups of all manifolds that it has to solve, found anew: they follow from the contacts alone.
+// The solver colours of all manifolds, computed again: they follow from the contacts alone.
 class SolverColors {
  public:
   explicit SolverColors(const RigidWorld& w) {
@@ -29,7 +29,7 @@ class SolverColors {
     color_constraints(pairs, slots, std::uint32_t(w.bodies.motion.size()), {}, kColoringOptions, coloring_);
   }
 
-  // To be asked in the order of the contacts, for each manifold with points.
+  // Must be called in the order of contacts, for each manifold with points.
   std::uint8_t next(const RigidWorld& w, const Contact& contact) {
     return is_solved(w, contact) ? coloring_.color[next_++] : kNoColor;
   }

@@ -1,4 +1,4 @@
-// draw_debug: lines and points for every layer that is wanted, from the same tables that users read. See <gyre/debug.h>.
+// draw_debug: lines and points of every requested layer, from the same tables that users read. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/painter.h"
 #include "rigid/sleep/island.h"
@@ -108,7 +108,7 @@ Color Drawing::body_color(std::size_t row) const {
   return state == RestState::asleep ? kBlue : kOrange;
 }
 
-// How large to draw what belongs to a body; planes and bodies without shapes have no extent.
+// The size in which marks of a body are drawn; planes and bodies without shapes have no extent.
 float Drawing::reach(std::uint32_t body) const {
   const float r = w_.bodies.masses[body].bounding_radius;
   return r > 0.0f && r < kUnbounded ? r : 0.5f;
@@ -195,7 +195,7 @@ void Drawing::friction_basis(const ContactTable& contacts) {
 void Drawing::mass_centers() {
   paint_.begin(DrawLayer::mass_centers);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (bodies_.islands[i] == kNoIsland) continue;  // nothing moves it
+    if (bodies_.islands[i] == kNoIsland) continue;  // static
     const Vec3 at = vector_at(bodies_.centers, i);
     const Mat3 axes = to_matrix(quaternion_at(bodies_.axes, i));
     const float size = 0.5f * reach(bodies_.ids[i].index);
@@ -232,13 +232,15 @@ void Drawing::velocities() {
   }
 }
 
-// What turns about x of its frame, and what slides along it, as far as limits and motors of the main axis go.
+// A marker of rotation about x of the joint frame and of sliding along it, within limits and motor range of the main
+// axis.
 bool turns_about_x(JointKind kind) {
   return kind == JointKind::hinge || kind == JointKind::cone || kind == JointKind::universal;
 }
 bool slides_along_x(JointKind kind) { return kind == JointKind::slider || kind == JointKind::wheel; }
 
-// Where the joint may go, where it is, and where its motor drives it: an arc about a hinge's axis, a stretch along a slider's.
+// The range of a joint, its position and its motor target: an arc about the axis of a hinge, a line along that of a
+// slider.
 void Drawing::joint_limits(const JointTable& joints, std::size_t i, float size) {
   const Vec3 anchor = vector_at(joints.anchors, 2 * i);
   const Mat3 frame = to_matrix(quaternion_at(joints.frames, 2 * i));
@@ -260,7 +262,7 @@ void Drawing::joint_limits(const JointTable& joints, std::size_t i, float size) 
   }
   if (slides_along_x(joints.kinds[i])) {
     if (limited) paint_.line(anchor + low * frame.x, anchor + high * frame.x, kYellow);
-    // A wheel's motor spins it.
+    // The motor of a wheel spins it.
     if (drive != 0.0f && joints.kinds[i] == JointKind::slider)
       paint_.line(anchor + now * frame.x, anchor + (now + drive * size) * frame.x, kOrange);
   }
@@ -282,7 +284,7 @@ void Drawing::joints() {
       size = size > 0.0f ? min(size, own) : own;
     }
     const Vec3 anchor_a = vector_at(joints.anchors, 2 * i), anchor_b = vector_at(joints.anchors, 2 * i + 1);
-    // The rod, or the error.
+    // The rod, or the position error.
     paint_.line(anchor_a, anchor_b, joints.kinds[i] == JointKind::distance ? kWhite : kRed);
     if (joints.kinds[i] == JointKind::hinge || joints.kinds[i] == JointKind::slider) {
       const Vec3 axis = rotate(quaternion_at(joints.frames, 2 * i), {size, 0, 0});

@@ -1,4 +1,4 @@
-// explain: why a body is awake, who touches it, what pulls it; as ids and as words. See <gyre/debug.h>.
+// explain: why a body is awake, which bodies touch it, which joints pull it; as ids and as words. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/islands.h"
 #include "debug/step_length.h"
@@ -36,7 +36,7 @@ class Inquiry {
   IslandMap islands_;
 };
 
-// What keeps the body itself from resting; `settling` if nothing does.
+// The reason why the body itself does not sleep; `settling` if there is none.
 AwakeReason Inquiry::own_reason(std::uint32_t body) const {
   const BodyFlags& flags = w_.bodies.flags[body];
   if (flags.frozen != 0) return AwakeReason::frozen;
@@ -51,7 +51,8 @@ AwakeReason Inquiry::own_reason(std::uint32_t body) const {
   return AwakeReason::settling;
 }
 
-// Who in the island has rested for the shortest time: the whole island waits for it. Among equals the explained body.
+// The body of the island with the shortest still time, for which the whole island waits. Among equals the explained
+// body.
 std::uint32_t Inquiry::shortest_still() const {
   std::uint32_t shortest = body_;
   w_.bodies.ids.for_each_live([&](std::uint32_t i) {
@@ -61,7 +62,7 @@ std::uint32_t Inquiry::shortest_still() const {
   return shortest;
 }
 
-// The lowest kinematic body that moves and that somebody of the island lies on or hangs on; the body itself if none.
+// The lowest moving kinematic body that a body of the island touches or is joined to; the explained body if none.
 std::uint32_t Inquiry::moving_support() const {
   std::uint32_t found = body_;
   for_each_island_edge(w_, [&](std::uint32_t a, std::uint32_t b) {
@@ -93,7 +94,7 @@ void Inquiry::find_reason(Explanation& out) const {
   out.cause_reason = AwakeReason::kinematic;
 }
 
-// The entry of a body in a list that stays sorted by index.
+// The entry of a body in a list that is sorted by index.
 TouchingBody& entry_of(std::vector<TouchingBody>& list, BodyId body) {
   auto at = list.begin();
   while (at != list.end() && at->body.index < body.index) ++at;

@@ -1,4 +1,4 @@
-// read_joints: every joint with its frames, limits and what it bears. See <gyre/debug.h>.
+// read_joints: every joint with its frames, limits and loads. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/step_length.h"
@@ -25,7 +25,7 @@ End find_end(const RigidWorld& w, std::int32_t body, Vec3 local_anchor, Quat loc
           normalized(place.orientation * local_frame)};
 }
 
-// A distance joint with two different lengths is a rope; a rod has one, a spring none that stops it.
+// A distance joint with two lengths is a rope, with one a rod; a spring has no limits.
 bool has_limits(const JointRecord& joint) {
   if (joint.kind != JointKind::distance) return joint.has_limits;
   return joint.min_length < joint.max_length &&

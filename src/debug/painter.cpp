@@ -16,7 +16,7 @@ void append(std::vector<std::uint8_t>& out, Color color) {
 }  // namespace
 
 Color color_of_number(std::uint32_t number) {
-  // Steps of the golden section leave no two near numbers with a near hue.
+  // Golden-section steps give neighbouring numbers distant hues.
   const std::uint32_t turned = (number + 1) * 2654435769u;
   const float hue = 6.0f * (float(turned >> 8) / 16777216.0f);
   const auto channel = [&](float shift) {

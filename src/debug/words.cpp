@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// Neighbours and joints that are named one by one; the rest is counted.
+// Neighbours and joints beyond this number are counted, not named.
 constexpr std::size_t kMaxNamed = 4;
 
 class Sentences {
@@ -34,7 +34,7 @@ class Sentences {
       add("body %u", body.index);
     }
   }
-  // Between the parts of a list.
+  // The separator in a list.
   void separate(std::size_t i, std::size_t count) {
     add("%s", i == 0 ? "" : (i + 1 == count ? " and " : ", "));
   }
@@ -53,7 +53,7 @@ class Sentences {
   std::size_t used_ = 0;
 };
 
-// What a body does that keeps its island awake.
+// The activity of a body that keeps its island awake.
 const char* doing(AwakeReason reason) {
   switch (reason) {
     case AwakeReason::may_not_sleep:

@@ -1,4 +1,4 @@
-// Describing bodies for the contacts that are asked. See body_looks.h.
+// Describes the bodies of active contacts. See collision_bodies.h.
 #include "rigid/collision_bodies.h"
 
 #include "task/parallel.h"

@@ -1,5 +1,5 @@
-// What contacts need to know of bodies while they are looked at, by body. Where most bodies rest only those are described that a contact
-// which is asked has: what sleeps costs nothing.
+// The view of bodies that the narrow phase works on, by body. If most bodies sleep, only bodies of active contacts
+// are described, so sleeping bodies cost nothing.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -12,7 +12,7 @@
 
 namespace gyre {
 
-// Whether the body may be elsewhere when the step ends: contacts between bodies that may not are not looked at.
+// True if the body may move within the step. The narrow phase skips contacts between two bodies that do not.
 inline bool may_move(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   if (flags.awake == 0 || flags.frozen != 0 || flags.type == BodyType::fixed) return false;
@@ -23,7 +23,7 @@ inline bool may_move(const RigidWorld& w, std::uint32_t body) {
 
 class CollisionBodies {
  public:
-  // Room in `arena`; `seconds` is how long the step lasts.
+  // Memory comes from `arena`; `seconds` is the length of the step.
   CollisionBodies(const RigidWorld& w, Arena& arena, float seconds);
 
   void make(TaskSystem& tasks, Arena& arena);
@@ -34,7 +34,7 @@ class CollisionBodies {
 
  private:
   std::size_t count() const { return w_.bodies.motion.size(); }
-  // Bits by body.
+  // A bit for each body of an active contact.
   std::span<std::uint64_t> find_needed(Arena& arena) const;
   void describe(std::uint32_t i);
 

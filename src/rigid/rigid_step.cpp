@@ -29,7 +29,8 @@ PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
   return pair;
 }
 
-// Bodies that a joint keeps from touching stay beside each other: their pairs are found whenever one moves.
+// Bodies whose joint disables their collision stay close to each other, so their pairs are found whenever one of them
+// moves.
 void drop_blocked_pairs(const RigidWorld& w, Array<std::uint64_t>& keys, std::size_t from) {
   if (w.joints.blocked.empty()) return;
   std::size_t count = from;
@@ -55,7 +56,7 @@ void report_begin(RigidWorld& w, const Contact& contact) {
 }
 
 bool finite_state(const BodyMotion& motion, Quat orientation) {
-  // What is not finite is no zero when taken from itself, nor is a sum with that.
+  // A value that is not finite, minus itself, is not zero; nor is any sum that contains the difference.
   const Vec3 nothing = (motion.linear_velocity - motion.linear_velocity) +
                        (motion.angular_velocity - motion.angular_velocity) + (motion.moved - motion.moved);
   const float rotation = (orientation.x - orientation.x) + (orientation.y - orientation.y) +
@@ -73,7 +74,7 @@ void list_marked(RigidWorld& w, std::span<const std::uint32_t> bodies) {
   }
 }
 
-// Whether the fat box did not hold its shape's way in the coming step, and is made anew.
+// Fits a new fat box if the present one does not cover the motion of the shape in the coming step. True if it did.
 bool ensure_fat_box_covers_motion(RigidWorld& w, std::uint32_t shape, float seconds) {
   const ShapeBox box = find_box(w, shape, seconds);
   const WorldBox needed = needed_box(box.tight, box.motion);
@@ -89,7 +90,7 @@ void list_if_moving(RigidWorld& w, std::uint32_t shape) {
     w.shapes.moved_shapes.push_back(shape);
 }
 
-// The promise of collision/broadphase/fat_box.h as a step begins.
+// Establishes the invariant of collision/broadphase/fat_box.h at the beginning of a step.
 void ensure_fat_boxes_cover_motion(RigidWorld& w, TaskSystem& tasks, float seconds) {
   if (seconds > w.shapes.fat_box_horizon) {
     w.refit_marks.resize(w.shapes.colliders.size(), 0);
@@ -112,8 +113,8 @@ void ensure_fat_boxes_cover_motion(RigidWorld& w, TaskSystem& tasks, float secon
   w.shapes.moved_shapes.clear();
 }
 
-// Takes a body whose state went wrong back to where it last was and keeps it there. Impulses that are no numbers must not
-// stay with its contacts and joints: they would go over to the next body, and the bits of a NaN differ between processors.
+// Returns a body with a state that is not finite to its last pose and freezes it there. Its contacts and joints lose
+// their impulses: a NaN would spread to other bodies, and its bits differ between processors.
 void freeze(RigidWorld& w, std::uint32_t body) {
   w.bodies.motion[body] = {};
   w.bodies.orientations[body] = w.bodies.poses[body].orientation;
@@ -132,7 +133,7 @@ void freeze(RigidWorld& w, std::uint32_t body) {
   }
 }
 
-// Contacts of a body that woke after they were asked: what may stop it there.
+// Lists the CCD blockers among the contacts of a body that woke after the narrow phase.
 void collect_ccd_blockers(RigidWorld& w, std::uint32_t body) {
   for_each_contact_of_body(w, body, [&](std::uint32_t slot) {
     if (blocks_fast_bodies(w.contacts.contacts[slot], w.shapes.proxies)) w.touches.may_stop.set(slot);
@@ -142,7 +143,7 @@ void collect_ccd_blockers(RigidWorld& w, std::uint32_t body) {
 }  // namespace
 
 void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch) {
-  // Where only a step listed them, they are in order most often.
+  // The list is usually in order if only steps appended to it.
   bool rises = true;
   for (std::size_t i = 1; i < changed.size() && rises; ++i) rises = changed[i - 1] < changed[i];
   if (rises) return;
@@ -230,7 +231,7 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
 
 void link_islands(RigidWorld& w) {
   w.touches.ended.for_each_set([&](std::size_t slot) {
-    // `touching` already tells the new state: what ended was touching before.
+    // `touching` has the new state already; an ended contact touched before.
     Contact ended = w.contacts.contacts[slot];
     ended.touching = 1;
     report_end(w, ended);
@@ -290,7 +291,7 @@ void break_joints(RigidWorld& w, float seconds) {
     if (!w.joints.ids.live(slot)) return;
     const JointRecord& joint = w.joints.records[slot];
     if (joint.break_force <= 0.0f && joint.break_torque <= 0.0f) return;
-    // What sleeps still has the impulses of the step in which it fell asleep, which it withstood.
+    // A sleeping joint keeps the impulses of the step in which it fell asleep; it withstood those.
     if (!moves(joint.body_a) && !moves(joint.body_b)) return;
     const float force = length(joint.total_linear) / seconds;
     const float torque = length(joint.total_angular) / seconds;

@@ -1,4 +1,4 @@
-// What every command must hold before it is carried out. The message names object, field, value and allowed range.
+// The preconditions of every command. A message names object, field, value and allowed range.
 #include "world/field_commands.h"
 #include "world/joint_commands.h"
 #include "world/refusal.h"
@@ -208,7 +208,7 @@ Error check_path(const JointDef& d) {
   return ok();
 }
 
-// What only kinds beyond the first five look at.
+// Fields that only kinds beyond the first five have.
 Error check_kind(const JointDef& d) {
   if (d.axis_b) {
     const Error e = check_direction("joint.axis_b", *d.axis_b);

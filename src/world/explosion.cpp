@@ -1,7 +1,7 @@
-// Explosions: blows on the surfaces that face a point. Bodies are independent of each other, and go by slot.
+// Explosions: impulses on the surfaces that face a point. Bodies are independent of each other and visited by slot.
 //
-// Occlusion is asked with rays: from the center to the middle of each body's shapes and to eight points of its surface. The
-// share of those that arrive is the share of the blow.
+// Occlusion is tested with rays from the centre to the middle of each shape of a body and to eight more points in it.
+// The share of unobstructed rays scales the impulse.
 #include "geometry/mass/surface_patches.h"
 #include "math/rotation.h"
 #include "math/trig.h"
@@ -42,7 +42,8 @@ ShapeAt shape_at(const RigidWorld& w, std::uint32_t shape) {
           body * to_double(local.orientation)};
 }
 
-// Sums of round shapes over patches miss their shadow by a little: this makes it right for a far explosion.
+// Sums over patches of round shapes deviate slightly from the projected area. This factor makes the sum exact for a
+// far explosion.
 double shadow_scale(const ShapeAt& at, DVec3 center) {
   const ShapeKind kind = at.shape->kind;
   const DVec3 from = rotate_inverse(at.orientation, at.origin - center);
@@ -78,7 +79,7 @@ BodyImpulse explosion_impulse_on(const RigidWorld& w, std::uint32_t body, const 
   return impulse;
 }
 
-// The share of the body that the center sees.
+// The share of the body that is visible from the centre.
 double visible_share(WorldState& s, std::uint32_t body, DVec3 center) {
   const RigidWorld& w = s.rigid;
   int tested = 0, visible = 0;
@@ -90,7 +91,7 @@ double visible_share(WorldState& s, std::uint32_t body, DVec3 center) {
                 half = 0.5 * (DVec3(box.high) - DVec3(box.low));
     for (int corner = -1; corner < 8; ++corner) {
       DVec3 point = middle;
-      // Within the shape's box at half its size each way: inside of most shapes.
+      // At half the size of the box of the shape: inside of most shapes.
       if (corner >= 0) {
         point += DVec3{(corner & 1) != 0 ? 0.5 * half.x : -0.5 * half.x,
                        (corner & 2) != 0 ? 0.5 * half.y : -0.5 * half.y,

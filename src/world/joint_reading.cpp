@@ -8,11 +8,11 @@ namespace gyre {
 
 namespace {
 
-// The two ends as they stand and move.
+// The two ends of a joint: pose and motion.
 struct JointState {
   BodyMotion a, b;
   Quat frame_a, frame_b;
-  Vec3 speed;  // of b's anchor against a's body there
+  Vec3 speed;  // of b's anchor relative to the body of a at that point
   Vec3 turning;
 };
 JointState state_of(const RigidWorld& w, const JointRecord& joint) {
@@ -80,7 +80,8 @@ float turn_speed(const JointRecord& joint, const JointState& s, int axis) {
   }
 }
 
-// The axes that a kind has a place on: a bit each. Those that something may act on, if there are any.
+// The axes of a kind that have a position, one bit each: those that limits, motors and springs can act on, if there
+// are any.
 std::uint32_t readable_axes(JointKind kind) {
   const auto bit = [](JointAxis axis) { return 1u << int(axis); };
   if (const std::uint32_t open = open_axes(kind)) return open;
@@ -97,7 +98,7 @@ std::uint32_t readable_axes(JointKind kind) {
   }
 }
 
-// Forces along the one axis of joints that keep it in their record: what the rows across it do not explain.
+// Forces along the one axis of joints that store it in their record: the total without the rows across it.
 float force_in_record(const JointRecord& joint, const JointState& s) {
   const Vec3 along = rotate(s.frame_a, {1, 0, 0});
   return joint.kind == JointKind::hinge ? dot(joint.total_angular, along) : dot(joint.total_linear, along);

@@ -1,5 +1,5 @@
-// Whether columns that came from outside hang together: every index leads somewhere, every ring closes, every count has
-// its room. A state that passes can be stepped without harm, however strange its numbers are.
+// Checks loaded columns: every index is valid, every ring closes, every count fits its array. A state that passes can
+// be stepped safely, whatever its numbers are.
 #include "world/field_commands.h"
 #include "world/world_state.h"
 
@@ -70,7 +70,7 @@ const char* fault_in_body(const BodyStore& bodies, std::uint32_t i) {
   return nullptr;
 }
 
-// Each group must be one ring that starts at its lowest body: who wakes one member walks the ring to its end.
+// Each group must be one ring that starts at its lowest body, since waking a member visits the whole ring.
 const char* fault_in_groups(const BodyStore& bodies) {
   const std::uint32_t count = std::uint32_t(bodies.sleep.size());
   std::uint32_t members = 0, walked = 0;
@@ -121,7 +121,7 @@ const char* fault_in_joint(const RigidWorld& w, const JointRecord& joint) {
   return nullptr;
 }
 
-// Whether a kind cannot be solved without details.
+// True if joints of this kind cannot be solved without details.
 bool needs_detail(JointKind kind) { return kind > JointKind::distance; }
 
 const char* fault_in_detail(const JointStore& joints, std::uint32_t slot) {

@@ -1,4 +1,4 @@
-// One step of the world, as the list of its stages. Each is a function from arrays to arrays in the folders below.
+// One step of the world as a list of stages. Each stage is a function from arrays to arrays in a lower layer.
 #include "base/check.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/integrate/spring_stability.h"
@@ -14,7 +14,7 @@ namespace gyre {
 namespace {
 
 #if defined(GYRE_VALIDATE) && GYRE_VALIDATE
-// Large worlds are walked now and then only: a walk costs several times what a stage does.
+// Large worlds are validated only now and then: a validation takes several times as long as a stage.
 bool is_validated(const WorldState& s, StageName stage) {
   constexpr std::size_t kSmall = 2000;
   constexpr std::uint64_t kEvery = 16;
@@ -30,7 +30,7 @@ void validate_after(const WorldState& s, StageName stage) {
 }
 #endif
 
-// Times a stage and lets tools look at the state after it.
+// Runs and times a stage, then calls the hook of tools.
 template <class Fn>
 void run_stage(WorldState& s, StageName stage, Fn&& fn) {
   {
@@ -51,7 +51,7 @@ void begin_step(WorldState& s) {
   refresh_awake(s.rigid.bodies);
 }
 
-// Joints that broke go after the step's own reading of them.
+// Broken joints stay until the end of the step, because its results refer to them.
 void remove_broken_joints(WorldState& s) {
   for (const JointBroken& broken : s.published_events.broken) remove_joint_now(s, broken.joint.index);
 }
@@ -63,7 +63,7 @@ void report_frozen(WorldState& s) {
   }
 }
 
-// An explicit scheme must not explode in silence: the step that it would need is told, in every step that is longer.
+// An explicit integrator must not explode silently: a step longer than the critical one is reported every time.
 void report_stiffness(WorldState& s) {
   const RigidWorld& w = s.rigid;
   const MotionSettings motion = motion_settings(w);
@@ -84,7 +84,7 @@ void report_stiffness(WorldState& s) {
                  to_string(motion.integrator), mode.frequency / kRadiansPerTurn, mode.joint, step, longest);
 }
 
-// A method that was asked for by name does not take islands of any size.
+// A solver method that the user chose may not take islands of this size.
 void report_large_islands(WorldState& s) {
   const RowStats& rows = s.solve.rows;
   if (rows.too_large == 0) return;
@@ -97,7 +97,7 @@ void report_large_islands(WorldState& s) {
 
 void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
 
-// Right after the stage, which leaves contacts that it did not look at as they were.
+// Must run right after the stage `collide`, which leaves contacts that it did not update as they were.
 void count_manifold_updates(WorldState& s) {
   if (!s.profile.enabled()) return;
   std::size_t updates = 0;
@@ -108,7 +108,7 @@ void count_manifold_updates(WorldState& s) {
   count(s, CounterName::full_looks, updates);
 }
 
-// What the profiler is told of a step's work, from what the stages left behind.
+// Reports the work of a step to the profiler.
 void count_work(WorldState& s) {
   if (!s.profile.enabled()) return;
   const RigidWorld& w = s.rigid;
@@ -121,7 +121,7 @@ void count_work(WorldState& s) {
   count(s, CounterName::fast_bodies, s.continuous.fast.size());
 }
 
-// Who touches whom, and where.
+// The collision stages: fat boxes, pairs, manifolds, touches.
 void detect_collisions(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
   run_stage(s, StageName::refit, [&] { refit(w, *s.tasks, seconds); });
@@ -132,7 +132,7 @@ void detect_collisions(WorldState& s, float seconds) {
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
 }
 
-// What follows on the motion of `seconds`, the last of a step of `whole` or not.
+// The stages after the solve of `seconds`, which is the last piece of a step of `whole` seconds or not.
 void finish_step(WorldState& s, float seconds, float whole, bool last) {
   RigidWorld& w = s.rigid;
   run_stage(s, StageName::clamp_fast_bodies,
@@ -142,7 +142,8 @@ void finish_step(WorldState& s, float seconds, float whole, bool last) {
   run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
 }
 
-// With as many sub-steps, at least those of the settings, as keep the error of what constraints move within the tolerance.
+// Solves with as many sub-steps, at least those of the settings, as keep the error of constrained bodies within the
+// tolerance.
 void solve_to_tolerance(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
   MotionSettings& motion = w.motion_settings[0];
@@ -168,7 +169,7 @@ void solve_to_tolerance(WorldState& s, float seconds) {
     error = step_difference(w, s.impacts.other, seconds);
     if (!(error > double(motion.tolerance))) break;
   }
-  // The next step begins with half of these, or with a quarter where that should do.
+  // The next step begins with half of these, or with a quarter if the error is small.
   const std::int32_t planned = error < 0.25 * double(motion.tolerance) ? substeps / 4 : substeps / 2;
   if (planned > min_substeps) motion.planned_substeps = planned;
   const int a_substep = w.solver.empty() ? 2 : 1;
@@ -187,11 +188,13 @@ void step_undivided(WorldState& s, float seconds) {
   finish_step(s, seconds, seconds, true);
 }
 
-// How often a part of a step is tried until it ends at an impact, and the shortest part, as a share of the step.
+// How often a piece of an adaptive step is tried until it ends at an impact, and the shortest piece as a share of the
+// step.
 constexpr int kMaxTries = 8;
 constexpr double kShortest = 1.0e-7;
 
-// The solve of at most `left`, as long as it takes until the first impact. Says how long that is, and whether it is one.
+// Solves up to the first impact, but at most `left` seconds. Returns the length of the piece, s; `is_impact` tells
+// whether it ends at an impact.
 double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impact) {
   RigidWorld& w = s.rigid;
   const std::int32_t substeps = w.settings.substeps;
@@ -216,7 +219,7 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
   return length;
 }
 
-// Strikes what has met; then who touches whom must be asked again, since others are ahead of those that were struck.
+// Resolves impacts. Bodies that got an impulse may meet other shapes, so collisions are then detected again.
 void apply_impacts(WorldState& s, float threshold, float seconds, float left) {
   RigidWorld& w = s.rigid;
   if (!resolve_impacts(w, s.impacts, threshold)) return;
@@ -226,8 +229,8 @@ void apply_impacts(WorldState& s, float threshold, float seconds, float left) {
   detect_collisions(s, left);
 }
 
-// From impact to impact. What would bounce on for less than 1/64 of the step does not bounce any more: so a ball that bounces
-// infinitely often in finite time comes to rest.
+// Steps from impact to impact. A bounce that would last less than 1/64 of the step is suppressed, so a ball with
+// infinitely many bounces in finite time comes to rest.
 void step_to_impacts(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
   const std::int32_t max_impacts = motion_settings(w).max_impacts;
@@ -261,7 +264,7 @@ void step_to_impacts(WorldState& s, float seconds) {
 void end_step(WorldState& s, float seconds) {
   s.time += double(seconds);
   ++s.step_count;
-  // What commands add from now on belongs to the next step.
+  // Events of later commands belong to the next step.
   std::swap(s.published_events, s.rigid.events);
   RigidEvents& next = s.rigid.events;
   next.begins.clear(), next.ends.clear(), next.hits.clear();

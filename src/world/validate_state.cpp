@@ -1,4 +1,4 @@
-// The rules, group by group. See state_walk.h.
+// The rules, by group. See validate_state.h.
 #include "world/validate_state.h"
 
 #include "base/float_mode.h"
@@ -26,9 +26,9 @@ class StateValidator {
   Error run();
 
  private:
-  // Whether the step has come at least so far; between steps it has.
+  // True if the stage is done; between steps all are.
   bool is_past(StageName stage) const { return !after_ || *after_ >= stage; }
-  // The solver has moved velocities and orientations on, and nobody has looked yet whether they are finite.
+  // Between the solve and finish_bodies, velocities and orientations are new and not yet checked to be finite.
   bool is_within_solve() const {
     return after_ && *after_ >= StageName::solve && *after_ < StageName::finish_bodies;
   }
@@ -54,7 +54,7 @@ class StateValidator {
   const WorldState& s_;
   const RigidWorld& w_;
   std::optional<StageName> after_;
-  std::vector<std::uint32_t> changed_;      // proxies that the broad phase has not been shown; ascending
+  std::vector<std::uint32_t> changed_;      // proxies that the broad phase does not know yet; ascending
   std::vector<std::uint8_t> changed_mark_;  // the same by shape
 };
 
@@ -66,7 +66,8 @@ void StateValidator::list_changed() {
   }
 }
 
-// Each shape is in the list of its body and each joint in those of its bodies, ascending and once; nothing else is.
+// Each shape is in the list of its body and each joint in those of its bodies, once and ascending. The lists have no
+// other entries.
 Error StateValidator::lists_of_bodies() const {
   std::size_t listed_shapes = 0, listed_joints = 0, joint_ends = 0;
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
@@ -121,8 +122,7 @@ Error StateValidator::list_of_awake() const {
                                         : broken("the list of awake bodies has more than there are");
 }
 
-// Bodies that a joint keeps from colliding are known as such, as often as there are such joints.
-// Whatever has a body that goes along is asked; that others are too costs time only.
+// Each contact and joint of a simulated body is active. More active ones only cost time.
 Error StateValidator::active_constraints() const {
   const auto moves = [&](std::uint32_t body) { return is_simulated(w_.bodies.flags[body]); };
   for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
@@ -154,7 +154,7 @@ Error StateValidator::blocked_bodies() const {
   return joints == counted ? Error{} : broken("bodies are kept from colliding by more joints than there are");
 }
 
-// What is derived from the place of the centre of mass is what derivation gives.
+// Orientations equal those of the poses.
 Error StateValidator::poses() const {
   if (is_within_solve()) return {};
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
@@ -194,7 +194,7 @@ Error StateValidator::contacts_have_pairs() const {
     if (w_.joints.blocked.contains(pair_key(contact.body_a, contact.body_b)))
       return broken("contact %u is of bodies %u and %u, which a joint keeps from colliding", slot,
                     contact.body_a, contact.body_b);
-    // Pairs that have come apart go in link_islands.
+    // The stage link_islands removes pairs whose fat boxes separated.
     if (!is_past(StageName::link_islands) || !is_in_broadphase(contact.shape_a) || !is_in_broadphase(contact.shape_b))
       continue;
     if (!overlap(a.fat_box, b.fat_box))
@@ -224,7 +224,7 @@ Error StateValidator::pairs_have_contacts() const {
   return {};
 }
 
-// No group has a moving body twice, and each constraint is in one group. What is left of the last step is looked at
+// No colour has a moving body twice, and each constraint has one colour. The results of the last solve are checked
 // between steps, too.
 Error StateValidator::groups_of_constraints() const {
   Error fault = groups_of_batch(s_.solve.together);
@@ -244,7 +244,7 @@ Error StateValidator::groups_of_batch(const BatchScratch& solve) const {
   return {};
 }
 
-// Whether the lists of all batches together are the slots for which acts(slot) holds, each once.
+// True if the lists of all batches together are the slots with acts(slot), each once.
 template <class Acts>
 bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBatch::*list, std::size_t slots,
              const Acts& acts) {
@@ -261,8 +261,8 @@ bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBa
   return true;
 }
 
-// What acts is in one batch, as are all that it moves; and the solver had as much of it. The batches are found anew, and
-// smaller, so that there are several.
+// Each acting constraint is in one batch, which has all bodies that it moves, and the solver had as many constraints.
+// The batches are found again with a smaller size, so that there are several.
 Error StateValidator::everything_is_solved() const {
   Arena arena;
   TaskSystem alone;
@@ -302,7 +302,7 @@ Error StateValidator::everything_is_solved() const {
                                           : broken("the solver has other joints than those that act");
 }
 
-// The bodies of a sleeping group hang together, if they came to rest by themselves. Those that were put to sleep in full
+// The bodies of a sleeping group are connected if they fell asleep by themselves. Bodies that were put to sleep in
 // motion may have contacts that are about to end.
 Error StateValidator::islands() const {
   std::vector<std::uint32_t> parent(w_.bodies.motion.size());
@@ -369,7 +369,7 @@ Error StateValidator::run() {
 }  // namespace
 
 Error validate_state(const WorldState& state, std::optional<StageName> after) {
-  const FloatMode mode;  // what is derived is derived again, with the same rounding
+  const FloatMode mode;  // derived data is computed again, with the same rounding
   return StateValidator(state, after).run();
 }
 

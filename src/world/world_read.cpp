@@ -1,4 +1,4 @@
-// The public World's reading side: single getters, bulk columns, sums over the world.
+// The reading side of the public World: single getters, bulk columns, sums over the world.
 #include <gyre/world.h>
 
 #include "base/float_mode.h"
@@ -29,7 +29,7 @@ void make_room(const WorldState& s, std::size_t bodies) {
   s.read_linear.resize(bodies);
   s.read_angular.resize(bodies);
 }
-// By ascending index. (In one place for both: code counts on the web.)
+// By ascending index. (One function for both: code size counts on the web.)
 BodyColumns read_bodies(const WorldState& s, bool only_awake) {
   const FloatMode mode;
   const BodyStore& bodies = s.rigid.bodies;
@@ -60,7 +60,7 @@ bool World::exists(ShapeId shape) const { return lives(*state_, shape); }
 bool World::exists(JointId joint) const { return lives(*state_, joint); }
 
 Pose World::pose(BodyId body) const {
-  const FloatMode mode;  // the origin is worked out from the centre of mass
+  const FloatMode mode;  // the origin is derived from the centre of mass
   return exists(body) ? origin_pose(state_->rigid.bodies, body.index) : Pose{};
 }
 DVec3 World::center_of_mass(BodyId body) const {
@@ -181,7 +181,7 @@ std::size_t World::persisting(std::span<ContactPersist> out) const {
   const RigidWorld& w = state_->rigid;
   std::size_t count = 0;
   for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
-    const Contact& contact = w.contacts.contacts[slot];  // of an empty slot: it touches nothing
+    const Contact& contact = w.contacts.contacts[slot];  // an empty slot touches nothing
     if (contact.touching == 0 || contact.sensor != 0) continue;
     if (slot < w.touches.began.size() && w.touches.began.test(slot)) continue;
     if (count++ >= out.size()) continue;
@@ -206,7 +206,7 @@ WorldCounts World::counts() const {
   counts.joints = int(w.joints.ids.size());
   counts.colors = state_->solve.colors;
   counts.pairs = int(w.contacts.live);
-  // Slots that are free have the flags of fixed bodies, and contacts that touch nothing and have no manifolds.
+  // Free slots have the flags of static bodies; their contacts touch nothing and have no manifolds.
   for (const BodyFlags& flags : w.bodies.flags) counts.awake_bodies += is_simulated(flags) ? 1 : 0;
   for (const Contact& contact : w.contacts.contacts) {
     counts.touching += contact.touching != 0 ? 1 : 0;

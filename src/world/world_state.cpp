@@ -17,7 +17,7 @@ namespace {
 
 std::uint16_t next_world_number() {
   static std::atomic<std::uint32_t> count{0};
-  // Never 0: a null id is of no world.
+  // Never 0: a null id belongs to no world.
   return std::uint16_t(1 + count.fetch_add(1, std::memory_order_relaxed) % 65535);
 }
 
@@ -57,7 +57,7 @@ class HashVisitor {
  private:
   template <class T>
   void add_record(const T& record) {
-    // Every field takes a byte or more of its record: there is room for all of them without looking at each.
+    // Every field has at least one byte of its record, so this room suffices without a check for each field.
     static_assert(sizeof(T) + std::size_t(kGroup) <= std::size_t(kWords));
     if (used_ + int(sizeof(T)) > kWords) drain();
     int used = used_;
@@ -79,7 +79,7 @@ class HashVisitor {
       return std::uint64_t(value);
     }
   }
-  // Fields go to the hash in groups; a count that is told at once comes before those of the group that is not full yet.
+  // Fields are hashed in groups. A word that is added directly is hashed before the fields of an incomplete group.
   void add_word(std::uint64_t word) {
     drain();
     hasher_.add(word);
@@ -92,7 +92,7 @@ class HashVisitor {
   }
   void update(int count) {
     if constexpr (std::endian::native == std::endian::little) {
-      hasher_.add(std::as_bytes(std::span(words_, std::size_t(count))));  // the same bytes, all together
+      hasher_.add(std::as_bytes(std::span(words_, std::size_t(count))));  // the same bytes at once
     } else {
       for (int i = 0; i < count; ++i) hasher_.add(words_[i]);
     }
@@ -166,8 +166,8 @@ void derive_state(RigidWorld& w) {
   bodies.awake_stale = true;
   refresh_awake(bodies);
   w.shapes.colliders.resize(w.shapes.ids.capacity());
-  // Which boxes the broad phase has not seen yet is not kept. All of them are shown to it: of the pairs that it then
-  // finds, only those have no contact yet that it would have found anyway.
+  // The list of boxes that the broad phase has not seen is not saved. All boxes are listed. Of the pairs that it then
+  // finds, only those have no contact that it would have found anyway.
   w.shapes.changed.clear();
   w.shapes.moved_shapes.clear();
   w.shapes.fat_box_horizon = 0.0f;
@@ -191,14 +191,14 @@ void derive_state(RigidWorld& w) {
 }
 
 std::uint64_t hash_state(const WorldState& state) {
-  const FloatMode mode;  // shapes are hashed as the engine knows them, with unit normals
+  const FloatMode mode;  // shapes are hashed in their form for collision, with unit normals
   HashVisitor visitor;
   for_each_column(state, visitor);
   return visitor.value();
 }
 
 void report_problem(WorldState& state, ErrorCode code, BodyId body, const char* format, ...) {
-  constexpr std::size_t kMaxProblems = 256;  // a host that never looks must not fill the memory
+  constexpr std::size_t kMaxProblems = 256;  // bounds the memory of hosts that never read problems
   if (state.problems.size() >= kMaxProblems) return;
   Problem problem;
   problem.code = code;

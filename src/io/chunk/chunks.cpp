@@ -18,7 +18,7 @@ constexpr std::size_t kChunkHeaderBytes = 4 + 4 + 8 + 8;
 constexpr std::size_t kChunkLengthOffset = 8;
 constexpr std::size_t kChunkChecksumOffset = 16;
 
-// Of the chunk's head up to the checksum, and the payload.
+// The checksum of the chunk header up to the checksum itself, and of the payload.
 std::uint64_t checksum_of(const std::byte* chunk, std::size_t payload_bytes) {
   Hasher hasher;
   hasher.add(std::span<const std::byte>(chunk, kChunkChecksumOffset));

@@ -1,4 +1,4 @@
-// Opening a recording. See recording.h.
+// Opens a recording. See recording.h.
 #include "io/recording/recording.h"
 
 #include "io/snapshot/motion_hash.h"
@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// Walks all commands of a chunk; fn(command) for each. False if a command cannot be read.
+// Calls fn(command) for all commands of a chunk. False if one cannot be read.
 template <class Fn>
 bool for_each_command(const Chunk& chunk, const GeometryTable& geometry, std::uint16_t world_number,
                       Fn&& fn) {
@@ -20,12 +20,12 @@ bool for_each_command(const Chunk& chunk, const GeometryTable& geometry, std::ui
   return true;
 }
 
-// Takes chunks in until something is wrong.
+// Collects chunks up to the first error.
 class RecordingOpener {
  public:
   explicit RecordingOpener(Recording& recording) : recording_(recording) {}
 
-  // False ends the reading: what came before can be played.
+  // False ends the reading. The chunks before can be played.
   bool read_chunk(const Chunk& chunk) {
     if (recording_.closed) return false;
     switch (chunk.kind) {
@@ -89,7 +89,7 @@ class RecordingOpener {
     step_seen_ = false;
     return true;
   }
-  // With nothing between: the last step of a recording has both.
+  // True if a state hash directly follows a motion hash, as in the last step of a recording.
   bool follows_motion_hash() const {
     return !recording_.steps.empty() && !recording_.steps.back().is_whole &&
            first_chunk_ == recording_.chunks.size();

@@ -1,4 +1,5 @@
-// The player. Going back is restoring the nearest keyframe before, which were kept while playing, and playing on from it.
+// The player. To go back, it restores the nearest earlier keyframe, which it saved while playing, and plays on from
+// there.
 #include "io/recording/recording.h"
 #include "io/snapshot/state_copy.h"
 
@@ -6,14 +7,14 @@ namespace gyre {
 
 namespace {
 
-// Keyframes of a recording, thinned out as they become many: then every second one goes and the next are twice as far apart.
+// Keyframes of a recording. If they become too many, every second one is removed and the interval doubles.
 class Keyframes {
  public:
   static constexpr std::uint64_t kFirstInterval = 16;  // steps
   static constexpr std::size_t kMaxFrames = 128;
   static constexpr std::size_t kMaxBytes = std::size_t(512) << 20;
 
-  // `position`: steps played. Kept if it is time for one.
+  // Saves a keyframe if one is due. `position`: steps played.
   void offer(std::uint64_t position, const WorldState& state) {
     if (position % interval_ != 0 || (!frames_.empty() && frames_.back().position >= position)) return;
     frames_.push_back({position, {}});
@@ -21,7 +22,7 @@ class Keyframes {
     bytes_ += frames_.back().state.bytes();
     while (frames_.size() > 2 && (frames_.size() > kMaxFrames || bytes_ > kMaxBytes)) thin_out();
   }
-  // The last one at or before `position`; null if there is none.
+  // The last keyframe at or before `position`; null if there is none.
   const StateCopy* find(std::uint64_t position, std::uint64_t& found) const {
     const StateCopy* state = nullptr;
     for (const Frame& frame : frames_) {

@@ -12,7 +12,7 @@ namespace {
 
 std::uint64_t word_of(double value) { return __builtin_bit_cast(std::uint64_t, value); }
 
-// Two floats that lie side by side, by one load where that is the same.
+// Two adjacent floats, by one load where the byte order allows it.
 std::uint64_t word_of(const float* two) {
   std::uint64_t word = 0;
   if constexpr (std::endian::native == std::endian::little) {

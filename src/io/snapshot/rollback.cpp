@@ -1,4 +1,4 @@
-// The ring of snapshots in memory.
+// A ring of state copies in memory.
 #include "io/snapshot/state_copy.h"
 
 #include <gyre/replay.h>
@@ -23,8 +23,7 @@ Rollback::Rollback(Rollback&&) noexcept = default;
 void Rollback::save(const World& world) {
   const std::uint64_t step = world.step_count();
   std::vector<Ring::Slot>& slots = ring_->slots;
-  // What a rewound world steps through again replaces what was kept of that step, and all later steps are of a future
-  // that will not come.
+  // After a rewind, the new state of a step replaces the saved one, and saved states of later steps are dropped.
   std::size_t index = ring_->next;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (!slots[i].used || slots[i].state.step_count() < step) continue;

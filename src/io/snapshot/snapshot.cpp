@@ -1,4 +1,4 @@
-// Saving and loading snapshots. See snapshot.h for the format.
+// Saves and loads snapshots. See snapshot.h for the format.
 #include "io/snapshot/snapshot.h"
 
 #include "base/hash.h"
@@ -22,7 +22,7 @@ Error bad_snapshot(const char* what) { return make_error(ErrorCode::invalid_data
 
 // -------------------------------------------------------------------------------------------------------- the columns
 
-// The layout of each kind of column. Ids are their generations; shapes have a layout of their own.
+// The layout of each kind of column. Ids are stored as generations; shapes have a layout of their own.
 constexpr std::uint64_t kShapeLayout = hash_text("shape 1");
 
 template <class Column>
@@ -46,7 +46,7 @@ struct ColumnLayout<std::vector<AnyShape>> {
   static RecordLayout get() { return {1, kShapeLayout}; }
 };
 
-// A later column that is empty is not written, and one that is not there is empty: older snapshots open.
+// An empty later column is not written, and a missing one is read as empty, so older snapshots can be read.
 template <class Column>
 bool is_left_out(const Column& column) {
   if constexpr (is_later_column<Column>) return column.empty();
@@ -105,7 +105,7 @@ class ColumnWriter {
   ByteWriter& out_;
 };
 
-// One column as it stands in the bytes.
+// One column in the bytes.
 struct StoredColumn {
   std::string_view name;
   std::uint64_t layout = 0;

@@ -1,7 +1,8 @@
-// Packing a state and putting it back. See kept_state.h.
+// Packs a state and restores it. See state_copy.h.
 //
-// Manifolds are most of a state, and most of them are empty: a pair of boxes that only come near each other has one too. What a
-// contact does not use is always as in a new manifold (find_fault in collision/contact/contact_store sees to it), so it need not be kept.
+// Most of a state are manifolds, and most manifolds are empty: every pair of overlapping fat boxes has one. The
+// unused rest of a manifold equals that of a new one (find_fault in collision/contact/contact_store checks it), so it
+// is not stored.
 #include "io/snapshot/state_copy.h"
 
 #include <cstddef>
@@ -14,11 +15,11 @@ namespace {
 
 using Manifolds = decltype(ContactStore::manifolds);
 
-// Each count and each array begins where any record may.
+// Each count and each array begins at an address that suits any record.
 std::size_t padded(std::size_t bytes) { return (bytes + kMemoryAlign - 1) / kMemoryAlign * kMemoryAlign; }
 
-// A manifold with `count` points is kept as two runs of its bytes: up to its last point, and from behind the room for points to its
-// last anchor.
+// A manifold with `count` points is stored as two runs of its bytes: from the start to its last point, and from
+// behind the array of points to its last anchor.
 constexpr std::size_t kHeadBytes = offsetof(Manifold, points);
 constexpr std::size_t kTailOffset = offsetof(Manifold, age);
 static_assert(kTailOffset == kHeadBytes + kMaxManifoldPoints * sizeof(ContactPointState) &&
@@ -31,7 +32,7 @@ std::size_t tail_bytes(int count) {
 }
 std::size_t manifold_bytes(int count) { return kHeadBytes + point_bytes(count) + tail_bytes(count); }
 
-// Calls fn(manifold) for each that a contact uses. In the order of contacts, of which there is always the same for a state.
+// Calls fn(manifold) for each used manifold, in the order of contacts, which is part of the state.
 template <class Store, class Fn>
 void for_each_manifold(Store& store, Fn&& fn) {
   for (const Contact& contact : store.contacts) {
@@ -44,7 +45,7 @@ bool equal(const Proxy& a, const Proxy& b) {
          a.body == b.body && a.motion == b.motion && a.sensor == b.sensor && a.pushes == b.pushes;
 }
 
-// The proxies that differ, so that the broad phase need not be built anew. False if it must be.
+// Lists the proxies that differ, for an update of the broad phase. False if it must be rebuilt.
 bool list_differing(std::span<const Proxy> now, std::span<const Proxy> then, Array<std::uint32_t>& out) {
   if (now.size() != then.size()) return false;
   for (std::uint32_t i = 0; i < now.size(); ++i) {
@@ -53,7 +54,7 @@ bool list_differing(std::span<const Proxy> now, std::span<const Proxy> then, Arr
   return true;
 }
 
-// How many bytes the arrays take.
+// The size of the packed arrays.
 struct PackedSize {
   const ContactStore& store;
   std::size_t bytes = 0;
@@ -101,11 +102,11 @@ struct Packer {
   }
 };
 
-// Into columns in which no manifold is in use.
+// Requires columns in which no manifold is in use.
 struct Unpacker {
   ContactStore& store;
   const std::byte* from;
-  // Takes the proxies that differ from what is there already. `same_count` is false if that says nothing.
+  // Gets the proxies that differ from the present ones. If `same_count` is false, the list is incomplete.
   Array<std::uint32_t>& differing;
   bool same_count = false;
 
@@ -117,7 +118,7 @@ struct Unpacker {
   }
   void operator()(const char*, Manifolds& column) {
     column.resize(get_count());
-    // The contacts are those of these manifolds: their column comes before.
+    // The column of contacts comes before, so the contacts are those of these manifolds.
     for_each_manifold(store, [&](Manifold& manifold) {
       auto* const to = reinterpret_cast<std::byte*>(&manifold);
       std::memcpy(to, from, kHeadBytes);
@@ -146,7 +147,7 @@ struct Unpacker {
   }
 };
 
-// The columns that are not packed: from a list of where they are, in the order of for_each_column.
+// The addresses of the columns that are not packed, in the order of for_each_column.
 struct OtherColumns {
   static constexpr std::size_t kMaxColumns = 64;
   const void* columns[kMaxColumns];
@@ -170,7 +171,7 @@ struct OtherCopier {
   void operator()(const char*, Manifolds&) { ++next; }
   template <class Column>
   void operator()(const char*, Column& column) {
-    // Both walks are of for_each_column, so the n-th columns are of one type.
+    // Both loops visit the columns in the same order, so the n-th columns have the same type.
     column = *static_cast<const Column*>(from.columns[next++]);
   }
 };
@@ -205,7 +206,7 @@ void StateCopy::save(const WorldState& state) {
   const ContactStore& store = state.rigid.contacts;
   PackedSize size{store};
   for_each_column(state, size);
-  packed_.clear();  // nothing of it is worth a copy where the block grows
+  packed_.clear();  // growth would copy the old contents
   packed_.resize_uninitialized(size.bytes);
   for_each_column(state, Packer{store, packed_.data()});
   copy_others(state, others_);
@@ -224,7 +225,8 @@ void StateCopy::restore(WorldState& state) const {
   derive_state(w);
   state.queried_changes.store(kNothingQueried, std::memory_order_relaxed);
   if (can_keep_broadphase) {
-    // What the broad phase has not seen of the present state, of the kept one, and what differs between the two.
+    // The broad phase has not seen the changed boxes of the present state, those of the saved one, and the
+    // differences of the two.
     changed.append(changed_);
     w.shapes.changed = std::move(changed);
     w.broadphase_stale = false;

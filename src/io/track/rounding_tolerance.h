@@ -1,5 +1,5 @@
-// How far a body may go from where it was looked at before its rounded pose can change: what lies in a heap trembles by a thousandth
-// of a step, and need not be rounded again to know that.
+// The distance that a body may move from a reference pose before its rounded pose can change. Bodies in a heap
+// tremble by a thousandth of a rounding step, and need not be rounded again.
 #pragma once
 
 #include "io/track/pose_codec.h"
@@ -11,13 +11,13 @@ namespace gyre {
 
 struct RoundingTolerance {
   double center = -1.0;  // m, each coordinate of the centre of mass
-  float quaternion = -1.0f;    // each part of the quaternion
+  float quaternion = -1.0f;    // each component of the quaternion
 };
 
-// None where it is too near to tell.
+// No tolerance if the pose is too close to a rounding boundary.
 RoundingTolerance find_rounding_tolerance(const BodyPose& body_pose, const BodyMass& mass, PoseSteps steps);
 
-// With no slack, only if it has not moved at all.
+// Without a tolerance, true only if the pose is the same.
 inline bool is_within(const BodyPose& now, const BodyPose& reference, RoundingTolerance tolerance) {
   const DVec3 displacement = now.center - reference.center;
   const Quat a = now.orientation, b = reference.orientation;

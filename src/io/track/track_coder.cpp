@@ -1,4 +1,4 @@
-// Decoding frames. See track_coder.h.
+// Decodes frames. See track_coder.h.
 #include "io/track/track_coder.h"
 
 namespace gyre {
@@ -13,7 +13,7 @@ bool FrameDecoder::read_put(BitReader& bits, TrackedBody& body) const {
   return true;
 }
 
-// Old bodies and changes both come by ascending index.
+// Old bodies and changes are both in order of index.
 bool FrameDecoder::apply_changes(BitReader& bits, std::uint64_t count, std::vector<TrackedBody>& bodies) {
   next_.clear();
   std::size_t old = 0;

@@ -1,5 +1,5 @@
-// The player of tracks: lists the frames of a recording when it is opened, decodes them on demand. Only chunks of the track
-// are looked at, so that recordings of other versions can be, whose state this one does not know.
+// The player of pose tracks: lists the frames of a recording when it opens it, and decodes them on demand. It reads
+// track chunks only, so it opens recordings of other versions whose state it cannot read.
 #include "base/container/flat_map.h"
 #include "io/chunk/chunks.h"
 #include "io/track/track_coder.h"
@@ -13,10 +13,10 @@ namespace {
 
 struct ListedFrame {
   std::span<const std::byte> payload;
-  std::size_t keyframe = 0;  // the last one, this frame included
+  std::size_t keyframe = 0;  // the last one up to this frame
 };
 
-// Adds what `read` fills in, if it can.
+// Appends an item that `read` fills in. False if that fails.
 template <class Item, class Read>
 bool append(std::vector<Item>& items, Read&& read) {
   Item item;
@@ -35,13 +35,13 @@ struct PoseTrack::Reader {
   std::vector<Geometry> geometry;
   std::vector<TrackModel> models;
   std::vector<StoredLabel> labels;
-  FlatMap<std::uint32_t> label_of;  // by body: the last one it was given
+  FlatMap<std::uint32_t> label_of;  // by body: its last label
   std::vector<StoredNote> notes;
   std::vector<ListedFrame> frames;
   bool started = false;
   bool closed = false;
 
-  // What was decoded last: the bodies of frame `decoded`, if it is one.
+  // The bodies of frame `decoded`, or of none.
   static constexpr std::size_t kNone = SIZE_MAX;
   std::vector<TrackedBody> bodies;
   std::size_t decoded = kNone;
@@ -80,7 +80,7 @@ bool PoseTrack::Reader::read_frame_chunk(const Chunk& chunk) {
   return true;
 }
 
-// False ends the reading: what came before can be looked at.
+// False ends the reading. The frames before can be viewed.
 bool PoseTrack::Reader::read_chunk(const Chunk& chunk, Error& why) {
   if (closed) return false;
   switch (chunk.kind) {
@@ -112,7 +112,7 @@ bool PoseTrack::Reader::read_chunk(const Chunk& chunk, Error& why) {
   }
 }
 
-// Brings `bodies` to the frame, from where they are or from the keyframe before it.
+// Decodes `bodies` up to the frame, from the present frame or from a keyframe.
 bool PoseTrack::Reader::decode(std::size_t frame) {
   const std::size_t keyframe = frames[frame].keyframe;
   std::size_t next = decoded != kNone && decoded >= keyframe && decoded <= frame ? decoded + 1 : keyframe;

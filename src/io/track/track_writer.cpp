@@ -1,4 +1,4 @@
-// From a world to frames. See track_writer.h and track_coder.h.
+// Encodes frames of a world. See track_writer.h and track_coder.h.
 #include "io/track/track_writer.h"
 
 #include "base/hash.h"
@@ -48,7 +48,7 @@ std::uint32_t TrackWriter::model_of(const RigidWorld& w, std::uint32_t body, Emi
 }
 
 void TrackWriter::update_rounded_pose(const BodyPose& body_pose, const BodyMass& mass, WrittenBody& written) {
-  constexpr int kMinUnchangedFrames = 8;  // frames; what is still on its way, slowly, would have to be rounded soon all the same
+  constexpr int kMinUnchangedFrames = 8;  // frames; a slowly moving body would need a new rounding soon anyway
   const Pose pose = origin_pose(body_pose, mass);
   if (is_finite(pose)) {
     const RoundedPose next = round_pose(pose, start_.steps);
@@ -121,7 +121,7 @@ void TrackWriter::update_body(const WorldState& state, std::uint32_t index, bool
   changes_.push_back({index, BodyChange::put});
 }
 
-// Where neither the pose nor what is known of it changes any more, the bits will be the same as long as the pose is.
+// If neither the pose nor its history changes any more, the bits stay the same as long as the pose does.
 void TrackWriter::settle(WrittenBody& written) const {
   BitWriter bits;
   PoseHistory history = written.body.pose;
@@ -171,7 +171,7 @@ void TrackWriter::frame(const WorldState& state, EmitChunk emit) {
   const bool key = frames_since_key_ >= kKeyframeInterval;
   frames_since_key_ = key ? 1 : frames_since_key_ + 1;
   changes_.clear();
-  // Slots are never given back, but a world may be put back to when it had fewer.
+  // The number of slots never falls within a world, but a restored state may have fewer.
   const std::size_t slots = state.rigid.bodies.ids.capacity();
   if (bodies_.size() < slots) bodies_.resize(slots);
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) update_body(state, i, key, emit);

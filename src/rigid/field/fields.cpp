@@ -14,7 +14,7 @@ BodyState state_of(const RigidWorld& w, std::uint32_t body) {
           DVec3(motion.linear_velocity), DVec3(motion.angular_velocity)};
 }
 
-// Mass and world inertia.
+// Mass and world inertia as a matrix.
 Mat6 mass_matrix(const BodyMass& mass, const BodyState& state) {
   const Sym3 inertia = rotate_inertia(to_float(state.orientation), mass.inertia);
   Mat6 out;
@@ -26,7 +26,7 @@ Mat6 mass_matrix(const BodyMass& mass, const BodyState& state) {
   return out;
 }
 
-// Along locked axes nothing changes.
+// Removes the locked axes from the system.
 void lock(const BodyFlags& flags, Mat6& matrix, Vec6& right) {
   const std::uint32_t locked = std::uint32_t(flags.locked_linear) | std::uint32_t(flags.locked_angular) << 3;
   if (locked == 0) return;
@@ -50,7 +50,7 @@ void add_radial_forces(const RigidWorld& w, const FieldBody& from, const BodySta
   }
 }
 
-// Gravity against the surface of a buoyant field; not above 0: it does not lift.
+// The component of gravity into a buoyant medium; 0 or less: no lift.
 double weight_along(const RigidWorld& w, const FieldRecord& field) {
   return field.kind == FieldKind::buoyancy ? -double(dot(w.settings.gravity, field.normal)) : 0.0;
 }
@@ -63,8 +63,8 @@ void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyState& stat
   }
 }
 
-// Lift and torque of a light body where the sub-step will lead it: v = v* + h / m F(x + h v) along the gravity, whose right side
-// falls with v, so there is one root. Found by regula falsi (the Illinois variant: M. Dowell, P. Jarratt, 1971).
+// Lift and torque at the end of the sub-step: v = v* + h / m F(x + h v) along gravity. The right side falls with v,
+// so there is one root. It is found by regula falsi (the Illinois variant: M. Dowell, P. Jarratt, 1971).
 void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodyState& state, double h,
                         Vec6& force, Mat6& stiffness) {
   const DVec3 gravity(w.settings.gravity);
@@ -97,13 +97,13 @@ void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodySt
     }
   }
   add(force, lift);
-  // Along the lift nothing more needs to give way.
+  // The lift is implicit along gravity, so only the rotational stiffness remains.
   for (int i = 3; i < 6; ++i) {
     for (int j = 3; j < 6; ++j) stiffness.m[i][j] += stiff.m[i][j];
   }
 }
 
-// How much of h^2 K is added to the mass: more where the stiffest motion has (w h)^2 above 1.
+// The share of h^2 K that is added to the mass. It grows if (w h)^2 of the stiffest motion exceeds 1.
 double filter_of(const Mat6& mass, const Mat6& stiffness, double h) {
   double max_ratio = 0.0;
   for (int i = 0; i < 6; ++i) {
@@ -112,7 +112,7 @@ double filter_of(const Mat6& mass, const Mat6& stiffness, double h) {
   return 0.25 + 4.0 * max_ratio / (1.0 + max_ratio);
 }
 
-// What the streams would give a body at rest.
+// The drag on the body if it were at rest.
 Vec6 stream_drive(const RigidWorld& w, const FieldBody& from, const BodyState& state, double time) {
   Vec6 sum;
   for (std::size_t i = 0; i < from.fields.size(); ++i) {
@@ -148,9 +148,9 @@ void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
     for (int i = 0; i < 6; ++i) right.v[i] += h * (drive.v[i] - drag_force.v[i]);
   }
   lock(w.bodies.flags[from.body], matrix, right);
-  // Masses and moments may differ by many orders: pivots are judged against their own row only.
+  // Masses and moments may differ by many orders, so a pivot is compared with its own row only.
   solve_ldlt(factor_ldlt(matrix.m, 1.0e-300), right.v);
-  // Pulls may grow with the distance: speeds end where they do everywhere.
+  // Radial forces may grow with distance. The speed limits hold for their results, too.
   const Vec3 v = to_float(clamp_length(state.velocity + right.linear(), double(kMaxSpeed)));
   const Vec3 a = to_float(clamp_length(state.spin + right.angular(), double(kMaxSpin)));
   if (!is_finite(v) || !is_finite(a)) return;
@@ -158,7 +158,7 @@ void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
   motion.angular_velocity = a + Vec3{};
 }
 
-// Whether a body of all whose volume would swing with w h > 0.3 on a cut across its thinnest part.
+// True if the fully submerged body would oscillate with w h > 0.3 about a cut across its thinnest part.
 bool needs_implicit_lift(const RigidWorld& w, const FieldBody& from, double h) {
   constexpr double kStiff = 0.1;
   double lift = 0.0;
@@ -193,7 +193,7 @@ void prepare_fields(RigidWorld& w, FieldBody& from, double h) {
   }
 }
 
-// Calls fn(body) for the bodies of some blocks.
+// Calls fn(world, body, h) for the bodies of some blocks.
 template <class Fn>
 void for_bodies(void* context, int begin, int end, Fn&& fn) {
   const FieldSolve& solve = *static_cast<FieldSolve*>(context);

@@ -10,7 +10,7 @@ namespace {
 
 // -------------------------------------------------------------------------------------------------------------- streams
 
-// Waves of gusts: where they run, how the air moves in them (at a right angle, so that none piles up), and where they begin.
+// A wave of gusts. Its velocity is at a right angle to its direction, so the flow is free of divergence.
 struct Gust {
   DVec3 wave;  // direction
   DVec3 sway;
@@ -55,7 +55,7 @@ Vec6 vortex_at(const FieldRecord& field, DVec3 position) {
 
 // ----------------------------------------------------------------------------------------------------------------- drag
 
-// Sums of c, c r and c r r' over elements of the surface, with force = c w.
+// Sums of c, c r and c r r' over elements of the surface, whose force is c w.
 struct DragSum {
   double whole = 0.0;
   DVec3 first;
@@ -76,7 +76,7 @@ struct DragSum {
   }
 };
 
-// sum of c J'J with J (v, a) = v + a x r.
+// Adds the sum of c J'J with J (v, a) = v + a x r.
 void add_drag_matrix(Mat6& to, const DragSum& s) {
   for (int i = 0; i < 3; ++i) to.m[i][i] += s.whole;
   // The cross product r x as a matrix, below the diagonal block; its transpose above.
@@ -100,7 +100,7 @@ bool is_round(ShapeKind kind) {
          kind == ShapeKind::cone;
 }
 
-// A shape's frame within the world, about the body's centre of mass.
+// The frame of a shape in world axes, about the centre of mass of its body.
 struct ShapeState {
   DQuat orientation;    // world_from_shape
   DVec3 offset;  // of the shape's origin from the centre of mass, world axes
@@ -112,7 +112,7 @@ ShapeState state_of(const RigidWorld& w, std::uint32_t body, std::uint32_t shape
           rotate(state.orientation, DVec3(local.position) - DVec3(w.bodies.masses[body].center))};
 }
 
-// The plane of a field as a shape sees it.
+// The surface plane of a field in the frame of a shape.
 struct ShapePlane {
   DVec3 normal;
   double level;
@@ -124,7 +124,7 @@ ShapePlane plane_of(const FieldRecord& field, const BodyState& body, const Shape
           field.offset - dot(normal, body.center) - dot(normal, shape.offset)};
 }
 
-// The drag by one shape's surface, for the velocity at which the medium now streams against it.
+// The drag on the surface of one shape, for the present velocity of the medium relative to it.
 DragSum shape_drag(const Shape& shape, const ShapeState& at, const ShapePlane& plane, const Vec6& against) {
   DragSum sum;
   double facing_area = 0.0;  // of the whole surface, for round shapes
@@ -146,7 +146,7 @@ DragSum shape_drag(const Shape& shape, const ShapeState& at, const ShapePlane& p
   return exact;
 }
 
-// The share of the body's volume that is below the field's plane.
+// The share of the volume of the body below the surface of the field.
 double submerged_share(const RigidWorld& w, const FieldRecord& field, std::uint32_t body,
                        const BodyState& state) {
   double below = 0.0, whole = 0.0;
@@ -212,7 +212,7 @@ bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, 
   const auto& shapes = w.bodies.shapes[body];
   if (shapes.empty()) return true;
   if (field.kind == FieldKind::buoyancy) {
-    // Nothing of the body can come below the surface in this step.
+    // The body certainly stays above the surface in this step.
     const double height = dot(DVec3(field.normal), center) - field.offset,
                  step = double(w.settings.last_step);
     const double max_displacement = step * (double(length(w.bodies.motion[body].linear_velocity)) +
@@ -259,7 +259,7 @@ RadialForce radial_force_at(const FieldRecord& field, DVec3 position) {
   if (!(square > 0.0)) return out;
   const double radius = double(field.radius), n = double(field.falloff);
   const double ratio = square / (radius * radius);
-  // strength (radius / distance)^n / distance; whole powers without logarithms, so that they are as exact as they can be.
+  // strength (radius / distance)^n / distance. Integer powers need no logarithms, so they are as exact as possible.
   const double distance = std::sqrt(square);
   const double power = n == 2.0    ? 1.0 / ratio
                        : n == 0.0  ? 1.0
@@ -285,13 +285,14 @@ void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body,
     const DVec3 arm = at.offset + rotate(at.orientation, part.center);
     const double lift = weight * part.volume;
     add(force, make_vec6(lift * up, cross(arm, lift * up)));
-    // A body that hangs below its lift swings back like a pendulum.
+    // A body that hangs below its centre of lift swings back like a pendulum.
     const double swing = max(lift * dot(arm, up), 0.0);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) stiffness.m[3 + i][3 + j] += swing * ((i == j ? 1.0 : 0.0) - up[i] * up[j]);
     }
     if (!(part.area > 0.0)) continue;
-    // The cut at r resists with weight (up, r x up) (up, r x up)' dA: its middle as a point, and its spread about that.
+    // The water plane at r resists with weight (up, r x up) (up, r x up)' dA: its centroid as a point, and its second
+    // moments about that.
     const DVec3 middle = at.offset + rotate(at.orientation, part.area_center);
     add_row(stiffness, weight * part.area, make_vec6(up, cross(middle, up)));
     const SecondMoments& s = part.spread;

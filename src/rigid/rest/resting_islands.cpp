@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// What may be part of a resting island is no faster than a share of what it falls through its own size with,
+// Speed of a body against the speed that it gains by falling through its own bounding radius.
 struct RestSpeed {
   float speed, scale;
 
@@ -19,14 +19,14 @@ struct RestSpeed {
   }
   bool is_below(float share) const { return speed <= share * scale; }
 };
-// and bound to no axes.
+// True if the body has no locked axes and needs no exact rotation. A resting island needs both.
 bool is_unlocked(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   return !needs_exact_rotation(w.bodies, body, w.settings.last_substep) && flags.locked_linear == 0 &&
          flags.locked_angular == 0;
 }
 
-// The other end of a constraint may be the fixed world or a kinematic body that stands still.
+// True if the body does not move: kNoBody, or a body without velocity (a kinematic one may move).
 bool is_still(const RigidWorld& w, std::int32_t body) {
   if (body == kNoBody) return true;
   const BodyMotion& motion = w.bodies.motion[body];
@@ -56,7 +56,7 @@ std::uint32_t RestingIslands::root(std::uint32_t index) {
 }
 
 void RestingIslands::unite(std::uint32_t index_a, std::uint32_t index_b) {
-  // Most are in one island by the time they are asked.
+  // Most pairs are in one island already.
   if (parent_[index_a] == parent_[index_b]) return;
   const std::uint32_t a = root(index_a), b = root(index_b);
   parent_[max(a, b)] = min(a, b);
@@ -70,7 +70,7 @@ void RestingIslands::unite_constrained(std::span<const ColoringPair> pairs, std:
     if (joint.body_a != kNoBody && joint.body_b != kNoBody)
       unite(local_index_[std::size_t(joint.body_a)], local_index_[std::size_t(joint.body_b)]);
   }
-  // Who is lower has its root by now.
+  // Parents have lower indices, so a parent's root is final when its child is visited.
   for (std::uint32_t& parent : parent_) parent = parent_[parent];
 }
 

@@ -6,16 +6,17 @@ namespace gyre {
 
 namespace {
 
-// Larger islands are not looked at,
+// Larger islands are not solved as resting structures.
 constexpr std::uint32_t kMaxBodies = 512;
-// nor those that have more contacts than this for each body: heaps, whose every body leans on many.
+// Islands with more contacts for each body are heaps. They are not solved as resting structures either.
 constexpr std::uint32_t kMaxContactsPerBody = 4;
-// And of a heap no more than these, whose corners stand on something more often than once in so many contacts: one of its bodies slips
-// more often than not, and a look at a heap of 300 takes forty times as long as a step of it.
+// A larger island is a heap if more than one in eight of its contacts has a single point. One of its bodies slips
+// more often than not, and a direct solve of a heap of 300 bodies takes forty times as long as a step.
 constexpr std::uint32_t kMaxInHeap = 32;
 constexpr std::uint32_t kContactsPerSinglePoint = 8;
-// What did not hold in the last step is looked at once in so many steps, by its bodies: looking is dear where there are many. Large
-// islands are looked at once in a while by how fast their smallest body could fall through its own size: sooner it cannot fall far.
+// An island that was not in equilibrium in the last step is tried again after this many steps, by its number of
+// bodies, since a trial of a large island is dear. The interval of large islands follows the time in which their
+// smallest body falls through its own size: sooner it cannot fall far.
 constexpr std::uint32_t kMaxSmall = 4, kMinLarge = 128;
 constexpr std::uint64_t kRetryInterval = 8, kMinRetryIntervalIfLarge = 16;
 constexpr float kFallTimesIfLarge = 4.0f, kMaxRetryIntervalIfLarge = 1024.0f;
@@ -28,12 +29,12 @@ bool is_due_this_step(const RigidWorld& w, const IslandCount& count) {
   return w.steps % max(std::uint64_t(interval), kMinRetryIntervalIfLarge) == 0;
 }
 
-// Whether all that bore load in the last step was solved directly.
+// True if all contacts that carried load in the last step were solved directly.
 bool is_in_equilibrium(const IslandCount& count) { return count.has_rigid_contact && !count.has_soft_contact; }
 
 bool can_be_in_equilibrium(const RigidWorld& w, const IslandCount& count) {
   if (count.refused || count.not_calm || count.ground_contacts == 0) return false;
-  // Trees are solved by themselves.
+  // Resting trees have a solver of their own (resting_trees.h).
   if (!count.has_narrow_contact && count.ground_contacts == 1 && count.contacts == count.bodies) return false;
   if (count.bodies > kMaxBodies || count.contacts > kMaxContactsPerBody * count.bodies) return false;
   if (count.bodies > kMaxInHeap && kContactsPerSinglePoint * count.single_point_contacts > count.contacts) return false;
@@ -54,7 +55,7 @@ class StructureBuilder {
     for (std::uint32_t i = 0; i < node_of_.size(); ++i) node_of_[i] = kNoNode, members_[i] = {};
   }
 
-  // Lists of what each island at `roots` has, by its root.
+  // Lists nodes and contacts of each island at `roots`.
   void list(std::span<const std::uint32_t> roots) {
     for (const std::uint32_t root : roots) {
       members_[root].nodes = arena_.make<StructureNode>(islands_.at_root(root).bodies);
@@ -117,7 +118,7 @@ class StructureBuilder {
   const SolveBatch& batch_;
   const RestingIslands& islands_;
   Arena& arena_;
-  std::span<std::uint32_t> node_of_;  // by body's place
+  std::span<std::uint32_t> node_of_;  // by index of the body in the batch
   std::span<Members> members_;        // by root
 };
 

@@ -58,7 +58,7 @@ RestingTrees find_resting_trees(const RigidWorld& w, std::span<ContactConstraint
     const std::uint32_t begin = used;
     trees.nodes[used++] =
         make_node(w, body_at(is_b ? ground.b : ground.a), -1, first, is_b, gravity);
-    // Breadth first: every other contact of a body leads to a child, as there are no loops.
+    // Breadth first. There are no loops, so every other contact of a body leads to a child.
     for (std::uint32_t at = begin; at < used; ++at) {
       const std::uint32_t below = trees.nodes[at].constraint;
       const std::uint32_t index = trees.nodes[at].sign > 0.0f ? pairs[below].b : pairs[below].a;

@@ -8,8 +8,8 @@ namespace {
 
 bool is_dynamic(const RigidWorld& w, std::uint32_t body) { return is_movable(w.bodies.flags[body]); }
 
-// What swings on a spring is slow where it turns round, a hundredth of its size from where it will rest: it must be this many times
-// slower than what lies on something.
+// A body on a spring is slow at the turning point of its oscillation, a hundredth of its size from its rest position.
+// Its sleep speed is smaller by this factor.
 constexpr float kSpringSpeedShare = 0.1f;
 
 bool is_on_spring(const RigidWorld& w, std::uint32_t body) {
@@ -24,10 +24,10 @@ bool is_asleep(const RigidWorld& w, std::uint32_t body) {
   return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
 }
 
-// Union-find over bodies; the root of an island is its lowest body.
+// Disjoint sets of bodies; the root of an island is its lowest body.
 class Islands {
  public:
-  // Of those that are awake, in a step that has woken all who lie beside them: nobody sleeps in one.
+  // The islands of awake bodies. All bodies that touch them are awake by now, so no member of such an island sleeps.
   static Islands awake(const RigidWorld& w, Arena& arena) {
     Islands islands(w, arena);
     for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
@@ -77,8 +77,9 @@ void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
   w.events.sleep_changes.push_back({body_id(w, body), true});
 }
 
-// What is slow gains the time; what is faster than it may be pays by how much further it goes than it might have. So a limb of
-// a heap that slips once by a hair does not keep thousands awake, and what has begun to move has nothing left after a step or two.
+// The change of the still time. A body below its sleep speed accumulates still time. Above it, still time shrinks in
+// proportion to the excess: a limb of a heap that slips once by a hair does not keep thousands awake, and a body that
+// starts to move loses all still time within a step or two.
 float still_time_gain(const SleepTest& test, float seconds) {
   const float motion = test.speed + kPushoutWeight * test.pushout / seconds;
   if (motion <= test.rest_speed) return seconds;
@@ -114,22 +115,23 @@ SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float gravity) {
   const BodyForces& forces = w.bodies.forces[body];
   const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
   SleepTest test;
-  // Nothing holds a free body up: as long as it moves at all it goes on for ever.
+  // A free body has no support: it never stops once it moves.
   test.allowed = flags.can_sleep != 0 && (flags.constraint_use != 0 || !moves) && forces.force == Vec3{} &&
                  forces.torque == Vec3{} &&
                  (flags.constraint_use != 0 || gravity * absolute(forces.gravity_scale) == 0.0f);
-  // A body without shapes still has the extent of its inertia: turning is motion.
+  // A body without shapes has the radius of gyration of its inertia, so that rotation counts as motion.
   const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
   const float radius = max(mass.bounding_radius, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
   test.speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
-  // What is pushed apart in every step, and taken back by what it hangs on or is wedged in, goes nowhere.
+  // A wedged or jointed body may be pushed out in every step and return. Its pushout counts no more than its net
+  // motion.
   test.pushout = min(motion.pushed, length(motion.moved) + radius * length(motion.turned));
   test.rest_speed =
       kSleepSpeedShare * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * radius);
   if (is_on_spring(w, body)) test.rest_speed *= kSpringSpeedShare;
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
-    // What only turns round in a field is slow for a moment: at rest its speed must stay, too. And what floats comes near
-    // its place as slowly as it is near: it must be slow indeed.
+    // A body in a field may be slow for a moment at a turning point, so its velocity must be constant, too. A
+    // floating body approaches its equilibrium ever more slowly, so its sleep speed is much smaller.
     const FieldRest& field = w.field_rest[body];
     constexpr float kFloatingShare = 1.0f / 200.0f;
     if (field.acts == kFieldsOnly) test.rest_speed *= kFloatingShare;
@@ -186,8 +188,8 @@ void wake_neighbours(RigidWorld& w, std::uint32_t body) {
 void wake_touched(RigidWorld& w) {
   refresh_awake(w.bodies);
   if (w.bodies.sleeping_count == 0) return;
-  // Whoever wakes disturbs its own neighbours in turn, also those that an earlier link led to: nobody may sleep beside a
-  // body that is solved, since colours and islands know only those that are awake.
+  // A woken body wakes its own neighbours, also across edges that were visited before. Colours and batches contain
+  // awake bodies only, so no sleeping body may be connected to one of them.
   bool woken = true;
   while (woken) {
     woken = false;
@@ -212,7 +214,7 @@ void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {
     if (is_dynamic(w, i) && w.bodies.sleep[i].still_time < kTimeToSleep) is_restless[islands.root(i)] = 1;
   }
   for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) {
-    // Who lies on something that moves does not rest.
+    // A body on a moving kinematic body does not sleep.
     if (is_dynamic(w, a) && !is_dynamic(w, b) && can_wake_others(w, b)) is_restless[islands.root(a)] = 1;
     if (is_dynamic(w, b) && !is_dynamic(w, a) && can_wake_others(w, a)) is_restless[islands.root(b)] = 1;
   });

@@ -6,7 +6,7 @@ namespace gyre {
 
 namespace {
 
-// As long as fewer sleep for each body that is awake, finding out whom to leave alone costs more than asking.
+// With fewer sleeping bodies for each awake one, the search for active constraints costs more than it saves.
 constexpr std::size_t kAwakeForOneAsleep = 4;
 
 void add(Bitset& set, std::uint32_t slot) {
@@ -36,7 +36,7 @@ void activate_all_constraints(RigidWorld& w) {
 
 void find_active_constraints(RigidWorld& w) {
   const BodyStore& bodies = w.bodies;
-  // Between the parts of a step some may have fallen asleep.
+  // Islands may have fallen asleep between the pieces of an adaptive step.
   refresh_awake(w.bodies);
   if (w.active_constraints.all || kAwakeForOneAsleep * bodies.sleeping_count < bodies.awake.size())
     return activate_all_constraints(w);

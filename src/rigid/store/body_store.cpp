@@ -50,8 +50,8 @@ void remove_body_slot(BodyStore& store, std::uint32_t body) {
 
 namespace {
 
-// The inverse of `inertia` on the axes that are free, zero on the locked ones: the inverse of the sub-matrix, not the
-// sub-matrix of the inverse, since a locked axis takes up whatever torque it needs.
+// The inverse of `inertia` on the free axes, zero on locked ones. A locked axis takes up any torque, so this is the
+// inverse of the sub-matrix, not the sub-matrix of the inverse.
 Sym3 inverse_on_free_axes(Sym3 inertia, std::uint8_t locked) {
   if (locked & 1) inertia.xy = inertia.xz = 0.0f, inertia.xx = 1.0f;
   if (locked & 2) inertia.xy = inertia.yz = 0.0f, inertia.yy = 1.0f;

@@ -1,4 +1,4 @@
-// Boxes of shapes in lanes. See shape_boxes.h.
+// Bounding boxes of shapes in SIMD lanes. See shape_boxes.h.
 #include "rigid/store/shape_boxes.h"
 
 #include "math/wide_vec.h"
@@ -14,7 +14,7 @@ using Number = Wide<kBoxLanes>;
 using Vector = Vec3W<kBoxLanes>;
 using Rotation = QuatW<kBoxLanes>;
 
-// Four numbers of each lane's record that lie in a row.
+// Four consecutive floats of one record in each lane.
 struct FourEach {
   Number value[4];
   explicit FourEach(const float* const (&first)[kBoxLanes]) { Rows<kBoxLanes>::gather(first, 0, value); }
@@ -24,7 +24,7 @@ struct FourEach {
 static_assert(offsetof(Shape, extents) == offsetof(Shape, radius) + sizeof(float));
 static_assert(offsetof(Aabb, high) == offsetof(Aabb, low) + sizeof(Vec3));
 
-// Numbers that are taken one by one, too.
+// A vector of numbers whose lanes can be read one by one.
 struct Numbers {
   alignas(16) float value[kBoxLanes];
   void operator=(Number n) { n.store(value); }
@@ -38,23 +38,24 @@ struct Vectors {
   Vec3 operator[](int lane) const { return {x[lane], y[lane], z[lane]}; }
 };
 
-// Of the numbers that a side of a box is the sum of: more than rounding them to float, and what world_box() adds, can come to.
+// A bound of the rounding errors of a box side, relative to the sum of its terms: rounding to float, and the margin
+// that world_box() adds.
 constexpr float kSideRounding = 4.0e-6f;
-// The same of what a sweep adds, whose ends are boxes of their own.
+// The same with the terms of a sweep, whose ends are boxes of their own.
 constexpr float kSweepRounding = 1.0e-5f;
 
-// Shapes whose box is as far to both sides: that of the inner box, turned, and the radius around it.
+// True for shapes whose box is symmetric about their centre: a rotated inner box plus a radius.
 bool is_rounded_box(ShapeKind kind) {
   return kind == ShapeKind::sphere || kind == ShapeKind::box || kind == ShapeKind::capsule;
 }
 
-// Half sizes of the box of a box: |R| h, as bounds() has it.
+// Half extents of the box of a rotated box: |R| h, as in bounds().
 GYRE_INLINE Vector rotated_extents(const Rotation& q, const Vector& half) {
   const Mat3W<kBoxLanes> r = to_matrix(q);
   return half.x * absolute(r.x) + half.y * absolute(r.y) + half.z * absolute(r.z);
 }
 
-// How bodies go: at their velocities for some seconds, or as far as they went in this step.
+// The travel of bodies: at their velocities for `seconds`, or the motion of the present step.
 struct BodyTravel {
   Vec3 BodyMotion::*linear;
   Vec3 BodyMotion::*angular;
@@ -65,7 +66,7 @@ constexpr BodyTravel expected_travel(float seconds) {
 }
 constexpr BodyTravel kStepTravel{&BodyMotion::moved, &BodyMotion::turned, 1.0f};
 
-// From one to four shapes.
+// One to four shapes, one in each lane.
 class ShapeLanes {
  public:
   ShapeLanes(const RigidWorld& w, std::span<const std::uint32_t> shapes, const BodyTravel& travel) {
@@ -114,7 +115,7 @@ class ShapeLanes {
     return {world_box(collider.shape, {position, orientation}), motion};
   }
 
-  // Bit i: refit_box() leaves the fat box of lane i as it is, for certain; most rest in theirs for many steps.
+  // Bit i is set if refit_box() certainly leaves the fat box of lane i unchanged. Most fat boxes stay for many steps.
   unsigned needs_no_refit() const {
     const Number size = sizes_;
     Mask<kBoxLanes> fits = Mask<kBoxLanes>::splat(true);
@@ -125,17 +126,17 @@ class ShapeLanes {
     return inside & to_bits(fits);
   }
 
-  // Bit i: the whole way of lane i is inside its fat box, for certain.
+  // Bit i is set if the fat box of lane i certainly contains the shape at all moments of its motion.
   unsigned within_on_sweep() const {
     const Number turning = arc_, angle = angle_;
-    // Its end, and as far as its turn bulges between start and end.
+    // The end pose, and the sagitta of the arc between start and end.
     return within(turning + 0.125f * turning * angle, kSweepRounding,
                        [](Number, Number, Number, Number) {});
   }
 
  private:
-  // Bit i: the shape and a margin around it, and both after their way, are inside the fat box of lane i. Calls
-  // also(half of the shape's side, box's low and high, slack) for each axis.
+  // Bit i is set if the fat box of lane i contains the shape with a margin, at the start and at the end of its
+  // travel. Calls visit_axis(half extent, low and high side of the fat box, slack) for each axis.
   template <class Visit>
   unsigned within(Number margin, float rounding, const Visit& visit_axis) const {
     const float *lows[kBoxLanes], *highs[kBoxLanes];
@@ -168,7 +169,7 @@ class ShapeLanes {
 
   const ColliderShape* colliders_[kBoxLanes];
   const Aabb* boxes_[kBoxLanes];
-  DVec3 middles_[kBoxLanes];  // of the bodies' mass
+  DVec3 middles_[kBoxLanes];  // centres of mass of the bodies
   Vectors to_origin_, to_shape_, half_, translation_;
   Numbers sizes_, arc_, angle_, orientation_[4];
 };
@@ -181,7 +182,7 @@ ShapeBox find_box(const RigidWorld& w, std::uint32_t shape, float seconds) {
 
 namespace {
 
-// Calls look(shapes, their number, places of their bodies in the list) for the bodies' shapes, so many at once.
+// Calls visit(shapes, indices of their bodies in the list) for groups of up to four shapes.
 template <class Visit>
 void for_lanes(const RigidWorld& w, std::span<const std::uint32_t> bodies, const Visit& visit) {
   std::uint32_t shapes[kBoxLanes], owners[kBoxLanes];

@@ -9,7 +9,7 @@ namespace gyre {
 
 namespace {
 
-// How a contact waits.
+// The states of a contact in RigidWorld::inactive_contacts.
 constexpr std::uint8_t kActs = 0, kApart = 1, kSeparating = 2;
 
 bool has_gap(const RigidWorld& w, const Contact& contact) {
@@ -25,12 +25,12 @@ bool is_considered(const RigidWorld& w, const Contact& contact) {
          (is_active(w, contact.body_a) || is_active(w, contact.body_b)) && has_gap(w, contact);
 }
 
-// The two shapes of a contact on their way.
+// The motions of the two shapes of a contact.
 struct SweptPair {
   Sweep sweep_a, sweep_b;
   SweptShape a, b;
 
-  // `moved`: on their way; else where they are as the step begins.
+  // `swept`: along their motion; else at their poses at the beginning of the step.
   SweptPair(const RigidWorld& w, const Contact& contact, bool swept)
       : sweep_a(sweep_of_body(w.bodies, contact.body_a)), sweep_b(sweep_of_body(w.bodies, contact.body_b)) {
     if (!swept) sweep_a.moved = sweep_a.turned = sweep_b.moved = sweep_b.turned = {};
@@ -45,7 +45,7 @@ struct SweptPair {
   Gap gap(double time, double reach) const { return find_gap(a, b, time, reach); }
 };
 
-// The slowest that points of the contact part which touch, m/s; closing is below 0. `near`: m.
+// The smallest separating speed of the contact points within `tolerance` (m), m/s. Closing speeds are negative.
 float separating_speed(const RigidWorld& w, const Contact& contact, float tolerance) {
   float slowest = 1.0e30f;
   for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
@@ -73,7 +73,7 @@ std::int32_t movable_body(const RigidWorld& w, std::uint32_t body) {
   return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
 }
 
-// The manifold's points that touch, as a blow knows them; none: count 0.
+// The touching points of a manifold as an impact; count 0 if there are none.
 ImpactContact make_touching_impact(const RigidWorld& w, const Contact& contact, Manifold& manifold) {
   ContactConstraint constraint;
   constraint.body_a = movable_body(w, contact.body_a);
@@ -89,7 +89,7 @@ ImpactContact make_touching_impact(const RigidWorld& w, const Contact& contact, 
   int touching = 0;
   for (int k = 0; k < impact.count; ++k) {
     if (impact.points[k].separation > tolerance) {
-      impact.points[k].separation = 1.0e30f;  // never met
+      impact.points[k].separation = 1.0e30f;  // takes no part
       continue;
     }
     impact.points[k].separation = 0.0f;
@@ -99,7 +99,8 @@ ImpactContact make_touching_impact(const RigidWorld& w, const Contact& contact, 
   return impact;
 }
 
-// How far b is beyond the straight way, against a, at a share of a step: it starts slower than the mean speed and ends faster.
+// The offset of b relative to a from its straight path at a share of the step. Under constant acceleration a body
+// starts slower than its mean speed and ends faster.
 DVec3 acceleration_offset(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact, double share,
                     double seconds) {
   const auto velocity_change = [&](std::uint32_t body) {
@@ -117,16 +118,16 @@ double first_impact_time(const RigidWorld& w, const StepCheckpoint& before, cons
   const Impact impact = time_of_impact(pair.a, pair.b, 0.0, 1.0, 0.5 * tolerance);
   if (!impact.hit) return kNoImpact;
   const double end = pair.gap(1.0, 4.0 * tolerance).distance;
-  if (impact.time >= 1.0 || absolute(end) <= tolerance) return kNoImpact;  // just there
+  if (impact.time >= 1.0 || absolute(end) <= tolerance) return kNoImpact;  // touches just at the end
   const DVec3 off = acceleration_offset(w, before, contact, impact.time, seconds);
   constexpr double kTimeStep = 1.0e-3;
   const double dt = min(kTimeStep, 0.5 * impact.time);
   const Gap at_impact = pair.gap(impact.time, 4.0 * tolerance), before_impact = pair.gap(impact.time - dt, 1.0e30);
   const double closing =
-      dt > 0.0 ? (before_impact.distance - at_impact.distance) / dt : 0.0;  // m, in the whole step
+      dt > 0.0 ? (before_impact.distance - at_impact.distance) / dt : 0.0;  // m, for the whole step
   double time = impact.time;
   if (closing > 0.0) time += dot(off, at_impact.normal) / closing;
-  // Not beyond what the straight way says by more than a step's bend can: where the end overlaps it is met in any case.
+  // The correction may not move the impact out of the step: if the shapes overlap at the end, they meet in any case.
   if (!(time > 0.0)) time = impact.time;
   if (time >= 1.0) return end < 0.0 ? impact.time * seconds : kNoImpact;
   return time * seconds;
@@ -173,7 +174,7 @@ bool resolve_impacts(RigidWorld& w, ImpactScratch& scratch, float threshold) {
   }
   if (scratch.impacts.empty()) return false;
   const ContactBodies bodies{w.bodies.motion.data(), w.bodies.inertia.data()};
-  // No forces act within a blow, and no time passes: every point that touches and closes is met.
+  // No forces act during an impact and no time passes. Every touching point that closes takes part.
   const ImpactSettings settings{1.0f, threshold};
   record_approach(scratch.impacts, bodies);
   apply_restitution(scratch.impacts, bodies, settings);
@@ -221,7 +222,7 @@ FirstImpact find_first_impact(const RigidWorld& w, const StepCheckpoint& before,
       if (time < first.time) first = {time, false};
       continue;
     }
-    // Parting: back within the step? Then it turned between.
+    // A separating contact that is back at the end of the step had a turning point within it.
     const double tolerance = double(touch_distance(contact));
     const SweptPair pair(w, contact, true);
     const Gap start = pair.gap(0.0, 1.0e30), end = pair.gap(1.0, 1.0e30);
