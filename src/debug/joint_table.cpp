@@ -19,10 +19,10 @@ struct End {
 End find_end(const RigidWorld& w, std::int32_t body, Vec3 local_anchor, Quat local_frame, DVec3 world_anchor,
              DVec3 origin) {
   if (body == kNoBody) return {{}, difference(world_anchor, origin), local_frame};
-  const BodyPose& place = w.bodies.poses[body];
+  const BodyPose& body_pose = w.bodies.poses[body];
   return {body_id(w, std::uint32_t(body)),
-          difference(place.center, origin) + rotate(place.orientation, local_anchor),
-          normalized(place.orientation * local_frame)};
+          difference(body_pose.center, origin) + rotate(body_pose.orientation, local_anchor),
+          normalized(body_pose.orientation * local_frame)};
 }
 
 // A distance joint with two lengths is a rope, with one a rod; a spring has no limits.

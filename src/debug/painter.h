@@ -24,7 +24,7 @@ class Painter {
   // Starts a layer. Layers are drawn in order, each at most once.
   void begin(DrawLayer layer);
   void line(Vec3 from, Vec3 to, Color color);
-  void point(Vec3 place, Color color);
+  void point(Vec3 position, Color color);
   void box(Vec3 low, Vec3 high, Color color);
   // An arc about `center` from angle `low` to `high` (rad); u is angle 0 and v a quarter turn.
   void arc(Vec3 center, Vec3 u, Vec3 v, float low, float high, Color color);

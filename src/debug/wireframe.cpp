@@ -111,7 +111,7 @@ void Wire::shape(const Capsule& c) {
     arc(side * end, x, side * y, 2);
     arc(side * end, z, side * y, 2);
   }
-  for (const Vec3 way : {x, -x, z, -z}) line(way - end, way + end);
+  for (const Vec3 side : {x, -x, z, -z}) line(side - end, side + end);
 }
 
 void Wire::shape(const Cylinder& c) {
@@ -119,14 +119,14 @@ void Wire::shape(const Cylinder& c) {
   const Vec3 end{0, c.half_height, 0};
   circle(end, x, z);
   circle(-end, x, z);
-  for (const Vec3 way : {x, -x, z, -z}) line(way - end, way + end);
+  for (const Vec3 side : {x, -x, z, -z}) line(side - end, side + end);
 }
 
 void Wire::shape(const Cone& c) {
   const Vec3 x{c.radius, 0, 0}, z{0, 0, c.radius};
   const Vec3 end{0, c.half_height, 0};
   circle(-end, x, z);
-  for (const Vec3 way : {x, -x, z, -z}) line(way - end, end);
+  for (const Vec3 side : {x, -x, z, -z}) line(side - end, end);
 }
 
 void Wire::shape(const Plane& plane) {
@@ -157,10 +157,10 @@ void Wire::field(const HeightField& field) {
   };
   for (std::uint32_t row = 0; row < field.rows; ++row) {
     for (std::uint32_t column = 0; column < field.columns; ++column) {
-      const bool here = solid(column, row, 0, 0);
-      if (here || solid(column, row, 0, 1)) line(field.sample(column, row), field.sample(column + 1, row));
-      if (here || solid(column, row, 1, 0)) line(field.sample(column, row), field.sample(column, row + 1));
-      if (here) line(field.sample(column, row + 1), field.sample(column + 1, row));
+      const bool is_solid = solid(column, row, 0, 0);
+      if (is_solid || solid(column, row, 0, 1)) line(field.sample(column, row), field.sample(column + 1, row));
+      if (is_solid || solid(column, row, 1, 0)) line(field.sample(column, row), field.sample(column, row + 1));
+      if (is_solid) line(field.sample(column, row + 1), field.sample(column + 1, row));
     }
   }
 }

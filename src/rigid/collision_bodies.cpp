@@ -55,7 +55,7 @@ void CollisionBodies::describe(std::uint32_t i) {
   body.linear_velocity = motion.linear_velocity;
   body.angular_velocity = motion.angular_velocity;
   body.reach = mass.bounding_radius;
-  body.awake = may_move(w_, i);
+  body.awake = can_move(w_, i);
   bodies_[i] = make_collision_body(body, seconds_);
   centers_[i] = {body.center, body.reach};
   awake_[i] = body.awake ? 1 : 0;

@@ -13,7 +13,7 @@
 namespace gyre {
 
 // True if the body may move within the step. The narrow phase skips contacts between two bodies that do not.
-inline bool may_move(const RigidWorld& w, std::uint32_t body) {
+inline bool can_move(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   if (flags.awake == 0 || flags.frozen != 0 || flags.type == BodyType::fixed) return false;
   const BodyMotion& motion = w.bodies.motion[body];

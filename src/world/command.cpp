@@ -72,9 +72,9 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
     mass.center = given.center;
   }
   for (const ShapeId id : bodies.shapes[body]) {
-    const Transform& place = w.shapes.body_from_shape[id.index];
-    const float reach = outer_radius(w.shapes.colliders[id.index].shape, inverse_times(place, mass.center));
-    mass.bounding_radius = max(mass.bounding_radius, reach);
+    const Transform& local = w.shapes.body_from_shape[id.index];
+    const float distance = outer_radius(w.shapes.colliders[id.index].shape, inverse_times(local, mass.center));
+    mass.bounding_radius = max(mass.bounding_radius, distance);
   }
   bodies.masses.set(body, mass);
   // The velocity is that of the centre of mass, so it changes when the centre moves in the body.

@@ -19,7 +19,7 @@ void wake_joint_bodies(RigidWorld& w, const JointRecord& joint) {
   }
 }
 
-// The joints of a body, ascending.
+// The sorted list of the joints of a body.
 template <class List>
 void insert_sorted(List& list, std::uint32_t slot) {
   std::size_t at = 0;
@@ -35,7 +35,7 @@ void erase_slot(List& list, std::uint32_t slot) {
   }
 }
 
-// The bodies of a joint that disables their collision.
+// The key of the body pair of a joint, by which its collision is disabled.
 std::uint64_t block_key(const JointRecord& joint) {
   return pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
 }
@@ -74,9 +74,9 @@ struct JointEnd {
 };
 JointEnd joint_end(const RigidWorld& w, std::int32_t body, DVec3 anchor, Quat world_from_joint) {
   if (body == kNoBody) return {{}, world_from_joint, anchor};
-  const BodyPose& place = w.bodies.poses[body];
-  return {rotate_inverse(place.orientation, difference(anchor, place.center)),
-          normalized(conjugate(place.orientation) * world_from_joint), anchor};
+  const BodyPose& body_pose = w.bodies.poses[body];
+  return {rotate_inverse(body_pose.orientation, difference(anchor, body_pose.center)),
+          normalized(conjugate(body_pose.orientation) * world_from_joint), anchor};
 }
 
 DVec3 default_anchor_b(const RigidWorld& w, const JointRecord& joint, const JointDef& def) {
@@ -127,14 +127,14 @@ JointFrames make_frames(const JointDef& def) {
 
 // The effective mass of the two bodies along a line through their anchors, kg; 0 if nothing can move.
 double mass_along(const RigidWorld& w, const JointRecord& joint, DVec3 anchor_a, DVec3 anchor_b) {
-  const Vec3 way = normalized(difference(anchor_b, anchor_a), {0, 1, 0});
+  const Vec3 direction = normalized(difference(anchor_b, anchor_a), {0, 1, 0});
   double inverse = 0.0;
   const auto add = [&](std::int32_t body, DVec3 anchor) {
     if (body == kNoBody) return;
     const std::size_t i = std::size_t(body);
-    const BodyPose& place = w.bodies.poses[i];
-    const BodyInertia at = world_inertia(w.bodies.masses[i], w.bodies.flags[i], place.orientation);
-    const Vec3 arm = cross(difference(anchor, place.center), way);
+    const BodyPose& body_pose = w.bodies.poses[i];
+    const BodyInertia at = world_inertia(w.bodies.masses[i], w.bodies.flags[i], body_pose.orientation);
+    const Vec3 arm = cross(difference(anchor, body_pose.center), direction);
     inverse += double(at.inverse_mass) + double(dot(arm, at.inverse * arm));
   };
   add(joint.body_a, anchor_a);
@@ -184,7 +184,7 @@ void set_axis_of(JointAxisRecord& to, const JointAxisDef& def) {
   to.friction = def.friction;
 }
 
-// The limits of a definition on its main axis.
+// The main axis of a definition: its limits, motor and friction.
 JointAxisDef main_axis_of(const JointDef& def) {
   JointAxisDef axis{.motion = def.limits ? AxisMotion::limited : AxisMotion::free};
   if (def.limits) axis.limits = *def.limits;
@@ -269,10 +269,10 @@ void add_path(RigidWorld& w, JointDetail& detail, const JointDef& def, const Joi
   detail.start = path_length(curve, detail.path_place);
   detail.reference_a = path_frame(curve, detail.path_place);
   // By default the range of an open path is its whole length.
-  JointAxisRecord& way = detail.axes[int(JointAxis::linear_x)];
+  JointAxisRecord& path_axis = detail.axes[int(JointAxis::linear_x)];
   if (def.path_closed || def.limits) return;
-  way.motion = AxisMotion::limited;
-  way.limits = {-detail.start, path_length(curve, curve.end()) - detail.start};
+  path_axis.motion = AxisMotion::limited;
+  path_axis.limits = {-detail.start, path_length(curve, curve.end()) - detail.start};
 }
 
 // The points of other paths form a closed curve.

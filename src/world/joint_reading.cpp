@@ -107,13 +107,13 @@ float force_in_record(const JointRecord& joint, const JointState& s) {
 }  // namespace
 
 JointAnchors joint_anchors(const RigidWorld& w, const JointRecord& joint) {
-  const auto place = [&](std::int32_t body, Vec3 local, DVec3 world) {
+  const auto position = [&](std::int32_t body, Vec3 local, DVec3 world) {
     if (body == kNoBody) return world;
     const BodyPose& at = w.bodies.poses[std::size_t(body)];
     return at.center + rotate(at.orientation, local);
   };
-  return {place(joint.body_a, joint.local_anchor_a, joint.world_anchor_a),
-          place(joint.body_b, joint.local_anchor_b, joint.world_anchor_b)};
+  return {position(joint.body_a, joint.local_anchor_a, joint.world_anchor_a),
+          position(joint.body_b, joint.local_anchor_b, joint.world_anchor_b)};
 }
 
 JointReading read_joint(const RigidWorld& w, std::uint32_t slot) {

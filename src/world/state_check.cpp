@@ -59,8 +59,8 @@ const char* fault_in_sizes(const RigidWorld& w) {
 const char* fault_in_body(const BodyStore& bodies, std::uint32_t i) {
   const BodyFlags& flags = bodies.flags[i];
   if (flags.type > BodyType::dynamic) return "a body of unknown type";
-  const BodyPose& place = bodies.poses[i];
-  if (!is_finite(place.center) || !is_finite(place.orientation)) return "a body whose place is not finite";
+  const BodyPose& body_pose = bodies.poses[i];
+  if (!is_finite(body_pose.center) || !is_finite(body_pose.orientation)) return "a body whose place is not finite";
   if (!is_finite(bodies.motion[i].linear_velocity) || !is_finite(bodies.motion[i].angular_velocity)) {
     return "a body whose velocity is not finite";
   }
@@ -101,8 +101,8 @@ const char* fault_in_shape(const RigidWorld& w, std::uint32_t i) {
   const std::uint32_t body = w.shapes.bodies[i];
   if (!w.bodies.ids.live(body)) return "a shape without a body";
   if (proxy.body != body) return "a proxy of another body than its shape";
-  const Transform& place = w.shapes.body_from_shape[i];
-  if (!is_finite(place.position) || !is_finite(place.orientation)) return "a shape whose place is not finite";
+  const Transform& local = w.shapes.body_from_shape[i];
+  if (!is_finite(local.position) || !is_finite(local.orientation)) return "a shape whose place is not finite";
   const Aabb& box = proxy.fat_box;
   if (!is_finite(box.low) || !is_finite(box.high)) return "a fat box that is not finite";
   for (int axis = 0; axis < 3; ++axis) {

@@ -20,7 +20,7 @@ bool is_validated(const WorldState& s, StageName stage) {
   constexpr std::uint64_t kEvery = 16;
   const RigidWorld& w = s.rigid;
   const bool small = w.bodies.motion.size() + w.shapes.colliders.size() + w.contacts.live < kSmall;
-  return s.walks && (small || (s.step_count % kEvery == 0 && int(stage) == kStageCount - 1));
+  return s.validates && (small || (s.step_count % kEvery == 0 && int(stage) == kStageCount - 1));
 }
 
 void validate_after(const WorldState& s, StageName stage) {
@@ -71,8 +71,8 @@ void report_stiffness(WorldState& s) {
   const SpringMode mode = find_fastest_mode(w, s.arena);
   if (mode.springs == 0) return;
   const double longest = critical_step(motion.integrator, mode.frequency, mode.decay);
-  const double parts = double(s.solve.report.parts);
-  const double step = parts > 0.0 ? double(w.settings.last_step) / parts : double(w.settings.last_substep);
+  const double pieces = double(s.solve.report.parts);
+  const double step = pieces > 0.0 ? double(w.settings.last_step) / pieces : double(w.settings.last_substep);
   if (step <= longest) return;
   const JointRecord& joint = w.joints.records[mode.joint];
   const std::int32_t body = joint.body_b != kNoBody ? joint.body_b : joint.body_a;
@@ -103,7 +103,7 @@ void count_manifold_updates(WorldState& s) {
   std::size_t updates = 0;
   for (const Contact& contact : s.rigid.contacts.contacts) {
     if (contact.manifold_room == 0 || contact.ended != 0 || contact.recycled != 0) continue;
-    if (may_move(s.rigid, contact.body_a) || may_move(s.rigid, contact.body_b)) ++updates;
+    if (can_move(s.rigid, contact.body_a) || can_move(s.rigid, contact.body_b)) ++updates;
   }
   count(s, CounterName::full_looks, updates);
 }

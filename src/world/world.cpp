@@ -96,10 +96,10 @@ bool refuse_change(WorldState& s, const Error& why) {
 }  // namespace
 
 bool World::set_threads(int threads) {
-  WorldDef wanted = state_->def;
-  wanted.threads = threads;
-  Error why = check_change(*state_, wanted);
-  if (why.code == ErrorCode::none && wanted.host_tasks.run != nullptr) {
+  WorldDef new_def = state_->def;
+  new_def.threads = threads;
+  Error why = check_change(*state_, new_def);
+  if (why.code == ErrorCode::none && new_def.host_tasks.run != nullptr) {
     why = make_error(ErrorCode::unsupported, "threads: this world uses the host's own tasks");
   }
   if (why.code != ErrorCode::none) return refuse_change(*state_, why);
@@ -108,9 +108,9 @@ bool World::set_threads(int threads) {
   return true;
 }
 bool World::set_broad_phase(BroadPhaseKind kind) {
-  WorldDef wanted = state_->def;
-  wanted.stepping.broad_phase = kind;
-  const Error why = check_change(*state_, wanted);
+  WorldDef new_def = state_->def;
+  new_def.stepping.broad_phase = kind;
+  const Error why = check_change(*state_, new_def);
   if (why.code != ErrorCode::none) return refuse_change(*state_, why);
   // The next step builds it from all boxes, including the changed ones.
   state_->rigid.broadphase = make_broadphase(kind);

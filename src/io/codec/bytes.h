@@ -121,9 +121,9 @@ class ByteReader {
       fail();
       return {};
     }
-    const std::span<const std::byte> part = bytes_.subspan(offset_, std::size_t(count));
+    const std::span<const std::byte> bytes = bytes_.subspan(offset_, std::size_t(count));
     offset_ += std::size_t(count);
-    return part;
+    return bytes;
   }
   // A count of items of at least `min_bytes` each. If fewer bytes remain, the result is 0 and the reader fails.
   std::size_t get_count(std::size_t min_bytes) {

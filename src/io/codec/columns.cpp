@@ -27,7 +27,7 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
   state.queried_changes.store(kNothingQueried, std::memory_order_relaxed);
   // Loaded columns may break rules that the engine never breaks, such as fat boxes that contain their shapes.
   // Stepping them is harmless. State validation would blame the engine for them.
-  state.walks = false;
+  state.validates = false;
   clear_reports(state);
   if (state.log != nullptr) state.log->on_restored(state);
 }

@@ -92,10 +92,10 @@ bool edges_fit(const Hull& hull) {
   }
   if (2 * hull.edges.size() != hull.face_vertices.size()) return false;
   for (const HullEdge& edge : hull.edges) {
-    std::uint16_t& there = half_edge(edge.from, edge.to);
+    std::uint16_t& forward = half_edge(edge.from, edge.to);
     std::uint16_t& back = half_edge(edge.to, edge.from);
-    if (there != edge.left || back != edge.right || edge.left == edge.right) return false;
-    there = back = kNone;
+    if (forward != edge.left || back != edge.right || edge.left == edge.right) return false;
+    forward = back = kNone;
   }
   return true;
 }
@@ -259,8 +259,8 @@ bool GeometryTable::add(const AnyShape& shape) {
 }
 
 const Geometry* GeometryTable::find(std::uint64_t content_hash) const {
-  const std::uint32_t* const place = index_of_.find(content_hash);
-  return place != nullptr ? &items_[*place] : nullptr;
+  const std::uint32_t* const index = index_of_.find(content_hash);
+  return index != nullptr ? &items_[*index] : nullptr;
 }
 
 void write_geometry(ByteWriter& out, const Geometry& geometry) {

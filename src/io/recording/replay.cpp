@@ -41,14 +41,14 @@ class Keyframes {
 
   void thin_out() {
     interval_ *= 2;
-    std::vector<Frame> kept;
+    std::vector<Frame> remaining;
     bytes_ = 0;
     for (Frame& frame : frames_) {
       if (frame.position % interval_ != 0) continue;
       bytes_ += frame.state.bytes();
-      kept.push_back(std::move(frame));
+      remaining.push_back(std::move(frame));
     }
-    frames_ = std::move(kept);
+    frames_ = std::move(remaining);
   }
 
   std::vector<Frame> frames_;  // by position, ascending

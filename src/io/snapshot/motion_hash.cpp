@@ -23,12 +23,12 @@ std::uint64_t word_of(const float* two) {
   return word;
 }
 
-void hash_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPose& place) {
+void hash_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPose& pose) {
   static_assert(kMotionLinear == 0 && kMotionAngular == 3, "six floats in a row");
   const float* const velocities = reinterpret_cast<const float*>(&motion);
-  const float* const turn = reinterpret_cast<const float*>(&place.orientation);
-  lanes.update(word_of(velocities), word_of(velocities + 2), word_of(velocities + 4), word_of(place.center.x));
-  lanes.update(word_of(place.center.y), word_of(place.center.z), word_of(turn), word_of(turn + 2));
+  const float* const quaternion = reinterpret_cast<const float*>(&pose.orientation);
+  lanes.update(word_of(velocities), word_of(velocities + 2), word_of(velocities + 4), word_of(pose.center.x));
+  lanes.update(word_of(pose.center.y), word_of(pose.center.z), word_of(quaternion), word_of(quaternion + 2));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(MotionHash, IsThatOfALoadedWorldAfterTheSameStep) {
   }
 }
 
-// What was awake as the step began is hashed even if it fell asleep in it: its place may have changed.
+// A body that fell asleep in the step is hashed, since its pose may have changed.
 TEST(MotionHash, IncludesWhatFellAsleepInTheStep) {
   World world = *World::create();
   scenes::add_fixed(world, {}, Plane{});

@@ -288,9 +288,9 @@ Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number
   std::span<const std::byte> body;
   Error e = read_header(in, body);
   if (e.code != ErrorCode::none) return e;
-  ByteReader parts(body);
-  e = read_geometry_table(parts, geometry);
-  if (e.code == ErrorCode::none) e = read_columns(parts, geometry, columns);
+  ByteReader content(body);
+  e = read_geometry_table(content, geometry);
+  if (e.code == ErrorCode::none) e = read_columns(content, geometry, columns);
   if (e.code != ErrorCode::none) return e;
   columns.rigid.world_number = world_number;
   return rebuild_derived(columns.rigid);

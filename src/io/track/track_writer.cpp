@@ -92,10 +92,10 @@ void TrackWriter::update_body(const WorldState& state, std::uint32_t index, bool
     return;
   }
   const auto generation = std::uint16_t(bodies.ids.generation(index));
-  const bool known = written.present && written.body.generation == generation;
+  const bool was_written = written.present && written.body.generation == generation;
   const std::uint32_t model =
-      known && !models_stale_ ? written.body.model : model_of(state.rigid, index, emit);
-  const bool same = known && model == written.body.model;
+      was_written && !models_stale_ ? written.body.model : model_of(state.rigid, index, emit);
+  const bool same = was_written && model == written.body.model;
   if (!same) ++set_version_;
   if (same && !key) {
     update_known_body(state, written);
@@ -110,7 +110,7 @@ void TrackWriter::update_body(const WorldState& state, std::uint32_t index, bool
   const Pose pose = origin_pose(bodies, index);
   if (is_finite(pose)) {
     written.next = round_pose(pose, start_.steps);
-  } else if (!known) {
+  } else if (!was_written) {
     written.next = round_pose({}, start_.steps);
   }
   written.body.index = index;
