@@ -158,8 +158,10 @@ void Wire::field(const HeightField& field) {
   for (std::uint32_t row = 0; row < field.rows; ++row) {
     for (std::uint32_t column = 0; column < field.columns; ++column) {
       const bool is_solid = solid(column, row, 0, 0);
-      if (is_solid || solid(column, row, 0, 1)) line(field.sample(column, row), field.sample(column + 1, row));
-      if (is_solid || solid(column, row, 1, 0)) line(field.sample(column, row), field.sample(column, row + 1));
+      if (is_solid || solid(column, row, 0, 1))
+        line(field.sample(column, row), field.sample(column + 1, row));
+      if (is_solid || solid(column, row, 1, 0))
+        line(field.sample(column, row), field.sample(column, row + 1));
       if (is_solid) line(field.sample(column, row + 1), field.sample(column + 1, row));
     }
   }

@@ -60,7 +60,7 @@ bool finite_state(const BodyMotion& motion, Quat orientation) {
   const Vec3 nothing = (motion.linear_velocity - motion.linear_velocity) +
                        (motion.angular_velocity - motion.angular_velocity) + (motion.moved - motion.moved);
   const float rotation = (orientation.x - orientation.x) + (orientation.y - orientation.y) +
-                     (orientation.z - orientation.z) + (orientation.w - orientation.w);
+                         (orientation.z - orientation.z) + (orientation.w - orientation.w);
   return nothing.x + nothing.y + nothing.z + rotation == 0.0f;
 }
 
@@ -223,8 +223,9 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
   const ArenaScope scope(arena);
   CollisionBodies bodies(w, arena, seconds);
   bodies.make(tasks, arena);
-  const CollideInput input{w.shapes.colliders, bodies.collision_bodies(), bodies.centers(), bodies.awake(),
-                           w.shapes.proxies,   w.active_constraints.contacts,    recycle_contacts};
+  const CollideInput input{w.shapes.colliders, bodies.collision_bodies(), bodies.centers(),
+                           bodies.awake(),     w.shapes.proxies,          w.active_constraints.contacts,
+                           recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
   remove_internal_edge_contacts(w.contacts, input, w.touches.beside_resting, arena, tasks, w.internal_edges);
 }

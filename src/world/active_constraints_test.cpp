@@ -77,7 +77,9 @@ struct WorldPair {
   World active, all;
   int reduced_steps = 0;
 
-  WorldPair(World first, World second) : active(std::move(first)), all(std::move(second)) { constraints_of(all).all = true; }
+  WorldPair(World first, World second) : active(std::move(first)), all(std::move(second)) {
+    constraints_of(all).all = true;
+  }
   template <class Drive>
   void step(Drive&& drive) {
     for (World* const world : {&active, &all}) {

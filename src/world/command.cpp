@@ -73,7 +73,8 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   }
   for (const ShapeId id : bodies.shapes[body]) {
     const Transform& local = w.shapes.body_from_shape[id.index];
-    const float distance = outer_radius(w.shapes.colliders[id.index].shape, inverse_times(local, mass.center));
+    const float distance =
+        outer_radius(w.shapes.colliders[id.index].shape, inverse_times(local, mass.center));
     mass.bounding_radius = max(mass.bounding_radius, distance);
   }
   bodies.masses.set(body, mass);
@@ -238,9 +239,10 @@ CommandResult execute(WorldState& s, const MoveKinematic& c) {
   const Pose pose{c.pose.position, orientation};
   const DVec3 center = pose * w.bodies.masses[body].center;
   BodyMotion& motion = w.bodies.motion[body];
-  motion.linear_velocity = finite_or((1.0f / c.seconds) * difference(center, w.bodies.poses[body].center) + Vec3{}, {});
-  motion.angular_velocity =
-      finite_or((1.0f / c.seconds) * rotation_between(w.bodies.poses[body].orientation, orientation) + Vec3{}, {});
+  motion.linear_velocity =
+      finite_or((1.0f / c.seconds) * difference(center, w.bodies.poses[body].center) + Vec3{}, {});
+  motion.angular_velocity = finite_or(
+      (1.0f / c.seconds) * rotation_between(w.bodies.poses[body].orientation, orientation) + Vec3{}, {});
   mark_moved(w, body);
   return {true, {}, {}, {}};
 }

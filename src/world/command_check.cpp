@@ -61,10 +61,13 @@ Error check_material(const char* field, const Material& m) {
     return name;
   };
   Error e = check_range(member("static_friction"), m.static_friction, 0.0f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range(member("dynamic_friction"), m.dynamic_friction, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none)
+    e = check_range(member("dynamic_friction"), m.dynamic_friction, 0.0f, 1.0e6f);
   if (e.code == ErrorCode::none) e = check_range(member("restitution"), m.restitution, 0.0f, 1.0f);
-  if (e.code == ErrorCode::none) e = check_range(member("rolling_friction"), m.rolling_friction, 0.0f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range(member("spinning_friction"), m.spinning_friction, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none)
+    e = check_range(member("rolling_friction"), m.rolling_friction, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none)
+    e = check_range(member("spinning_friction"), m.spinning_friction, 0.0f, 1.0e6f);
   return e;
 }
 

@@ -71,7 +71,8 @@ BodyImpulse explosion_impulse_on(const RigidWorld& w, std::uint32_t body, const 
       if (!(distance > 0.0)) return;
       const double facing = -dot(from, rotate(at.orientation, patch.normal)) / distance;
       if (facing <= 0.0) return;
-      const DVec3 patch_impulse = (scale * pressure_at(def, distance) * facing * patch.area / distance) * from;
+      const DVec3 patch_impulse =
+          (scale * pressure_at(def, distance) * facing * patch.area / distance) * from;
       impulse.linear += patch_impulse;
       impulse.angular += cross(position - w.bodies.poses[body].center, patch_impulse);
     });

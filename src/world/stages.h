@@ -37,7 +37,7 @@ enum class CounterName : std::uint8_t {
   joints,          // in the solver
   swept_joints,    // of these: iterative ones, such as springs, ropes and graphs too dense for a direct solve
   awake_bodies,
-  fast_bodies,     // bodies that CCD swept
+  fast_bodies,  // bodies that CCD swept
 };
 constexpr int kCounterCount = 10;
 inline constexpr const char* kCounterNames[kCounterCount] = {"refitted_boxes", "new_pairs", "contacts",

@@ -60,7 +60,8 @@ const char* fault_in_body(const BodyStore& bodies, std::uint32_t i) {
   const BodyFlags& flags = bodies.flags[i];
   if (flags.type > BodyType::dynamic) return "a body of unknown type";
   const BodyPose& body_pose = bodies.poses[i];
-  if (!is_finite(body_pose.center) || !is_finite(body_pose.orientation)) return "a body whose place is not finite";
+  if (!is_finite(body_pose.center) || !is_finite(body_pose.orientation))
+    return "a body whose place is not finite";
   if (!is_finite(bodies.motion[i].linear_velocity) || !is_finite(bodies.motion[i].angular_velocity)) {
     return "a body whose velocity is not finite";
   }

@@ -87,7 +87,8 @@ void for_each_field(T& r, F&& f) {
 }
 template <Is<BodyFlags> T, class F>
 void for_each_field(T& r, F&& f) {
-  f(r.type), f(r.awake), f(r.can_sleep), f(r.continuous), f(r.frozen), f(r.locked_linear), f(r.locked_angular), f(r.constraint_use);
+  f(r.type), f(r.awake), f(r.can_sleep), f(r.continuous), f(r.frozen), f(r.locked_linear),
+      f(r.locked_angular), f(r.constraint_use);
 }
 template <Is<BodySleep> T, class F>
 void for_each_field(T& r, F&& f) {

@@ -117,7 +117,8 @@ Error StateValidator::list_of_awake() const {
                     listed ? "is" : "is not");
     if (listed) ++next;
   }
-  if (sleeping_count != w_.bodies.sleeping_count) return broken("%zu bodies sleep, not %zu", sleeping_count, w_.bodies.sleeping_count);
+  if (sleeping_count != w_.bodies.sleeping_count)
+    return broken("%zu bodies sleep, not %zu", sleeping_count, w_.bodies.sleeping_count);
   return next == w_.bodies.awake.size() ? Error{}
                                         : broken("the list of awake bodies has more than there are");
 }
@@ -128,12 +129,14 @@ Error StateValidator::active_constraints() const {
   for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
     const Contact& contact = w_.contacts.contacts[slot];
     if (contact.manifold_room == 0 || w_.active_constraints.contacts.test(slot)) continue;
-    if (moves(contact.body_a) || moves(contact.body_b)) return broken("contact %u has an awake body, but nobody asks it", slot);
+    if (moves(contact.body_a) || moves(contact.body_b))
+      return broken("contact %u has an awake body, but nobody asks it", slot);
   }
   for (std::uint32_t slot = 0; slot < w_.joints.ids.capacity(); ++slot) {
     if (!w_.joints.ids.live(slot) || w_.active_constraints.joints.test(slot)) continue;
     const JointRecord& joint = w_.joints.records[slot];
-    if ((joint.body_a != kNoBody && moves(std::uint32_t(joint.body_a))) || (joint.body_b != kNoBody && moves(std::uint32_t(joint.body_b))))
+    if ((joint.body_a != kNoBody && moves(std::uint32_t(joint.body_a))) ||
+        (joint.body_b != kNoBody && moves(std::uint32_t(joint.body_b))))
       return broken("joint %u has an awake body, but nobody asks it", slot);
   }
   return {};
@@ -195,7 +198,8 @@ Error StateValidator::contacts_have_pairs() const {
       return broken("contact %u is of bodies %u and %u, which a joint keeps from colliding", slot,
                     contact.body_a, contact.body_b);
     // The stage link_islands removes pairs whose fat boxes separated.
-    if (!is_past(StageName::link_islands) || !is_in_broadphase(contact.shape_a) || !is_in_broadphase(contact.shape_b))
+    if (!is_past(StageName::link_islands) || !is_in_broadphase(contact.shape_a) ||
+        !is_in_broadphase(contact.shape_b))
       continue;
     if (!overlap(a.fat_box, b.fat_box))
       return broken("contact %u is of shapes %u and %u, whose fat boxes are apart", slot, contact.shape_a,

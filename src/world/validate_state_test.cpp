@@ -18,7 +18,8 @@ namespace {
 class StageValidator {
  public:
   explicit StageValidator(World& world) : state_(world.state()) {
-    state_.stage_hook = {[](void* user, const char* stage) { static_cast<StageValidator*>(user)->validate(stage); }, this};
+    state_.stage_hook = {
+        [](void* user, const char* stage) { static_cast<StageValidator*>(user)->validate(stage); }, this};
   }
   ~StageValidator() { state_.stage_hook = {}; }
   StageValidator(const StageValidator&) = delete;
@@ -152,7 +153,8 @@ TEST(ValidateState, FindsListsThatDisagree) {
                     "body 1 lists joint 1, which is between others"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.awake.pop_back(); }),
                     "body 8 is awake but is not listed so"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { ++s.rigid.bodies.sleeping_count; }), "4 bodies sleep, not 5"));
+  EXPECT_TRUE(
+      tells(fault_after([](WorldState& s) { ++s.rigid.bodies.sleeping_count; }), "4 bodies sleep, not 5"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.active_constraints.contacts.reset_all(); }),
                     "has an awake body, but nobody asks it"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.active_constraints.joints.reset_all(); }),

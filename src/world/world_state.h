@@ -60,10 +60,10 @@ struct WorldState {
   CommandLog* log = nullptr;
   Array<Problem> problems;
   Array<std::uint32_t> frozen;
-  RigidEvents published_events;              // events of the last step; rigid.events collects those of the next
-  Events events;                  // spans of `published_events`
+  RigidEvents published_events;  // events of the last step; rigid.events collects those of the next
+  Events events;                 // spans of `published_events`
   bool stepping = false;
-  bool validates = true;              // builds with GYRE_VALIDATE: state validation after each stage
+  bool validates = true;          // builds with GYRE_VALIDATE: state validation after each stage
   std::uint16_t number = 0;       // of this world, in its ids
   // The number of entries of rigid.shapes.changed that queries have given to the broad phase; kNothingQueried if it
   // may not be built yet. Queries update it under the lock, since several threads may query at once.

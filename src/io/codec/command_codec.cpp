@@ -53,7 +53,8 @@ class FieldReader {
   void shape(AnyShape& value) { value = read_shape(in_, geometry_); }
   template <class T>
   void count(std::vector<T>& list) {
-    constexpr std::size_t kMinBytes = std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
+    constexpr std::size_t kMinBytes =
+        std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
     list.resize(in_.get_count(kMinBytes));
   }
   template <class T>

@@ -136,7 +136,8 @@ struct Recorder::Log final : CommandLog {
   std::uint32_t chunks = 0;
   std::uint64_t steps = 0;
   bool frame_due = false;  // a step was done since the last frame
-  bool whole_hash_due = false;  // only the motion of the last step was hashed, and no command has changed the state since
+  bool whole_hash_due =
+      false;  // only the motion of the last step was hashed, and no command has changed the state since
   bool failed = false;
 };
 

@@ -19,7 +19,7 @@ class StateCopy {
  private:
   StateColumns others_;            // the columns that are not arrays, and the events of the next step
   Array<std::byte> packed_;        // the arrays, in the order of for_each_column
-  Array<std::uint32_t> changed_;  // boxes that the broad phase had not seen
+  Array<std::uint32_t> changed_;   // boxes that the broad phase had not seen
 };
 
 }  // namespace gyre

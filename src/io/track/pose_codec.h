@@ -28,13 +28,12 @@ constexpr int kMaxPositionBits = 40;
 constexpr int kMinPositionBits = -20;
 constexpr int kMaxOrientationBits = 20;
 constexpr int kMinOrientationBits = 8;
-constexpr std::int64_t kMaxPosition = std::int64_t(1)
-                                      << 51;  // rounding steps from the origin; poses farther out are moved there
+constexpr std::int64_t kMaxPosition =
+    std::int64_t(1) << 51;  // rounding steps from the origin; poses farther out are moved there
 
 struct RoundedPose {
   std::int64_t position[3] = {0, 0, 0};
-  std::int64_t orientation[4] = {
-      0, 0, 0, 0};  // x, y, z, w; the largest follows from the others
+  std::int64_t orientation[4] = {0, 0, 0, 0};  // x, y, z, w; the largest follows from the others
   int largest = 3;
 
   bool operator==(const RoundedPose&) const = default;

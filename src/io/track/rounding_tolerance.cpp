@@ -25,12 +25,15 @@ RoundingTolerance find_rounding_tolerance(const BodyPose& body_pose, const BodyM
   if (!(square > 0.9 && square < 1.1)) return {};
   double quaternion = 0.5;
   for (const double component : components)
-    quaternion = min(quaternion, distance_to_rounding(component * (power_of_two(steps.orientation_bits) / std::sqrt(square))));
+    quaternion =
+        min(quaternion,
+            distance_to_rounding(component * (power_of_two(steps.orientation_bits) / std::sqrt(square))));
   // If each component changes by t, the unit quaternion changes by 2 t over a length of at least 0.94.
   quaternion *= power_of_two(-steps.orientation_bits) / 2.5;
 
   double center = 0.5;
-  for (int i = 0; i < 3; ++i) center = min(center, distance_to_rounding(pose.position[i] * power_of_two(steps.position_bits)));
+  for (int i = 0; i < 3; ++i)
+    center = min(center, distance_to_rounding(pose.position[i] * power_of_two(steps.position_bits)));
   center *= power_of_two(-steps.position_bits);
   // A rotation also moves the origin about the centre of mass: by 8 |m| times the change at most. Floats add their
   // last bits.

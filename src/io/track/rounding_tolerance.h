@@ -11,7 +11,7 @@ namespace gyre {
 
 struct RoundingTolerance {
   double center = -1.0;  // m, each coordinate of the centre of mass
-  float quaternion = -1.0f;    // each component of the quaternion
+  float quaternion = -1.0f;  // each component of the quaternion
 };
 
 // No tolerance if the pose is too close to a rounding boundary.
@@ -23,7 +23,8 @@ inline bool is_within(const BodyPose& now, const BodyPose& reference, RoundingTo
   const Quat a = now.orientation, b = reference.orientation;
   const float change =
       max(max(std::fabs(a.x - b.x), std::fabs(a.y - b.y)), max(std::fabs(a.z - b.z), std::fabs(a.w - b.w)));
-  const double distance = max(std::fabs(displacement.x), max(std::fabs(displacement.y), std::fabs(displacement.z)));
+  const double distance =
+      max(std::fabs(displacement.x), max(std::fabs(displacement.y), std::fabs(displacement.z)));
   return distance <= max(tolerance.center, 0.0) && change <= max(tolerance.quaternion, 0.0f);
 }
 

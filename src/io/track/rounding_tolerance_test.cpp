@@ -15,15 +15,19 @@ BodyMass mass_at(Vec3 center) {
   mass.center = center;
   return mass;
 }
-Pose origin_of(const BodyPose& body_pose, Vec3 mass_center) { return origin_pose(body_pose, mass_at(mass_center)); }
+Pose origin_of(const BodyPose& body_pose, Vec3 mass_center) {
+  return origin_pose(body_pose, mass_at(mass_center));
+}
 
 // Moves by the whole tolerance, each component in a random direction.
 BodyPose moved(Random& random, const BodyPose& body_pose, RoundingTolerance tolerance) {
   const auto sign = [&] { return random.next(2) == 0 ? -0.999 : 0.999; };
   BodyPose to = body_pose;
-  to.center = body_pose.center + DVec3{sign() * tolerance.center, sign() * tolerance.center, sign() * tolerance.center};
+  to.center = body_pose.center +
+              DVec3{sign() * tolerance.center, sign() * tolerance.center, sign() * tolerance.center};
   const auto change = [&](float component) { return component + float(sign()) * tolerance.quaternion; };
-  to.orientation = {change(body_pose.orientation.x), change(body_pose.orientation.y), change(body_pose.orientation.z), change(body_pose.orientation.w)};
+  to.orientation = {change(body_pose.orientation.x), change(body_pose.orientation.y),
+                    change(body_pose.orientation.z), change(body_pose.orientation.w)};
   return to;
 }
 

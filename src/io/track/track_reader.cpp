@@ -96,7 +96,7 @@ bool PoseTrack::Reader::read_chunk(const Chunk& chunk, Error& why) {
     }
     case ChunkKind::track_model:
       return append(models,
-                  [&](TrackModel& model) { return read_track_model(chunk.payload, geometry, model); });
+                    [&](TrackModel& model) { return read_track_model(chunk.payload, geometry, model); });
     case ChunkKind::track_label:
       if (!append(labels, [&](StoredLabel& label) { return read_track_label(chunk.payload, label); }))
         return false;

@@ -114,7 +114,8 @@ TEST(Track, ShowsEachPoseRoundedByItselfWhileAPileComesToRest) {
   for (std::size_t f = 0; f < recorded.frames.size(); ++f) {
     ASSERT_EQ(track->seek(f).code, ErrorCode::none);
     for (std::size_t i = 0; i < recorded.frames[f].poses.size(); ++i)
-      ASSERT_EQ(track->frame().poses[i], unrounded(round_pose(recorded.frames[f].poses[i], {}), {})) << f << ' ' << i;
+      ASSERT_EQ(track->frame().poses[i], unrounded(round_pose(recorded.frames[f].poses[i], {}), {}))
+          << f << ' ' << i;
   }
 }
 

@@ -48,7 +48,8 @@ std::uint32_t TrackWriter::model_of(const RigidWorld& w, std::uint32_t body, Emi
 }
 
 void TrackWriter::update_rounded_pose(const BodyPose& body_pose, const BodyMass& mass, WrittenBody& written) {
-  constexpr int kMinUnchangedFrames = 8;  // frames; a slowly moving body would need a new rounding soon anyway
+  constexpr int kMinUnchangedFrames =
+      8;  // frames; a slowly moving body would need a new rounding soon anyway
   const Pose pose = origin_pose(body_pose, mass);
   if (is_finite(pose)) {
     const RoundedPose next = round_pose(pose, start_.steps);
@@ -58,8 +59,9 @@ void TrackWriter::update_rounded_pose(const BodyPose& body_pose, const BodyMass&
       written.settled = false;
     }
   }
-  written.tolerance =
-      written.unchanged_frames < kMinUnchangedFrames ? RoundingTolerance{} : find_rounding_tolerance(body_pose, mass, start_.steps);
+  written.tolerance = written.unchanged_frames < kMinUnchangedFrames
+                          ? RoundingTolerance{}
+                          : find_rounding_tolerance(body_pose, mass, start_.steps);
   written.reference = body_pose;
   written.reference_mass_center = mass.center;
 }
@@ -71,7 +73,8 @@ void TrackWriter::update_known_body(const WorldState& state, WrittenBody& writte
   const BodyMass& mass = bodies.masses[index];
   const bool awake = is_simulated(bodies.flags[index]);
   ++written.unchanged_frames;
-  if (!is_within(body_pose, written.reference, written.tolerance) || !(mass.center == written.reference_mass_center))
+  if (!is_within(body_pose, written.reference, written.tolerance) ||
+      !(mass.center == written.reference_mass_center))
     update_rounded_pose(body_pose, mass, written);
   written.moved = awake || written.unchanged_frames == 0;
   if (awake == written.body.awake && written.moved == written.body.active) return;

@@ -29,9 +29,9 @@ class TrackWriter {
   struct WrittenBody {
     TrackedBody body;
     bool present = false;
-    bool moved = false;    // `next` must be written
-    int unchanged_frames = 0;          // frames since `next` changed
-    bool settled = false;  // the bits of `next` are `settled_bits` until it changes
+    bool moved = false;        // `next` must be written
+    int unchanged_frames = 0;  // frames since `next` changed
+    bool settled = false;      // the bits of `next` are `settled_bits` until it changes
     int settled_size = 0;
     std::uint64_t settled_bits = 0;
     RoundedPose next;

@@ -77,8 +77,8 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
     // As numbers without a sign, kNoBody is kNoIndex.
     return tie(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_ties[slot]);
   };
-  const FilteredList contacts =
-      parallel_filter_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.active_constraints.contacts);
+  const FilteredList contacts = parallel_filter_among(tasks, arena, manifolds, w.contacts.with_manifolds,
+                                                      w.active_constraints.contacts);
   const FilteredList joints = parallel_filter_among(tasks, arena, works, w.active_constraints.joints);
   return {contacts.list, joints.list, contact_ties, joint_ties, contacts.size + joints.size};
 }

@@ -193,8 +193,8 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
     const std::uint32_t i = w.bodies.awake[n];
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
-    return is_fast(motion.moved, motion.turned, mass.bounding_radius, mass.size) && is_movable(w.bodies.flags[i]) &&
-           !w.bodies.shapes[i].empty();
+    return is_fast(motion.moved, motion.turned, mass.bounding_radius, mass.size) &&
+           is_movable(w.bodies.flags[i]) && !w.bodies.shapes[i].empty();
   };
   for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), goes_fast).list) {
     const std::uint32_t i = w.bodies.awake[n];

@@ -39,7 +39,7 @@ void lock(const BodyFlags& flags, Mat6& matrix, Vec6& right) {
 }
 
 void add_radial_forces(const RigidWorld& w, const FieldBody& from, const BodyState& state, Vec6& force,
-               Mat6& stiffness) {
+                       Mat6& stiffness) {
   const double mass = double(w.bodies.masses[from.body].mass);
   for (const std::uint32_t slot : from.fields) {
     const FieldRecord& field = w.fields[slot];
@@ -50,43 +50,43 @@ void add_radial_forces(const RigidWorld& w, const FieldBody& from, const BodySta
   }
 }
 
-// The component of gravity into a buoyant medium; 0 or less: no lift.
+// The component of gravity into a buoyant medium; 0 or less: no buoyancy.
 double weight_along(const RigidWorld& w, const FieldRecord& field) {
   return field.kind == FieldKind::buoyancy ? -double(dot(w.settings.gravity, field.normal)) : 0.0;
 }
 
-void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyState& state, Vec6& force,
-               Mat6& stiffness) {
+void add_buoyancy_forces(const RigidWorld& w, const FieldBody& from, const BodyState& state, Vec6& force,
+                         Mat6& stiffness) {
   for (const std::uint32_t slot : from.fields) {
     const double gravity = weight_along(w, w.fields[slot]);
-    if (gravity > 0.0) add_lift(w, w.fields[slot], from.body, state, gravity, force, stiffness);
+    if (gravity > 0.0) add_buoyancy(w, w.fields[slot], from.body, state, gravity, force, stiffness);
   }
 }
 
-// Lift and torque at the end of the sub-step: v = v* + h / m F(x + h v) along gravity. The right side falls with v,
+// Buoyancy and its torque at the end of the sub-step: v = v* + h / m F(x + h v) along gravity. The right side falls with v,
 // so there is one root. It is found by regula falsi (the Illinois variant: M. Dowell, P. Jarratt, 1971).
-void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodyState& state, double h,
-                        Vec6& force, Mat6& stiffness) {
+void add_implicit_buoyancy(const RigidWorld& w, const FieldBody& from, const BodyState& state, double h,
+                           Vec6& force, Mat6& stiffness) {
   const DVec3 gravity(w.settings.gravity);
   const DVec3 up = gravity / -length(gravity);
   const double compliance = h / double(w.bodies.masses[from.body].mass), start = dot(state.velocity, up);
-  const auto lift_at = [&](double speed, Vec6& lift, Mat6& stiff) {
+  const auto buoyancy_at = [&](double speed, Vec6& buoyancy, Mat6& stiff) {
     BodyState predicted = state;
     predicted.center += h * state.velocity + (h * (speed - start)) * up;
-    add_lifts(w, from, predicted, lift, stiff);
-    return speed - start - compliance * dot(lift.linear(), up);
+    add_buoyancy_forces(w, from, predicted, buoyancy, stiff);
+    return speed - start - compliance * dot(buoyancy.linear(), up);
   };
   double low = start;
-  Vec6 lift;
+  Vec6 buoyancy;
   Mat6 stiff;
-  double low_value = lift_at(low, lift, stiff);
-  double high = low - low_value, speed = low;  // the lift is largest where the body rises least
+  double low_value = buoyancy_at(low, buoyancy, stiff);
+  double high = low - low_value, speed = low;  // the buoyancy is largest where the body rises least
   if (low_value < 0.0) {
-    double high_value = lift_at(high, lift = {}, stiff = {});
+    double high_value = buoyancy_at(high, buoyancy = {}, stiff = {});
     speed = high;
     for (int i = 0; i < 40 && high - low > 1.0e-9 * (absolute(high) + absolute(low)); ++i) {
       speed = low - low_value * (high - low) / (high_value - low_value);
-      const double value = lift_at(speed, lift = {}, stiff = {});
+      const double value = buoyancy_at(speed, buoyancy = {}, stiff = {});
       if (value > 0.0) {
         high = speed, high_value = value;
         low_value *= 0.5;
@@ -96,8 +96,8 @@ void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodySt
       }
     }
   }
-  add(force, lift);
-  // The lift is implicit along gravity, so only the rotational stiffness remains.
+  add(force, buoyancy);
+  // The buoyancy is implicit along gravity, so only the rotational stiffness remains.
   for (int i = 3; i < 6; ++i) {
     for (int j = 3; j < 6; ++j) stiffness.m[i][j] += stiff.m[i][j];
   }
@@ -128,10 +128,10 @@ void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
   Vec6 force;
   Mat6 stiffness;
   add_radial_forces(w, from, state, force, stiffness);
-  if (from.has_implicit_lift) {
-    add_implicit_lifts(w, from, state, h, force, stiffness);
+  if (from.has_implicit_buoyancy) {
+    add_implicit_buoyancy(w, from, state, h, force, stiffness);
   } else {
-    add_lifts(w, from, state, force, stiffness);
+    add_buoyancy_forces(w, from, state, force, stiffness);
   }
   Mat6 matrix = mass_matrix(w.bodies.masses[from.body], state);
   const double filter = filter_of(matrix, stiffness, h) * h * h;
@@ -159,24 +159,24 @@ void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
 }
 
 // True if the fully submerged body would oscillate with w h > 0.3 about a cut across its thinnest part.
-bool needs_implicit_lift(const RigidWorld& w, const FieldBody& from, double h) {
+bool needs_implicit_buoyancy(const RigidWorld& w, const FieldBody& from, double h) {
   constexpr double kStiff = 0.1;
-  double lift = 0.0;
+  double buoyancy = 0.0;
   for (const std::uint32_t slot : from.fields) {
     const FieldRecord& field = w.fields[slot];
     const double gravity = weight_along(w, field);
     if (!(gravity > 0.0)) continue;
     for (const ShapeId id : w.bodies.shapes[from.body]) {
       if (acts_on_shape(w, field, id.index))
-        lift += double(field.density) * gravity * volume_of(w.shapes.colliders[id.index].shape);
+        buoyancy += double(field.density) * gravity * volume_of(w.shapes.colliders[id.index].shape);
     }
   }
   const BodyMass& mass = w.bodies.masses[from.body];
-  return h * h * lift > kStiff * double(mass.mass) * 2.0 * double(mass.size);
+  return h * h * buoyancy > kStiff * double(mass.mass) * 2.0 * double(mass.size);
 }
 
 void prepare_fields(RigidWorld& w, FieldBody& from, double h) {
-  from.has_implicit_lift = needs_implicit_lift(w, from, h);
+  from.has_implicit_buoyancy = needs_implicit_buoyancy(w, from, h);
   const BodyState state = state_of(w, from.body);
   FieldRest& rest = w.field_rest[from.body];
   rest = {w.bodies.motion[from.body].linear_velocity, w.bodies.motion[from.body].angular_velocity,
@@ -212,9 +212,10 @@ Vec6 force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const st
     const FieldRecord& field = w.fields[slot];
     if (field.kind == FieldKind::radial)
       add(force,
-          make_vec6(double(w.bodies.masses[body].mass) * radial_force_at(field, state.center).acceleration, {}));
+          make_vec6(double(w.bodies.masses[body].mass) * radial_force_at(field, state.center).acceleration,
+                    {}));
     if (const double gravity = weight_along(w, field); gravity > 0.0)
-      add_lift(w, field, body, state, gravity, force, stiffness);
+      add_buoyancy(w, field, body, state, gravity, force, stiffness);
     if (!field.is_medium()) continue;
     const Vec6 stream = stream_at(field, state.center, time);
     Vec6 slip = stream;
@@ -235,7 +236,8 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
     return w.fields[slot].is_live() && acts_on(w, w.fields[slot], body, w.bodies.poses[body].center);
   };
   const auto is_candidate = [&](std::uint32_t body) {
-    return is_movable(w.bodies.flags[body]) && (free || w.bodies.flags[body].constraint_use != kNotConstrained);
+    return is_movable(w.bodies.flags[body]) &&
+           (free || w.bodies.flags[body].constraint_use != kNotConstrained);
   };
   const std::uint32_t slots = std::uint32_t(w.fields.size());
   std::size_t count = 0, links = 0;

@@ -3,12 +3,12 @@
 // Between the forces and the constraints of a sub-step of length h, the velocities u = (v, w) of a body become u + d
 // with
 //   (M + h D + c h^2 K) d = h (F + D (s - u)) - c h^2 K (u - u0)
-// M is the mass, D the drag against the stream s, F the radial forces and lifts at the present pose, K their
+// M is the mass, D the drag against the stream s, F the radial forces and buoyancy at the present pose, K their
 // stiffness, u0 the velocity at the beginning of the sub-step. Drag is implicit: velocities approach that of the
-// stream at any drag and never pass it. Radial forces and lifts are explicit, with a mass that is enlarged by c h^2
+// stream at any drag and never pass it. Radial forces and buoyancy are explicit, with a mass that is enlarged by c h^2
 // K. With c = 1/4 linear ones oscillate at the frequency W of the trapezoidal rule, tan(W h / 2) = w h / 2, without
 // loss or gain at any stiffness; c grows to 4 if w h exceeds 1. The term vanishes at constant velocity. A very light
-// or thin body would dive through the surface within a sub-step and be thrown out; its lift is implicit, at the pose
+// or thin body would dive through the surface within a sub-step and be thrown out; its buoyancy is implicit, at the pose
 // at the end of the sub-step. docs/fields.md has the derivation.
 // D and the list of fields are found once a step; s, F and K in every sub-step.
 //
@@ -29,8 +29,8 @@ struct FieldBody {
   std::span<Mat6> drags{};                  // D of each field; zero for radial fields
   Mat6 drag;                                // their sum
   bool has_drag = false;
-  bool has_implicit_lift = false;  // the lift is implicit
-  bool unconstrained = false;                  // no constraint acts on the body
+  bool has_implicit_buoyancy = false;  // the buoyancy is implicit
+  bool unconstrained = false;          // no constraint acts on the body
   Vec3 linear_before, angular_before;  // u0
 };
 

@@ -102,11 +102,10 @@ bool is_round(ShapeKind kind) {
 
 // The frame of a shape in world axes, about the centre of mass of its body.
 struct ShapeState {
-  DQuat orientation;    // world_from_shape
+  DQuat orientation;  // world_from_shape
   DVec3 offset;  // of the shape's origin from the centre of mass, world axes
 };
-ShapeState state_of(const RigidWorld& w, std::uint32_t body, std::uint32_t shape,
-                      const BodyState& state) {
+ShapeState state_of(const RigidWorld& w, std::uint32_t body, std::uint32_t shape, const BodyState& state) {
   const Transform& local = w.shapes.body_from_shape[shape];
   return {state.orientation * to_double(local.orientation),
           rotate(state.orientation, DVec3(local.position) - DVec3(w.bodies.masses[body].center))};
@@ -160,8 +159,7 @@ double submerged_share(const RigidWorld& w, const FieldRecord& field, std::uint3
   return whole > 0.0 ? below / whole : 0.0;
 }
 
-void add_linear_drag(const RigidWorld& w, std::uint32_t body, const BodyState& state, double rate,
-                     Mat6& to) {
+void add_linear_drag(const RigidWorld& w, std::uint32_t body, const BodyState& state, double rate, Mat6& to) {
   const BodyMass& mass = w.bodies.masses[body];
   const Sym3 inertia = rotate_inertia(to_float(state.orientation), mass.inertia);
   for (int i = 0; i < 3; ++i) to.m[i][i] += rate * double(mass.mass);
@@ -216,7 +214,7 @@ bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, 
     const double height = dot(DVec3(field.normal), center) - field.offset,
                  step = double(w.settings.last_step);
     const double max_displacement = step * (double(length(w.bodies.motion[body].linear_velocity)) +
-                               step * double(length(w.settings.gravity)));
+                                            step * double(length(w.settings.gravity)));
     if (height > double(w.bodies.masses[body].bounding_radius) + max_displacement) return false;
   }
   for (const ShapeId id : shapes) {
@@ -242,8 +240,8 @@ void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body,
     for (const ShapeId id : w.bodies.shapes[body]) {
       if (!acts_on_shape(w, field, id.index)) continue;
       const ShapeState at = state_of(w, body, id.index, state);
-      sum.add_scaled(
-          half, shape_drag(w.shapes.colliders[id.index].shape, at, plane_of(field, state, at), against));
+      sum.add_scaled(half,
+                     shape_drag(w.shapes.colliders[id.index].shape, at, plane_of(field, state, at), against));
     }
     add_drag_matrix(matrix, sum);
   }
@@ -272,8 +270,8 @@ RadialForce radial_force_at(const FieldRecord& field, DVec3 position) {
   return out;
 }
 
-void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyState& state,
-              double gravity, Vec6& force, Mat6& stiffness) {
+void add_buoyancy(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyState& state,
+                  double gravity, Vec6& force, Mat6& stiffness) {
   const DVec3 up(field.normal);
   const double weight = double(field.density) * gravity;
   for (const ShapeId id : w.bodies.shapes[body]) {
@@ -283,10 +281,10 @@ void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body,
     const SubmergedPart part = submerged_part(w.shapes.colliders[id.index].shape, plane.normal, plane.level);
     if (!(part.volume > 0.0)) continue;
     const DVec3 arm = at.offset + rotate(at.orientation, part.center);
-    const double lift = weight * part.volume;
-    add(force, make_vec6(lift * up, cross(arm, lift * up)));
-    // A body that hangs below its centre of lift swings back like a pendulum.
-    const double swing = max(lift * dot(arm, up), 0.0);
+    const double buoyancy = weight * part.volume;
+    add(force, make_vec6(buoyancy * up, cross(arm, buoyancy * up)));
+    // A body that hangs below its centre of buoyancy swings back like a pendulum.
+    const double swing = max(buoyancy * dot(arm, up), 0.0);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) stiffness.m[3 + i][3 + j] += swing * ((i == j ? 1.0 : 0.0) - up[i] * up[j]);
     }

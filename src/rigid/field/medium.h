@@ -1,5 +1,5 @@
 // The effect of a medium or a radial field on one body at one moment: the velocity of the stream, the drag on the
-// surface of the body, and the lift of its displaced volume. Six-vectors are (linear, angular) about the centre of
+// surface of the body, and the buoyancy of its displaced volume. Six-vectors are (linear, angular) about the centre of
 // mass, in world axes.
 //
 // In: the record of a field, shapes and pose of a body. Out: matrices and forces in double; the body is not changed.
@@ -34,7 +34,7 @@ void add_row(Mat6& to, double weight, const Vec6& row);
 // The state of a body within a sub-step.
 struct BodyState {
   DVec3 center;  // of mass
-  DQuat orientation;    // world_from_body
+  DQuat orientation;  // world_from_body
   DVec3 velocity, spin;
 };
 
@@ -58,9 +58,9 @@ struct RadialForce {
 };
 RadialForce radial_force_at(const FieldRecord& field, DVec3 position);
 
-// The lift of the submerged part, and its stiffness: d(force)/d(motion) = -stiffness, without terms that would lower
+// The buoyancy of the submerged part, and its stiffness: d(force)/d(motion) = -stiffness, without terms that would lower
 // the stiffness.
-void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyState& state,
-              double gravity, Vec6& force, Mat6& stiffness);
+void add_buoyancy(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyState& state,
+                  double gravity, Vec6& force, Mat6& stiffness);
 
 }  // namespace gyre

@@ -341,7 +341,8 @@ SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::spa
     for (const std::int32_t body : {joint.body_a, joint.body_b}) {
       if (body == kNoBody) continue;
       BodyFlags& flags = w.bodies.flags[std::size_t(body)];
-      if (flags.type == BodyType::kinematic || flags.constraint_use != kNotConstrained) flags.constraint_use = kPoseRead;
+      if (flags.type == BodyType::kinematic || flags.constraint_use != kNotConstrained)
+        flags.constraint_use = kPoseRead;
     }
   }
   const Members members = part_bodies(w, batch, places, springs.first(count), arena);

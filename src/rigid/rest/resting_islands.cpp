@@ -37,7 +37,8 @@ bool is_still(const RigidWorld& w, std::int32_t body) {
 
 RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
                                std::span<const ColoringPair> pairs, std::span<const JointEdge> joints,
-                               const SolveBatch& batch, std::span<const std::uint32_t> local_index, Arena& arena)
+                               const SolveBatch& batch, std::span<const std::uint32_t> local_index,
+                               Arena& arena)
     : w_(w),
       batch_(batch),
       local_index_(local_index),
@@ -62,7 +63,8 @@ void RestingIslands::unite(std::uint32_t index_a, std::uint32_t index_b) {
   parent_[max(a, b)] = min(a, b);
 }
 
-void RestingIslands::unite_constrained(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints) {
+void RestingIslands::unite_constrained(std::span<const ColoringPair> pairs,
+                                       std::span<const JointEdge> joints) {
   for (const ColoringPair& pair : pairs) {
     if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) unite(pair.a, pair.b);
   }
@@ -137,7 +139,7 @@ IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std
 }
 
 std::span<std::uint32_t> find_kernel_positions(std::span<const std::uint32_t> order, std::size_t constraints,
-                                            Arena& arena) {
+                                               Arena& arena) {
   const std::span<std::uint32_t> positions = arena.make<std::uint32_t>(constraints);
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     if (order[i] != kNoIndex) positions[order[i]] = i;

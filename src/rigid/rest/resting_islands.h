@@ -13,8 +13,6 @@
 
 namespace gyre {
 
-constexpr std::uint32_t kNoIndex = 0xffffffffu;
-
 // A slower body is slow: it may belong to a resting island.
 constexpr float kSlowSpeedShare = 0.1f;
 // A slower body is calm. Islands with loops are only solved directly if all their bodies are calm.
@@ -32,12 +30,12 @@ struct IslandCount {
   std::uint32_t single_point_contacts = 0;
   std::uint32_t first = kNoIndex;  // its last contact with the fixed world
   float smallest = 0.0f;           // m, the smallest bounding radius of its bodies
-  bool refused = false;   // cannot be at rest: a fast or locked body, a joint, moving ground, no friction
-  bool not_calm = false;  // a body is slow but not calm
+  bool refused = false;      // cannot be at rest: a fast or locked body, a joint, moving ground, no friction
+  bool not_calm = false;     // a body is slow but not calm
   bool not_settled = false;  // a body is calm but not settled
   bool has_narrow_contact = false;  // a contact has one or two points
-  bool has_soft_contact = false;   // a contact carried load in the last step and was solved iteratively
-  bool has_rigid_contact = false;      // a contact carried load in the last step and was solved directly
+  bool has_soft_contact = false;    // a contact carried load in the last step and was solved iteratively
+  bool has_rigid_contact = false;   // a contact carried load in the last step and was solved directly
 };
 
 class RestingIslands {
@@ -82,6 +80,6 @@ IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std
 // The position of each constraint in the memory of the kernels: `order` has `width` constraint indices for each
 // block. Out: by constraint its index in `order`.
 std::span<std::uint32_t> find_kernel_positions(std::span<const std::uint32_t> order, std::size_t constraints,
-                                            Arena& arena);
+                                               Arena& arena);
 
 }  // namespace gyre

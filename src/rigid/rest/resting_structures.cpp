@@ -17,34 +17,37 @@ constexpr std::uint32_t kContactsPerSinglePoint = 8;
 // An island that was not in equilibrium in the last step is tried again after this many steps, by its number of
 // bodies, since a trial of a large island is dear. The interval of large islands follows the time in which their
 // smallest body falls through its own size: sooner it cannot fall far.
-constexpr std::uint32_t kMaxSmall = 4, kMinLarge = 128;
+constexpr std::uint32_t kMaxSmall = 4, kMaxMedium = 128;
 constexpr std::uint64_t kRetryInterval = 8, kMinRetryIntervalIfLarge = 16;
 constexpr float kFallTimesIfLarge = 4.0f, kMaxRetryIntervalIfLarge = 1024.0f;
 
 bool is_due_this_step(const RigidWorld& w, const IslandCount& count) {
   if (count.bodies <= kMaxSmall) return true;
-  if (count.bodies <= kMinLarge) return w.steps % kRetryInterval == 0;
+  if (count.bodies <= kMaxMedium) return w.steps % kRetryInterval == 0;
   const float fall = std::sqrt(count.smallest / length(w.settings.gravity));  // s
   const float interval = min(kFallTimesIfLarge * fall / w.settings.last_step, kMaxRetryIntervalIfLarge);
   return w.steps % max(std::uint64_t(interval), kMinRetryIntervalIfLarge) == 0;
 }
 
 // True if all contacts that carried load in the last step were solved directly.
-bool is_in_equilibrium(const IslandCount& count) { return count.has_rigid_contact && !count.has_soft_contact; }
+bool is_in_equilibrium(const IslandCount& count) {
+  return count.has_rigid_contact && !count.has_soft_contact;
+}
 
 bool can_be_in_equilibrium(const RigidWorld& w, const IslandCount& count) {
   if (count.refused || count.not_calm || count.ground_contacts == 0) return false;
   // Resting trees have a solver of their own (resting_trees.h).
   if (!count.has_narrow_contact && count.ground_contacts == 1 && count.contacts == count.bodies) return false;
   if (count.bodies > kMaxBodies || count.contacts > kMaxContactsPerBody * count.bodies) return false;
-  if (count.bodies > kMaxInHeap && kContactsPerSinglePoint * count.single_point_contacts > count.contacts) return false;
+  if (count.bodies > kMaxInHeap && kContactsPerSinglePoint * count.single_point_contacts > count.contacts)
+    return false;
   return is_in_equilibrium(count) || is_due_this_step(w, count);
 }
 
 class StructureBuilder {
  public:
   StructureBuilder(const RigidWorld& w, std::span<const ColoringPair> pairs, const SolveBatch& batch,
-                 const RestingIslands& islands, Arena& arena)
+                   const RestingIslands& islands, Arena& arena)
       : w_(w),
         pairs_(pairs),
         batch_(batch),
@@ -145,7 +148,7 @@ std::span<RestingStructure> find_resting_structures(const RigidWorld& w, std::sp
 }
 
 void set_structure_positions(std::span<RestingStructure> structures, std::span<const std::uint32_t> positions,
-                              int width) {
+                             int width) {
   for (RestingStructure& structure : structures) {
     for (StructureContact& contact : structure.contacts) {
       contact.block = positions[contact.constraint] / std::uint32_t(width);

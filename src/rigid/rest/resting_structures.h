@@ -16,6 +16,6 @@ std::span<RestingStructure> find_resting_structures(const RigidWorld& w, std::sp
 
 // Stores in each contact its block and lane in the memory of the kernels of `width` lanes (find_kernel_positions()).
 void set_structure_positions(std::span<RestingStructure> structures, std::span<const std::uint32_t> positions,
-                              int width);
+                             int width);
 
 }  // namespace gyre

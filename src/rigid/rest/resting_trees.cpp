@@ -5,8 +5,8 @@ namespace gyre {
 namespace {
 
 bool is_resting_tree(const IslandCount& count) {
-  return !count.refused && !count.has_narrow_contact && count.ground_contacts == 1 && count.contacts == count.bodies &&
-         count.bodies > 0;
+  return !count.refused && !count.has_narrow_contact && count.ground_contacts == 1 &&
+         count.contacts == count.bodies && count.bodies > 0;
 }
 
 TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, std::uint32_t constraint,
@@ -56,8 +56,7 @@ RestingTrees find_resting_trees(const RigidWorld& w, std::span<ContactConstraint
     const ColoringPair& ground = pairs[first];
     const bool is_b = ground.b != ColoringPair::kNone;
     const std::uint32_t begin = used;
-    trees.nodes[used++] =
-        make_node(w, body_at(is_b ? ground.b : ground.a), -1, first, is_b, gravity);
+    trees.nodes[used++] = make_node(w, body_at(is_b ? ground.b : ground.a), -1, first, is_b, gravity);
     // Breadth first. There are no loops, so every other contact of a body leads to a child.
     for (std::uint32_t at = begin; at < used; ++at) {
       const std::uint32_t below = trees.nodes[at].constraint;

@@ -126,8 +126,7 @@ SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float gravity) {
   // A wedged or jointed body may be pushed out in every step and return. Its pushout counts no more than its net
   // motion.
   test.pushout = min(motion.pushed, length(motion.moved) + radius * length(motion.turned));
-  test.rest_speed =
-      kSleepSpeedShare * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * radius);
+  test.rest_speed = kSleepSpeedShare * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * radius);
   if (is_on_spring(w, body)) test.rest_speed *= kSpringSpeedShare;
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
     // A body in a field may be slow for a moment at a turning point, so its velocity must be constant, too. A

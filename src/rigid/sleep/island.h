@@ -57,7 +57,7 @@ struct SleepTest {
   bool allowed =
       false;  // may sleep: the user allows it, no force acts on the body, and it is supported (or nothing moves it)
   float speed = 0.0f;       // m/s, of the centre of mass plus that of the farthest point about it
-  float pushout = 0.0f;      // m, in the last step
+  float pushout = 0.0f;     // m, in the last step
   float rest_speed = 0.0f;  // m/s; a slower body is still
 };
 // `gravity`: its length, m/s^2.

@@ -64,7 +64,8 @@ void part_bodies(BatchContext& solve, Arena& arena, TaskSystem& tasks) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       if (kinds[i] == in_run) continue;
       const BodyFlags& flags = w.bodies.flags[bodies[i]];
-      kinds[i] = flags.constraint_use != kNotConstrained ? std::uint8_t(kinds[i] + rotation_mode(solve, bodies[i]))
+      kinds[i] = flags.constraint_use != kNotConstrained
+                     ? std::uint8_t(kinds[i] + rotation_mode(solve, bodies[i]))
                  : !solve.is_smooth || !is_movable(flags) ? flies
                                                           : stop_at_impact;
     }

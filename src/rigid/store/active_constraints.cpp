@@ -45,7 +45,8 @@ void find_active_constraints(RigidWorld& w) {
   w.active_constraints.joints.reset_all();
   for (const std::uint32_t body : bodies.awake) activate_constraints_of(w, body);
   for (const std::uint32_t shape : w.shapes.changed)
-    for_each_contact_of_shape(w.contacts, shape, [&](std::uint32_t slot) { add(w.active_constraints.contacts, slot); });
+    for_each_contact_of_shape(w.contacts, shape,
+                              [&](std::uint32_t slot) { add(w.active_constraints.contacts, slot); });
 }
 
 }  // namespace gyre

@@ -32,8 +32,8 @@ struct BodyMass {
   Vec3 center;              // body frame
   Sym3 inertia;             // kg m^2
   Sym3 inverse_inertia;     // without locked axes: those are removed in the world frame
-  float bounding_radius = 0.0f;       // m, farthest point of any shape from the centre of mass
-  float size = 0.0f;        // m, inner radius of the thinnest shape; tolerances scale with it
+  float bounding_radius = 0.0f;  // m, farthest point of any shape from the centre of mass
+  float size = 0.0f;             // m, inner radius of the thinnest shape; tolerances scale with it
   std::uint32_t isotropic = 0;  // 1 when all principal moments are equal: no gyroscopic effect
 };
 
@@ -55,10 +55,10 @@ struct BodyFlags {
   std::uint8_t awake = 0;
   std::uint8_t can_sleep = 1;
   std::uint8_t continuous = 0;
-  std::uint8_t frozen = 0;        // the state stopped being finite; the body no longer moves
+  std::uint8_t frozen = 0;          // the state stopped being finite; the body no longer moves
   std::uint8_t locked_linear = 0;   // bits 0 to 2: world x, y, z
   std::uint8_t locked_angular = 0;
-  std::uint8_t constraint_use = 0;       // in the last step: kNotConstrained, kConstrained or kPoseRead
+  std::uint8_t constraint_use = 0;  // in the last step: kNotConstrained, kConstrained or kPoseRead
 };
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
@@ -79,7 +79,8 @@ struct BodyOverrides {
 
 inline auto interning_key(const BodyMass& m) {
   static_assert(sizeof(BodyMass) == 80, "every field is among the bits");
-  return words_of(m.mass, m.inverse_mass, m.center, m.inertia, m.inverse_inertia, m.bounding_radius, m.size, m.isotropic);
+  return words_of(m.mass, m.inverse_mass, m.center, m.inertia, m.inverse_inertia, m.bounding_radius, m.size,
+                  m.isotropic);
 }
 inline auto interning_key(const BodyOverrides& o) {
   static_assert(sizeof(BodyOverrides) == 44, "every field is among the bits");
@@ -90,23 +91,24 @@ inline auto interning_key(const BodyOverrides& o) {
 struct BodyStore {
   IdPool ids;
   Array<BodyMotion> motion;
-  Array<BodyInertia> inertia;       // world axes, at the present orientation; derived
+  Array<BodyInertia> inertia;  // world axes, at the present orientation; derived
   Array<BodyPose> poses;
-  Array<Quat> orientations;         // a copy for the gathers of the solver; equals poses[i].orientation between steps
+  Array<Quat>
+      orientations;  // a copy for the gathers of the solver; equals poses[i].orientation between steps
   InternedColumn<BodyMass> masses;
   Array<BodyForces> forces;
   Array<BodyFlags> flags;
   Array<BodySleep> sleep;
   InternedColumn<BodyOverrides> overrides;
   Array<std::uint64_t> user_data;
-  Array<LastMove> last_moves;       // by slot; empty unless the integrator is verlet
+  Array<LastMove> last_moves;                   // by slot; empty unless the integrator is verlet
   Array<SmallArray<ShapeId, 1>> shapes;         // by body, ascending index; derived
   // By body, ascending index; derived. Shorter than the number of bodies, since most worlds have few joints: read
   // with joints_of().
   Array<SmallArray<std::uint32_t, 2>> joints;
-  Array<std::uint32_t> awake;       // simulated bodies, ascending; derived
-  std::size_t sleeping_count = 0;         // dynamic bodies that sleep and are not frozen; derived
-  bool awake_stale = false;         // `awake` and `sleeping_count` must be derived again before use
+  Array<std::uint32_t> awake;      // simulated bodies, ascending; derived
+  std::size_t sleeping_count = 0;  // dynamic bodies that sleep and are not frozen; derived
+  bool awake_stale = false;        // `awake` and `sleeping_count` must be derived again before use
 };
 
 // The joint slots of a body; and the list to be changed, for which room is made.

@@ -17,8 +17,7 @@ struct MotionSettings {
   TimeStepping time = TimeStepping::fixed;
   float tolerance = 1.0e-5f;       // m
   std::int32_t max_impacts = 128;  // in a step
-  std::int32_t planned_substeps =
-      0;  // of the next step, from the error of the last; 0: as the settings say
+  std::int32_t planned_substeps = 0;  // of the next step, from the error of the last; 0: as the settings say
 };
 
 inline bool is_default(const MotionSettings& m) {

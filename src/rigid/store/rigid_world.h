@@ -24,9 +24,10 @@ namespace gyre {
 struct JointStore {
   IdPool ids;
   Array<JointRecord> records;
-  Array<JointDetail> details;      // by slot, shorter than the records: most joints have none
-  Array<PathPoint> path_points;    // of all paths, one after the other
-  FlatMap<std::uint32_t> blocked;  // body pair key -> number of joints that disable the collision of the two; derived
+  Array<JointDetail> details;    // by slot, shorter than the records: most joints have none
+  Array<PathPoint> path_points;  // of all paths, one after the other
+  FlatMap<std::uint32_t>
+      blocked;  // body pair key -> number of joints that disable the collision of the two; derived
 };
 
 // Data of the joint beyond its record; null if there is none.
@@ -77,7 +78,7 @@ constexpr std::uint8_t kNoFields = 0, kFieldsAndConstraints = 1, kFieldsOnly = 2
 struct FieldRest {
   Vec3 linear, angular;            // velocity as the step began
   std::uint8_t acts = kNoFields;   // kNoFields, kFieldsAndConstraints or kFieldsOnly
-  std::uint8_t is_unsteady = 0;  // a field with time-dependent forces acts
+  std::uint8_t is_unsteady = 0;    // a field with time-dependent forces acts
 };
 
 struct RigidWorld {
@@ -90,7 +91,7 @@ struct RigidWorld {
   Array<FieldRecord> fields;           // by slot
   RigidSettings settings;
   Array<MotionSettings> motion_settings;  // one record, or none for the defaults
-  Array<SolverSettings> solver;        // one record, or none for the default solver
+  Array<SolverSettings> solver;           // one record, or none for the default solver
 
   // Derived, or valid for one step only.
   std::unique_ptr<Broadphase> broadphase;
@@ -100,16 +101,16 @@ struct RigidWorld {
   InternalEdgeScratch internal_edges;  // contacts at internal edges in the last step
   Array<std::uint64_t> new_pairs;
   Array<std::uint64_t> sort_scratch;
-  Array<std::uint32_t> listed;         // working memory: contacts of one shape
-  std::uint64_t steps = 0;             // steps done so far; some searches run only every n-th step
-  double now = 0.0;                    // s, at the beginning of the step; for fields that depend on time
+  Array<std::uint32_t> listed;  // working memory: contacts of one shape
+  std::uint64_t steps = 0;      // steps done so far; some searches run only every n-th step
+  double now = 0.0;             // s, at the beginning of the step; for fields that depend on time
   Array<FieldRest> field_rest;
-  Array<std::uint8_t> refit_marks;     // by shape: 1 if it got a new fat box in this step
+  Array<std::uint8_t> refit_marks;  // by shape: 1 if it got a new fat box in this step
   RigidEvents events;
   ScratchClocks clocks;
   Array<std::uint8_t>
       inactive_contacts;  // by contact: not 0 if it does not act (rigid/time/toi_stepping.h); empty unless the step is adaptive
-  std::uint16_t world_number = 0;      // part of the ids in events
+  std::uint16_t world_number = 0;  // part of the ids in events
 };
 
 inline MotionSettings motion_settings(const RigidWorld& w) {

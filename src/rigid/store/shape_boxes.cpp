@@ -95,7 +95,8 @@ class ShapeLanes {
     to_origin_ = rotate(world_from_body, FourEach(centers).vector(0));
     to_shape_ = rotate(world_from_body, FourEach(offsets).vector(0));
     const Rotation orientation = world_from_body * FourEach(offset_rotations).rotation();
-    orientation_[0] = orientation.x, orientation_[1] = orientation.y, orientation_[2] = orientation.z, orientation_[3] = orientation.w;
+    orientation_[0] = orientation.x, orientation_[1] = orientation.y, orientation_[2] = orientation.z,
+    orientation_[3] = orientation.w;
     const FourEach radius_and_extents(shape_radii);
     const Number radius = radius_and_extents.value[0];
     half_ = rotated_extents(orientation, radius_and_extents.vector(1)) + Vector{radius, radius, radius};
@@ -111,7 +112,8 @@ class ShapeLanes {
     const BoxMotion motion{collider.size, translation_[lane], arc_[lane]};
     if (is_rounded_box(collider.shape.kind))
       return {world_box(collider.shape, {-half_[lane], half_[lane]}, position), motion};
-    const Quat orientation{orientation_[0][lane], orientation_[1][lane], orientation_[2][lane], orientation_[3][lane]};
+    const Quat orientation{orientation_[0][lane], orientation_[1][lane], orientation_[2][lane],
+                           orientation_[3][lane]};
     return {world_box(collider.shape, {position, orientation}), motion};
   }
 
@@ -119,8 +121,8 @@ class ShapeLanes {
   unsigned needs_no_refit() const {
     const Number size = sizes_;
     Mask<kBoxLanes> fits = Mask<kBoxLanes>::splat(true);
-    const auto fit = [&](Number inside, Number from, Number to, Number slack) {
-      fits = fits & (to - from - (inside + inside) + slack < kTooLarge * size);
+    const auto fit = [&](Number half, Number from, Number to, Number slack) {
+      fits = fits & (to - from - (half + half) + slack < kTooLarge * size);
     };
     const unsigned inside = within(kSpeculativeShare * size + arc_, kSideRounding, fit);
     return inside & to_bits(fits);
@@ -130,8 +132,7 @@ class ShapeLanes {
   unsigned within_on_sweep() const {
     const Number turning = arc_, angle = angle_;
     // The end pose, and the sagitta of the arc between start and end.
-    return within(turning + 0.125f * turning * angle, kSweepRounding,
-                       [](Number, Number, Number, Number) {});
+    return within(turning + 0.125f * turning * angle, kSweepRounding, [](Number, Number, Number, Number) {});
   }
 
  private:
@@ -150,16 +151,18 @@ class ShapeLanes {
       rounded |= is_rounded_box(colliders_[i]->shape.kind) ? 1u << i : 0u;
     }
     const Vector low = FourEach(lows).vector(0), high = FourEach(highs).vector(1);
-    const Vector middle = middles, to_origin = to_origin_, to_shape = to_shape_, half = half_, translation = translation_;
+    const Vector middle = middles, to_origin = to_origin_, to_shape = to_shape_, half = half_,
+                 translation = translation_;
     const Number zero = 0.0f;
     const Vector extent = half + Vector{margin, margin, margin}, position = middle - to_origin + to_shape;
     const Number slack = rounding * largest(absolute(middle) + absolute(to_origin) + absolute(to_shape) +
                                             extent + absolute(translation));
     Mask<kBoxLanes> inside = Mask<kBoxLanes>::splat(true);
-    const auto test_axis = [&](Number at, Number extent, Number moves_by, Number inside, Number from, Number to) {
-      inside = inside & (at - extent + min(moves_by, zero) - slack > from) &
-                       (at + extent + max(moves_by, zero) + slack < to);
-      visit_axis(inside, from, to, slack);
+    const auto test_axis = [&](Number at, Number extent_with_margin, Number moves_by, Number half_extent,
+                               Number from, Number to) {
+      inside = inside & (at - extent_with_margin + min(moves_by, zero) - slack > from) &
+               (at + extent_with_margin + max(moves_by, zero) + slack < to);
+      visit_axis(half_extent, from, to, slack);
     };
     test_axis(position.x, extent.x, translation.x, half.x, low.x, high.x);
     test_axis(position.y, extent.y, translation.y, half.y, low.y, high.y);

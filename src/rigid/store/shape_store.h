@@ -29,19 +29,19 @@ inline auto interning_key(const ColliderShape& c) {
 
 struct ShapeStore {
   IdPool ids;
-  Array<std::uint32_t> bodies;      // the body of each shape
+  Array<std::uint32_t> bodies;  // the body of each shape
   InternedColumn<Transform> body_from_shape;
   InternedColumn<ColliderShape> colliders;  // the form for collision; refers to `geometry`; derived
   Array<Proxy> proxies;             // fat boxes are state: they decide when pairs begin
   InternedColumn<Material> materials;
-  std::vector<AnyShape> geometry;   // owns cooked geometry
+  std::vector<AnyShape> geometry;  // owns cooked geometry
   Array<float> density;
   Array<std::uint64_t> user_data;
-  Array<std::uint32_t> changed;     // proxies that the broad phase does not know yet, in no order; derived
+  Array<std::uint32_t> changed;  // proxies that the broad phase does not know yet, in no order; derived
   // The fat boxes of awake bodies cover their motion in a step of this length (s), except those of `moved_shapes`;
   // derived.
   float fat_box_horizon = 0.0f;
-  Array<std::uint32_t> moved_shapes;     // shapes that commands placed or set moving since the last step
+  Array<std::uint32_t> moved_shapes;  // shapes that commands placed or set moving since the last step
 };
 
 IdPool::Slot add_shape_slot(ShapeStore& store);

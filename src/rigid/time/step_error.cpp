@@ -16,9 +16,9 @@ double step_difference(const RigidWorld& w, std::span<const BodyMotion> other, f
     if (w.bodies.flags[body].constraint_use == kNotConstrained) continue;
     const BodyMotion &a = w.bodies.motion[body], &b = other[body];
     const double distance = length(DVec3(a.moved) - DVec3(b.moved)) +
-                       t * length(DVec3(a.linear_velocity) - DVec3(b.linear_velocity));
+                            t * length(DVec3(a.linear_velocity) - DVec3(b.linear_velocity));
     const double angle = length(DVec3(a.turned) - DVec3(b.turned)) +
-                        t * length(DVec3(a.angular_velocity) - DVec3(b.angular_velocity));
+                         t * length(DVec3(a.angular_velocity) - DVec3(b.angular_velocity));
     largest = max(largest, distance + double(w.bodies.masses[body].bounding_radius) * angle);
   }
   return largest;

@@ -101,8 +101,8 @@ ImpactContact make_touching_impact(const RigidWorld& w, const Contact& contact, 
 
 // The offset of b relative to a from its straight path at a share of the step. Under constant acceleration a body
 // starts slower than its mean speed and ends faster.
-DVec3 acceleration_offset(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact, double share,
-                    double seconds) {
+DVec3 acceleration_offset(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact,
+                          double share, double seconds) {
   const auto velocity_change = [&](std::uint32_t body) {
     if (!is_active(w, body)) return DVec3{};
     return DVec3(w.bodies.motion[body].linear_velocity) - DVec3(before.motion(body).linear_velocity);
@@ -112,7 +112,7 @@ DVec3 acceleration_offset(const RigidWorld& w, const StepCheckpoint& before, con
 }
 
 double first_impact_time(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact,
-                     double seconds) {
+                         double seconds) {
   const double tolerance = double(touch_distance(contact));
   const SweptPair pair(w, contact, true);
   const Impact impact = time_of_impact(pair.a, pair.b, 0.0, 1.0, 0.5 * tolerance);
@@ -122,7 +122,8 @@ double first_impact_time(const RigidWorld& w, const StepCheckpoint& before, cons
   const DVec3 off = acceleration_offset(w, before, contact, impact.time, seconds);
   constexpr double kTimeStep = 1.0e-3;
   const double dt = min(kTimeStep, 0.5 * impact.time);
-  const Gap at_impact = pair.gap(impact.time, 4.0 * tolerance), before_impact = pair.gap(impact.time - dt, 1.0e30);
+  const Gap at_impact = pair.gap(impact.time, 4.0 * tolerance),
+            before_impact = pair.gap(impact.time - dt, 1.0e30);
   const double closing =
       dt > 0.0 ? (before_impact.distance - at_impact.distance) / dt : 0.0;  // m, for the whole step
   double time = impact.time;

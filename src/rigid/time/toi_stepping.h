@@ -42,8 +42,8 @@ struct ImpactScratch {
   StepCheckpoint before;
   Array<BodyMotion> other;  // the result with half the sub-steps
   Array<ImpactContact> impacts;
-  Array<std::uint32_t> contacts;   // of each impact: its contact
-  Array<std::uint8_t> is_hit;     // of each impact: reported as a hit event
+  Array<std::uint32_t> contacts;    // of each impact: its contact
+  Array<std::uint8_t> is_hit;       // of each impact: reported as a hit event
   Array<std::uint32_t> hit_bodies;  // bodies that got an impulse
 };
 
