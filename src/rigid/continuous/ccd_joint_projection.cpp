@@ -30,9 +30,9 @@ void write(RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& 
     const Quat orientation = bodies.orientations[body];
     const Vec3 way = bodies.motion[body].moved - motion.moved;
     const Vec3 turn = to_rotation_vector(orientation * conjugate(w.bodies.orientations[body]));
-    if (is_fast(way, turn, mass.reach, mass.size)) moved.push_back(body);
+    if (is_fast(way, turn, mass.bounding_radius, mass.size)) moved.push_back(body);
     motion.moved = bodies.motion[body].moved + Vec3{};
-    motion.turned = to_rotation_vector(orientation * conjugate(w.bodies.places[body].orientation)) + Vec3{};
+    motion.turned = to_rotation_vector(orientation * conjugate(w.bodies.poses[body].orientation)) + Vec3{};
     w.bodies.orientations[body] = orientation;
     w.bodies.inertia[body] = world_inertia(mass, w.bodies.flags[body], orientation);
   }

@@ -44,7 +44,7 @@ void ProjectionPath::find_displacements() const {
     const Quat end = w_->bodies.orientations[member.body];
     member.start_moved = first * moved;
     member.start_orientation =
-        normalized(from_rotation_vector(first * turned) * w_->bodies.places[member.body].orientation);
+        normalized(from_rotation_vector(first * turned) * w_->bodies.poses[member.body].orientation);
     member.goes = member.moves || moved != Vec3{} || turned != Vec3{};
     member.held = false;
     member.rest_moved = member.rest_turned = {};
@@ -176,7 +176,7 @@ bool ProjectionPath::hold_those_moved_far() const {
     const Quat planned = from_rotation_vector(share * member.rest_turned) * member.start_orientation;
     const Vec3 turn = to_rotation_vector(bodies_.orientations[member.body] * conjugate(planned));
     const BodyMass& mass = w_->bodies.masses[member.body];
-    member.held = length(way) + length(turn) * mass.reach > kPlay * mass.size;
+    member.held = length(way) + length(turn) * mass.bounding_radius > kPlay * mass.size;
     any = any || member.held;
   }
   return any;

@@ -33,7 +33,7 @@ void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
 
 // The middle of mass as the body will be once its motion is done.
 DVec3 middle_of(const RigidWorld& w, std::uint32_t body) {
-  return w.bodies.places[body].center + DVec3(w.bodies.motion[body].moved);
+  return w.bodies.poses[body].center + DVec3(w.bodies.motion[body].moved);
 }
 
 // Takes the speed with which a body goes on into what its core met: first by an impulse without bounce at the point where the
@@ -89,10 +89,10 @@ class BodyImpulse {
 // its turning against the other adds. (A rotation differs from its first order by half the angle squared at most.)
 float way_against(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame, std::uint32_t body) {
   const Sweep own = sweep_of_body(w.bodies, body);
-  const Vec3 apart = difference(w.bodies.places[body].center, w.bodies.places[seen_from].center);
+  const Vec3 apart = difference(w.bodies.poses[body].center, w.bodies.poses[seen_from].center);
   return length(own.translation - frame.translation - cross(frame.rotation, apart)) +
          0.5f * length_squared(frame.rotation) * length(apart) +
-         length(own.rotation - frame.rotation) * w.bodies.masses[body].reach;
+         length(own.rotation - frame.rotation) * w.bodies.masses[body].bounding_radius;
 }
 
 // What moves by itself runs over what stands in its way, however slow that is: such bodies are fast against it, unless they go
@@ -154,7 +154,7 @@ class Overrun {
 std::size_t count_stopped_with_joints(const RigidWorld& w, const ContinuousScratch& scratch) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < scratch.fast.size(); ++k)
-    count += scratch.kept[k].fraction < 1.0f && !joints_of(w.bodies, scratch.fast[k].body).empty() ? 1 : 0;
+    count += scratch.saved[k].fraction < 1.0f && !joints_of(w.bodies, scratch.fast[k].body).empty() ? 1 : 0;
   return count;
 }
 
@@ -192,13 +192,13 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
     const std::uint32_t i = w.bodies.awake[n];
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
-    return is_fast(motion.moved, motion.turned, mass.reach, mass.size) && is_movable(w.bodies.flags[i]) &&
-           !w.bodies.shapes[i].empty();
+    return is_fast(motion.moved, motion.turned, mass.bounding_radius, mass.size) &&
+           is_movable(w.bodies.flags[i]) && !w.bodies.shapes[i].empty();
   };
   for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), goes_fast).list) {
     const std::uint32_t i = w.bodies.awake[n];
     // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
-    const float least = w.bodies.flags[i].touched != 0 ? kMinProgress : 0.0f;
+    const float least = w.bodies.flags[i].constraint_use != 0 ? kMinProgress : 0.0f;
     scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, joints_of(w.bodies, i).empty(), false});
   }
   Overrun(w, scratch).add_all();
@@ -225,7 +225,7 @@ void leave_out_free(const RigidWorld& w, ContinuousScratch& scratch, Arena& aren
   for (std::size_t k = 0; k < fast.size(); ++k) bodies[k] = fast[k].body;
   for_blocks(tasks, int(fast.size()), kBodiesPerBlock, [&](int begin, int end, int) {
     const std::size_t first = std::size_t(begin), count = std::size_t(end - begin);
-    find_staying(w, bodies.subspan(first, count), stay.subspan(first, count));
+    find_within_fat_boxes(w, bodies.subspan(first, count), stay.subspan(first, count));
   });
   const auto is_free = [&](std::size_t k) {
     if (!stay[k] || fast[k].continuous || fast[k].only_crosses) return false;
@@ -273,8 +273,8 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
                               w.surface_rules.empty() ? nullptr : &one_way,
                               scratch.gates,
                               &contacts};
-  scratch.kept.resize(scratch.fast.size());
-  scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
+  scratch.saved.resize(scratch.fast.size());
+  scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.saved);
 }
 
 // The angular velocity of a body that is turned back on its way, as its angular momentum asks for there: of what turns freely that is the one
@@ -294,10 +294,10 @@ Vec3 spin_at(const BodyMass& mass, const BodyFlags& flags, Quat from, Quat to, V
 std::span<const HaltedBody> remove_error(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
   const std::span<HaltedBody> stopped = arena.make<HaltedBody>(count_stopped_with_joints(w, scratch));
   std::size_t stopped_count = 0;
-  if (!stopped.empty()) stop_together(w, scratch, scratch.kept, arena);
+  if (!stopped.empty()) stop_together(w, scratch, scratch.saved, arena);
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
-    const SavedMotion& kept = scratch.kept[k];
+    const SavedMotion& kept = scratch.saved[k];
     if (!(kept.fraction < 1.0f)) continue;
     BodyMotion& motion = w.bodies.motion[i];
     if (!joints_of(w.bodies, i).empty())

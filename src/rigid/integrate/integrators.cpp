@@ -46,7 +46,7 @@ struct Damping {
 void refresh_world_inertia(BodyStore& bodies, std::uint32_t i) {
   const BodyMass& mass = bodies.masses[i];
   const BodyFlags& flags = bodies.flags[i];
-  if (!inertia_turns(mass, flags)) return;
+  if (!inertia_rotates(mass, flags)) return;
   bodies.inertia[i] = world_inertia(mass, flags, bodies.orientations[i]);
 }
 
@@ -286,7 +286,7 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
   moved.linear_lost = linear.lost;
   moved.torque = angular.gain * forces.torque;
   moved.angular_lost = angular.lost;
-  moved.reach = mass.reach;
+  moved.reach = mass.bounding_radius;
   moved.inertia = mass.inertia;
   moved.inverse_inertia = mass.inverse_inertia;
   moved.locked = flags.locked_linear;
