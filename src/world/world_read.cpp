@@ -44,7 +44,8 @@ void fill(BodyCopy& copy, const WorldState& s, bool only_awake) {
   });
   resize(copy, count);
 }
-// By ascending index. The first thread that asks after a change makes the copy for all. (In one place for both: code counts on the web.)
+// By ascending index. After a change, the first reading thread makes the copy for all. (One function for both lists:
+// code size counts on the web.)
 BodyColumns read_bodies(WorldState& s, BodyCopy& copy, bool only_awake) {
   if (copy.made_at.load(std::memory_order_acquire) != s.changes) {
     const std::lock_guard<std::mutex> lock(s.query_lock);

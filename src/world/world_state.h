@@ -40,13 +40,13 @@ struct StageHook {
 
 constexpr std::size_t kNothingQueried = std::size_t(-1);
 
-// What World::bodies() hands out, made once after a change by whichever thread asks first (under WorldState::query_lock) and then
-// read by all: its spans stay what they are until the next change.
+// A result of World::bodies(). After a change, the first reading thread makes it (under WorldState::query_lock); all
+// threads read it. Its spans are valid until the next change.
 struct BodyCopy {
   std::vector<BodyId> ids;
   std::vector<Pose> poses;
   std::vector<Vec3> linear_velocities, angular_velocities;
-  std::atomic<std::uint64_t> made_at{~std::uint64_t(0)};  // WorldState::changes when it was made
+  std::atomic<std::uint64_t> made_at{~std::uint64_t(0)};  // WorldState::changes at that time
 };
 
 struct WorldState {
@@ -81,15 +81,16 @@ struct WorldState {
   std::mutex batch_lock;          // the workers answer one batch of queries at a time
   Array<std::uint32_t> changes_to_show;
   Array<std::uint64_t> change_keys, change_scratch;
-  // Counts changes of the state, so that a copy knows whether it is still true. Whatever changes bodies counts one up (note_change).
+  // Counts the changes of the state, so that a copy is known to be current. Every change of bodies must call
+  // note_change.
   std::uint64_t changes = 0;
-  // Copies that bulk reading hands out: of all bodies, and of those awake.
+  // The copies for bulk reading: of all bodies, and of awake bodies.
   BodyCopy all_bodies, awake_bodies;
 };
 
 inline void note_change(WorldState& state) { ++state.changes; }
 
-// Columns that are read and set one record at a time.
+// Columns whose records are read and set one at a time.
 template <class T>
 constexpr bool is_column = false;
 template <class T>

@@ -39,7 +39,7 @@ struct FieldBody {
 Vec6 force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
                      const BodyState& state, double time);
 
-// What the stages below work on, in blocks of kFieldBodiesPerBlock bodies.
+// The context of the stages below, which run on blocks of kFieldBodiesPerBlock bodies.
 struct FieldSolve {
   RigidWorld* world = nullptr;
   std::span<FieldBody> bodies{};

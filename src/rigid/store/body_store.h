@@ -1,21 +1,22 @@
-// Rigid bodies as columns, indexed by the id's slot. Hot: the 64-byte motion record. Warm: places, masses, what acts on
-// the body. Cold: lists, overrides, user data.
+// Rigid bodies as columns, indexed by the slot of the id. Hot: the 64-byte motion record. Warm: poses, masses,
+// forces. Cold: lists, overrides, user data.
 //
-// The state of a body is the place of its centre of mass (double), its orientation and its two velocities; the pose of
-// its origin is derived. Slots never move, so everything may keep a body's index; sleeping bodies are left out of `awake`.
+// The state of a body is the position of its centre of mass (double), its orientation and its two velocities; the
+// pose of its origin is derived. Slots never move, so an index of a body stays valid; `awake` has no sleeping bodies.
 //
-// Who owns the pose, when (stages of world/step.cpp):
+// The columns that hold the pose, by stage of world/step.cpp. The deltas are delta position and rotation in `motion`.
 //
-//   between steps, stages 1 to 4   places: centre and orientation. orientations: the same. motion.moved and turned: of the last step
-//   collide (3)                    copies of places, one a contact (rigid/collision_bodies.h), gone with the stage
-//   solve (5), as it begins        moved, turned = 0: from here on a centre is places.center + motion.moved
-//   solve, in a sub-step           moved, turned are new. The orientation is places.orientation, turned by `turned`; blocks of the kernels
-//                                  (solver/motion/motion_block.h) hold it, and write it to orientations and inertia of bodies that are shown.
-//                                  What spins fast has it in orientations alone
-//   solve, joints in lanes         copies of orientations and moved, new in each sub-step (solver/articulation)
-//   solve, as it ends              orientations and inertia of all are new; places is still that of the step's beginning
-//   clamp_fast_bodies (6)          moved, turned, orientations go back to where the body was stopped
-//   finish_bodies (7)              places.center += moved, places.orientation = orientations: from here on places holds again
+//   between steps, stages 1 to 4   poses; orientations equal theirs; the deltas are those of the last step
+//   collide (3)                    also copies of poses for active contacts (rigid/collision_bodies.h), for this stage
+//   solve (5), at its beginning    the deltas are zero; from now on a centre is that of poses + delta position
+//   solve, in a sub-step           the deltas are new; the orientation is that of poses, rotated by the delta.
+//                                  Motion blocks (solver/motion/motion_block.h) hold it and write it to orientations
+//                                  and inertia of bodies whose pose is read. Fast-spinning bodies have it in
+//                                  orientations only
+//   solve, SIMD joints             copies of orientations and delta positions, new in each sub-step
+//   solve, at its end              all orientations and inertia are new; poses are those of the beginning of the step
+//   clamp_fast_bodies (6)          deltas and orientations of halted bodies return to the time of impact
+//   finish_bodies (7)              poses take centres and orientations; from now on poses are valid
 #pragma once
 
 #include "base/container/array.h"
