@@ -98,7 +98,7 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
     if (c.hold == ContactStiffness::sprung) count.has_soft_contact = true;
     if (active_a && active_b) continue;
     ++count.ground_contacts;
-    count.first = i;
+    count.ground_contact = i;
     if (!is_still(w_, active_a ? c.body_b : c.body_a)) count.refused = true;
   }
 }

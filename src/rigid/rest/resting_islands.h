@@ -29,7 +29,7 @@ constexpr float kSettledSpeedShare = 1.0e-4f;
 struct IslandCount {
   std::uint32_t bodies = 0, contacts = 0, ground_contacts = 0;
   std::uint32_t single_point_contacts = 0;
-  std::uint32_t first = kNoIndex;  // its last contact with the fixed world
+  std::uint32_t ground_contact = kNoIndex;  // the last contact with the fixed world
   float smallest = 0.0f;           // m, the smallest bounding radius of its bodies
   bool refused = false;      // cannot be at rest: a fast or locked body, a joint, moving ground, no friction
   bool not_calm = false;     // a body is slow but not calm

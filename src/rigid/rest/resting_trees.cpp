@@ -52,7 +52,7 @@ RestingTrees find_resting_trees(const RigidWorld& w, std::span<ContactConstraint
   std::size_t tree = 0;
   for (std::uint32_t root = 0; root < batch.bodies.size(); ++root) {
     if (!is_tree(root)) continue;
-    const std::uint32_t first = islands.at_root(root).first;
+    const std::uint32_t first = islands.at_root(root).ground_contact;
     const ColoringPair& ground = pairs[first];
     const bool is_b = ground.b != ColoringPair::kNone;
     const std::uint32_t begin = used;
