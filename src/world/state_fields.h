@@ -78,7 +78,7 @@ void for_each_field(T& r, F&& f) {
 template <Is<BodyMass> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.mass), f(r.inverse_mass), for_each_field(r.center, f), for_each_field(r.inertia, f);
-  for_each_field(r.inverse_inertia, f), f(r.reach), f(r.size), f(r.isotropic);
+  for_each_field(r.inverse_inertia, f), f(r.bounding_radius), f(r.size), f(r.isotropic);
 }
 template <Is<BodyForces> T, class F>
 void for_each_field(T& r, F&& f) {
