@@ -79,7 +79,7 @@ bool ensure_fat_box_covers_motion(RigidWorld& w, std::uint32_t shape, float seco
   const ShapeBox box = find_box(w, shape, seconds);
   const WorldBox needed = needed_box(box.tight, box.motion);
   Proxy& proxy = w.shapes.proxies[shape];
-  if (holds(proxy.fat_box, needed)) return false;
+  if (contains(proxy.fat_box, needed)) return false;
   proxy.fat_box = fat_box(needed, box.motion);
   return true;
 }

@@ -14,6 +14,8 @@
 namespace gyre {
 namespace {
 
+using laws::definition_of;
+
 constexpr float kStep = 1.0f / 60.0f;
 
 // Two bars, their centres of mass beside their origins, hung up one under the other.

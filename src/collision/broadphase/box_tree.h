@@ -81,7 +81,7 @@ class BoxTree {
     static_assert(kMaxLevels * kWidth <= RayTraversal::kRoom);
     RayTraversal walk(cast_test.line(), root_, max_fraction);
     while (walk_line_(nodes_.data(), walk)) {
-      walk.max_fraction = visit(walk.leaf, walk.reach);
+      walk.max_fraction = visit(walk.leaf, walk.max_fraction);
       if (walk.max_fraction < 0.0f) break;
     }
     return walk.max_fraction;

@@ -55,9 +55,9 @@ Aabb fat_box(const WorldBox& needed, const BoxMotion& motion) {
   const double size = margin_size(motion);
   const double margin = double(kFatShare) * size;
   const DVec3 all{margin, margin, margin};
-  const float max_fraction = kMaxAhead * float(size);
-  const Vec3 ahead = max(min(motion.translation, Vec3{max_fraction, max_fraction, max_fraction}),
-                         Vec3{-max_fraction, -max_fraction, -max_fraction});
+  const float max_ahead = kMaxAhead * float(size);
+  const Vec3 ahead = max(min(motion.translation, Vec3{max_ahead, max_ahead, max_ahead}),
+                         Vec3{-max_ahead, -max_ahead, -max_ahead});
   return round_outward({needed.low - all + min(ahead, Vec3{}), needed.high + all + max(ahead, Vec3{})});
 }
 

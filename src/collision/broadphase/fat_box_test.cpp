@@ -11,7 +11,7 @@
 namespace gyre {
 namespace {
 
-bool contains(const Aabb& box, const WorldBox& inner) {
+bool is_inside(const WorldBox& inner, const Aabb& box) {
   const DVec3 low(box.low), high(box.high);
   return low.x <= inner.low.x && low.y <= inner.low.y && low.z <= inner.low.z && high.x >= inner.high.x &&
          high.y >= inner.high.y && high.z >= inner.high.z;
@@ -34,12 +34,12 @@ TEST(FatBox, WorldBoxContainsEveryPoint) {
         const Vec3 direction{axis == 0 ? 1.0f : 0.0f, axis == 1 ? 1.0f : 0.0f, axis == 2 ? 1.0f : 0.0f};
         for (const float sign : {-1.0f, 1.0f}) {
           const Vec3 local = support(shape, rotate_inverse(pose.orientation, sign * direction));
-          const double max_fraction = double(sign) * (pose * local)[axis] + double(core_radius(shape));
-          EXPECT_LE(max_fraction, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
-          EXPECT_GE(max_fraction + 1.3e-3, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
+          const double extent = double(sign) * (pose * local)[axis] + double(core_radius(shape));
+          EXPECT_LE(extent, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
+          EXPECT_GE(extent + 1.3e-3, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
         }
       }
-      EXPECT_TRUE(contains(round_outward(box), box));
+      EXPECT_TRUE(is_inside(box, round_outward(box)));
     }
   }
 }
@@ -64,7 +64,7 @@ TEST(FatBox, ChangesRarelyAndShrinksAgain) {
     tight.low.x += 0.001, tight.high.x += 0.001;
     const WorldBox needed = needed_box(tight, slow);
     if (!needs_refit(fat, needed, slow)) {
-      ASSERT_TRUE(contains(fat, needed));
+      ASSERT_TRUE(is_inside(needed, fat));
       continue;
     }
     fat = fat_box(needed, slow);

@@ -72,17 +72,17 @@ class CollideScene {
   }
 
   void update_contacts() {
-    std::vector<CollisionBody> bodies;
+    std::vector<CollisionBody> collision_bodies;
     std::vector<BodyCenter> centers;
     std::vector<std::uint8_t> awake;
     for (const ColliderBody& body : bodies) {
-      bodies.push_back(make_collision_body(body, seconds));
+      collision_bodies.push_back(make_collision_body(body, seconds));
       centers.push_back({body.center, body.bounding_radius});
       awake.push_back(body.awake ? 1 : 0);
     }
     all_.resize(store.contacts.size());
     all_.set_all();
-    collide(store, {shapes, bodies, centers, awake, proxies, all_, select_recycling(width), recycle}, tasks_,
+    collide(store, {shapes, collision_bodies, centers, awake, proxies, all_, select_recycling(width), recycle}, tasks_,
             changes);
   }
 

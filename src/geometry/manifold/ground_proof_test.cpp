@@ -182,7 +182,7 @@ class GroundProof {
   }
   const char* wrong = nullptr;
   double by = 0.0;
-  Nearest near;
+  ClosestPair near;
   LocalManifold found[kMaxMeshManifolds];
   int count = 0;
   float deepest = kUnbounded;
@@ -294,7 +294,7 @@ class GroundProof {
 
 // True if shape and closest point are on the front side of every triangle around it; surfaces have no contacts from
 // behind. The front of a double-sided surface is the side of the shape's centre.
-bool seen_from_front(const Ground& ground, const Nearest& near, DVec3 middle, double slack) {
+bool seen_from_front(const Ground& ground, const ClosestPair& near, DVec3 middle, double slack) {
   for (const Corners& t : ground.triangles) {
     DVec3 n = cross(t[1] - t[0], t[2] - t[0]);
     if (length(nearest_of(t, near.on_target) - near.on_target) > slack) continue;
@@ -306,7 +306,7 @@ bool seen_from_front(const Ground& ground, const Nearest& near, DVec3 middle, do
 
 // Moves the shape along a direction until it is `left` from the ground, or in it.
 bool bring_to(const Ground& ground, const Shape& shape, Transform& pose, Vec3 back, double left) {
-  Nearest near;
+  ClosestPair near;
   for (int i = 0; i < 40; ++i) {
     if (!find_closest_points(ground.shape,
                              {&shape, DVec3(pose.position), normalized(to_double(pose.orientation))}, 1.0e30,

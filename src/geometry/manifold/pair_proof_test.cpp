@@ -60,7 +60,7 @@ class Proof {
   const char* wrong = nullptr;
   double by = 0.0;
   LocalManifold m;
-  Nearest near;
+  ClosestPair near;
   double along = 0.0, deepest = 0.0;  // what the shapes say of the manifold's normal, and what it says itself
 
   void run(float reach, bool search, bool pivot) {

@@ -5,9 +5,9 @@
 // contact is accepted. If it is not (it would push across a flat or concave edge), or if the centre of the shape is
 // already behind the triangle, the triangle is deferred until all others are known:
 // - if an accepted contact has the normal of the triangle, both belong to one piece of ground, and the triangle adds
-// its points to it;
+//   its points to it;
 // - if moving the shape out of an accepted contact also frees it from the triangle, the triangle is ignored (a box that
-// sank into the top of a wall must not be pushed out of its side);
+//   sank into the top of a wall must not be pushed out of its side);
 // - else the shape leaves through the front of the triangle, the least deep triangle first.
 // A contact at a sharp or open edge that lies below another face, level with it, is dropped: floors often consist of
 // pieces that are not joined.

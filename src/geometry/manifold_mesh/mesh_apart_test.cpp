@@ -21,7 +21,7 @@ TriangleLanes<4> lanes_of(const LocalTriangle& t, Vec3 position) {
     reach = max(reach, largest(absolute(t.v[i] + position)));
   }
   lanes.normal = splat<4>(t.normal);
-  lanes.reach = Wide<4>(reach);
+  lanes.max_coordinate = Wide<4>(reach);
   return lanes;
 }
 

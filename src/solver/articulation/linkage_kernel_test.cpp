@@ -235,7 +235,7 @@ TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
     columns[i].begin = i;
     columns[i].end = i + 1 < kColumns ? i + 1 : i;
     rows += columns[i].size;
-    if (i + 1 < kColumns) entries[i].place = i + (i < kMeet - 1 ? 2 : 1);
+    if (i + 1 < kColumns) entries[i].index = i + (i < kMeet - 1 ? 2 : 1);
   }
   ArticulationBundle bundle;
   bundle.columns = columns.data(), bundle.entries = entries.data();

@@ -87,7 +87,7 @@ void eliminate_entry(const ArticulationBundle& bundle, const BlockColumn& column
     const BlockEntry& other = bundle.entries[j];
     const float* const b = bundle.values + std::size_t(other.offset) * W;
     float* const out = bundle.values + std::size_t(*targets++) * W;
-    if (bundle.columns[other.place].size == 3) {
+    if (bundle.columns[other.index].size == 3) {
       subtract_product<W, R, 3, C>(scaled, b, out, j == i);
     } else {
       subtract_product<W, R, 5, C>(scaled, b, out, j == i);
@@ -101,7 +101,7 @@ void eliminate_column(const ArticulationBundle& bundle, const BlockColumn& colum
   const std::uint32_t* targets = bundle.targets + column.targets;
   float* scaled = bundle.room;
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
-    const std::uint32_t rows = bundle.columns[bundle.entries[i].place].size;
+    const std::uint32_t rows = bundle.columns[bundle.entries[i].index].size;
     if (rows == 3) {
       eliminate_entry<W, 3, C>(bundle, column, i, targets, scaled);
     } else {
@@ -157,7 +157,7 @@ void solve_column_down(const ArticulationBundle& bundle, const BlockColumn& colu
   for (int r = 1; r < C; ++r) own[r].store(x + r * W);
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
     const BlockEntry& entry = bundle.entries[i];
-    const BlockColumn& row = bundle.columns[entry.place];
+    const BlockColumn& row = bundle.columns[entry.index];
     const float* const b = bundle.values + std::size_t(entry.offset) * W;
     float* const y = vector + std::size_t(row.row) * W;
     if (row.size == 3) {
@@ -190,7 +190,7 @@ void solve_column_up(const ArticulationBundle& bundle, const BlockColumn& column
   for (int r = 0; r < C; ++r) own[r] = V::load(diagonal + (r * C + r) * W) * V::load(x + r * W);
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
     const BlockEntry& entry = bundle.entries[i];
-    const BlockColumn& row = bundle.columns[entry.place];
+    const BlockColumn& row = bundle.columns[entry.index];
     const float* const b = bundle.values + std::size_t(entry.offset) * W;
     const float* const known = vector + std::size_t(row.row) * W;
     if (row.size == 3) {
@@ -261,7 +261,7 @@ inline void reach_columns(const ArticulationBundle& bundle, ReachedColumns reach
     if ((reached[place / 64] >> place % 64 & 1u) == 0) continue;
     const BlockColumn& column = bundle.columns[place];
     for (std::uint32_t i = column.begin; i < column.end; ++i) {
-      const std::uint32_t other = bundle.entries[i].place;
+      const std::uint32_t other = bundle.entries[i].index;
       reached[other / 64] |= std::uint64_t{1} << other % 64;
     }
   }
