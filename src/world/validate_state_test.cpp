@@ -19,7 +19,8 @@ namespace {
 class StageValidator {
  public:
   explicit StageValidator(World& world) : state_(state_of(world)) {
-    state_.stage_hook = {[](void* user, const char* stage) { static_cast<StageValidator*>(user)->validate(stage); }, this};
+    state_.stage_hook = {
+        [](void* user, const char* stage) { static_cast<StageValidator*>(user)->validate(stage); }, this};
   }
   ~StageValidator() { state_.stage_hook = {}; }
   StageValidator(const StageValidator&) = delete;

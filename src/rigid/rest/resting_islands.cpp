@@ -51,7 +51,8 @@ RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConst
   count_contacts(constraints, pairs);
 }
 
-void RestingIslands::unite_constrained(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints) {
+void RestingIslands::unite_constrained(std::span<const ColoringPair> pairs,
+                                       std::span<const JointEdge> joints) {
   for (const ColoringPair& pair : pairs) {
     if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) sets_.unite(pair.a, pair.b);
   }

@@ -30,7 +30,7 @@ struct IslandCount {
   std::uint32_t bodies = 0, contacts = 0, ground_contacts = 0;
   std::uint32_t single_point_contacts = 0;
   std::uint32_t ground_contact = kNoIndex;  // the last contact with the fixed world
-  float smallest = 0.0f;           // m, the smallest bounding radius of its bodies
+  float smallest = 0.0f;                    // m, the smallest bounding radius of its bodies
   bool refused = false;      // cannot be at rest: a fast or locked body, a joint, moving ground, no friction
   bool not_calm = false;     // a body is slow but not calm
   bool not_settled = false;  // a body is calm but not settled
