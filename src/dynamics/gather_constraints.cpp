@@ -183,9 +183,7 @@ void gather_contacts(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   const RigidWorld& w = batch.w;
   ContactLists& s = batch.scratch.contacts;
   const std::span<const std::uint32_t> slots = batch.members.contacts;
-  const auto waits = [&](std::uint32_t slot) {
-    return !w.inactive_contacts.empty() && w.inactive_contacts[slot] != 0;
-  };
+  const auto waits = [&](std::uint32_t slot) { return !w.inactive_contacts.empty() && w.inactive_contacts[slot] != 0; };
   const auto for_each_block = [&](auto&& run) {
     for_blocks(tasks, int(slots.size()), kContactsPerGather,
                [&](int begin, int end, int) { run(std::size_t(begin), std::size_t(end)); });
