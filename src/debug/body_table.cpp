@@ -1,4 +1,4 @@
-// read_bodies: what there is to see of bodies, as columns. See <gyre/debug.h>.
+// read_bodies: the state of bodies as columns. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/islands.h"
@@ -32,18 +32,18 @@ Vec3 semi_axes(Vec3 moments, float mass) {
 }
 
 void add_body(const RigidWorld& w, std::uint32_t body, DVec3 origin, BodyTable& out) {
-  const BodyPose& place = w.bodies.places[body];
+  const BodyPose& body_pose = w.bodies.poses[body];
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyMass& mass = w.bodies.masses[body];
   const bool movable = is_movable(w.bodies.flags[body]);
   out.ids.push_back(body_id(w, body));
-  append(out.centers, difference(place.center, origin));
+  append(out.centers, difference(body_pose.center, origin));
   if (movable) {
     const PrincipalAxes principal = principal_axes(mass.inertia);
-    append(out.axes, normalized(place.orientation * principal.orientation));
+    append(out.axes, normalized(body_pose.orientation * principal.orientation));
     append(out.semi_axes, semi_axes(principal.moments, mass.mass));
   } else {
-    append(out.axes, place.orientation);
+    append(out.axes, body_pose.orientation);
     append(out.semi_axes, Vec3{});
   }
   append(out.linear_velocities, motion.linear_velocity);

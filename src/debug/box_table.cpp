@@ -15,12 +15,12 @@ struct Collector {
   DVec3 origin;
   BoxTable& out;
 
-  // Corners are rounded outward, so that what lies in a box still does when both are seen from the origin.
+  // Corners are rounded outward, so that a box still contains its contents relative to the origin of the table.
   void add(const WorldBox& box, BoxKind kind, int depth, std::uint32_t shape) {
-    const Aabb seen = round_outward({box.low - origin, box.high - origin});
-    if (is_unbounded(seen)) return;
-    append(out.corners, seen.low);
-    append(out.corners, seen.high);
+    const Aabb relative = round_outward({box.low - origin, box.high - origin});
+    if (is_unbounded(relative)) return;
+    append(out.corners, relative.low);
+    append(out.corners, relative.high);
     out.kinds.push_back(kind);
     out.depths.push_back(std::uint8_t(depth));
     out.shapes.push_back(shape);
@@ -43,21 +43,21 @@ void read_boxes(const World& world, std::uint32_t kinds, DVec3 origin, BoxTable&
   const RigidWorld& w = state_of(world).rigid;
   clear_all(out.corners, out.kinds, out.depths, out.shapes);
   Collector boxes{origin, out};
-  const auto wanted = [&](BoxKind kind) { return (kinds & box_bit(kind)) != 0; };
-  if (wanted(BoxKind::tight)) {
+  const auto is_requested = [&](BoxKind kind) { return (kinds & box_bit(kind)) != 0; };
+  if (is_requested(BoxKind::tight)) {
     w.shapes.ids.for_each_live([&](std::uint32_t shape) {
       const ColliderShape& collider = w.shapes.colliders[shape];
       const Pose world_from_shape = origin_pose(w.bodies, w.shapes.bodies[shape]) * collider.body_from_shape;
       boxes.add(world_box(collider.shape, world_from_shape), BoxKind::tight, 0, shape);
     });
   }
-  if (wanted(BoxKind::fat)) {
+  if (is_requested(BoxKind::fat)) {
     w.shapes.ids.for_each_live(
         [&](std::uint32_t shape) { boxes.add(w.shapes.proxies[shape].fat_box, BoxKind::fat, 0, shape); });
   }
   if (w.broadphase_stale) return;
-  if (wanted(BoxKind::fixed_tree)) add_nodes(w, true, BoxKind::fixed_tree, boxes);
-  if (wanted(BoxKind::moving_tree)) add_nodes(w, false, BoxKind::moving_tree, boxes);
+  if (is_requested(BoxKind::fixed_tree)) add_nodes(w, true, BoxKind::fixed_tree, boxes);
+  if (is_requested(BoxKind::moving_tree)) add_nodes(w, false, BoxKind::moving_tree, boxes);
 }
 
 }  // namespace gyre

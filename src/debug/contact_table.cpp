@@ -12,7 +12,7 @@ namespace gyre {
 
 namespace {
 
-// The solver's groups of all manifolds that it has to solve, found anew: they follow from the contacts alone.
+// The solver colours of all manifolds, computed again: they follow from the contacts alone.
 class SolverColors {
  public:
   explicit SolverColors(const RigidWorld& w) {
@@ -30,7 +30,7 @@ class SolverColors {
     color_constraints(pairs, slots, std::uint32_t(w.bodies.motion.size()), {}, kColoringOptions, coloring_);
   }
 
-  // To be asked in the order of the contacts, for each manifold with points.
+  // Must be called in the order of contacts, for each manifold with points.
   std::uint8_t next(const RigidWorld& w, const Contact& contact) {
     return is_solved(w, contact) ? coloring_.color[next_++] : kNoColor;
   }
@@ -54,7 +54,7 @@ void add_point(const RigidWorld& w, const Contact& contact, const Manifold& mani
   out.bodies.push_back(contact.body_b);
   out.shapes.push_back(contact.shape_a);
   out.shapes.push_back(contact.shape_b);
-  append(out.positions, difference(w.bodies.places[contact.body_a].center, origin) + point.from_a);
+  append(out.positions, difference(w.bodies.poses[contact.body_a].center, origin) + point.from_a);
   append(out.normals, manifold.normal);
   const Vec3 tangent = any_perpendicular(manifold.normal);
   append(out.tangents, tangent);

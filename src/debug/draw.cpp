@@ -1,4 +1,4 @@
-// draw_debug: lines and points for every layer that is wanted, from the same tables that users read. See <gyre/debug.h>.
+// draw_debug: lines and points of every requested layer, from the same tables that users read. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/painter.h"
 #include "rigid/sleep/island.h"
@@ -84,7 +84,7 @@ class Drawing {
     return contacts.colors[i] == kNoColor ? kGrey : color_of_number(contacts.colors[i]);
   }
   float meters_per_newton(std::uint32_t a, std::uint32_t b) const;
-  float reach(std::uint32_t body) const;
+  float extent_of(std::uint32_t body) const;
   Vec3 center(std::uint32_t body) const { return vector_at(bodies_.centers, row_[body]); }
 
   const World& world_;
@@ -109,19 +109,19 @@ Color Drawing::body_color(std::size_t row) const {
   return state == RestState::asleep ? kBlue : kOrange;
 }
 
-// How large to draw what belongs to a body; planes and bodies without shapes have no extent.
-float Drawing::reach(std::uint32_t body) const {
-  const float r = w_.bodies.masses[body].reach;
+// The size in which marks of a body are drawn; planes and bodies without shapes have no extent.
+float Drawing::extent_of(std::uint32_t body) const {
+  const float r = w_.bodies.masses[body].bounding_radius;
   return r > 0.0f && r < kUnbounded ? r : 0.5f;
 }
 
 float Drawing::meters_per_newton(std::uint32_t a, std::uint32_t b) const {
   if (paint_.options().meters_per_newton > 0.0f) return paint_.options().meters_per_newton;
-  const float pull = length(w_.settings.gravity);
+  const float gravity = length(w_.settings.gravity);
   float scale = 0.0f;
   for (const std::uint32_t body : {a, b}) {
     const float mass = w_.bodies.masses[body].mass;
-    if (mass > 0.0f) scale = max(scale, reach(body) / (mass * (pull > 0.0f ? pull : 9.81f)));
+    if (mass > 0.0f) scale = max(scale, extent_of(body) / (mass * (gravity > 0.0f ? gravity : 9.81f)));
   }
   return scale;
 }
@@ -132,11 +132,11 @@ void Drawing::geometry() {
   w_.shapes.ids.for_each_live([&](std::uint32_t shape) {
     lines.clear();
     add_wireframe(w_.shapes.geometry[shape], lines, paint_.options().segments);
-    const Pose pose = origin_pose(w_.bodies, w_.shapes.bodies[shape]) * w_.shapes.places[shape];
-    const Transform seen{difference(pose.position, paint_.options().origin), pose.orientation};
+    const Pose pose = origin_pose(w_.bodies, w_.shapes.bodies[shape]) * w_.shapes.body_from_shape[shape];
+    const Transform relative{difference(pose.position, paint_.options().origin), pose.orientation};
     const Color color = w_.shapes.proxies[shape].sensor ? kYellow : shape_color(shape);
     for (std::size_t i = 0; i < lines.size() / 6; ++i) {
-      paint_.line(seen * vector_at(lines, 2 * i), seen * vector_at(lines, 2 * i + 1), color);
+      paint_.line(relative * vector_at(lines, 2 * i), relative * vector_at(lines, 2 * i + 1), color);
     }
   });
 }
@@ -196,10 +196,10 @@ void Drawing::friction_basis(const ContactTable& contacts) {
 void Drawing::mass_centers() {
   paint_.begin(DrawLayer::mass_centers);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (bodies_.islands[i] == kNoIsland) continue;  // nothing moves it
+    if (bodies_.islands[i] == kNoIsland) continue;  // static
     const Vec3 at = vector_at(bodies_.centers, i);
     const Mat3 axes = to_matrix(quaternion_at(bodies_.axes, i));
-    const float size = 0.5f * reach(bodies_.ids[i].index);
+    const float size = 0.5f * extent_of(bodies_.ids[i].index);
     paint_.point(at, body_color(i));
     paint_.line(at, at + size * axes.x, kRed);
     paint_.line(at, at + size * axes.y, kGreen);
@@ -226,20 +226,22 @@ void Drawing::velocities() {
   const float seconds = paint_.options().velocity_seconds;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const Vec3 at = vector_at(bodies_.centers, i);
-    const Vec3 way = seconds * vector_at(bodies_.linear_velocities, i);
-    const Vec3 turn = seconds * reach(bodies_.ids[i].index) * vector_at(bodies_.angular_velocities, i);
-    if (way != Vec3{}) paint_.line(at, at + way, kYellow);
-    if (turn != Vec3{}) paint_.line(at, at + turn, kViolet);
+    const Vec3 linear = seconds * vector_at(bodies_.linear_velocities, i);
+    const Vec3 angular = seconds * extent_of(bodies_.ids[i].index) * vector_at(bodies_.angular_velocities, i);
+    if (linear != Vec3{}) paint_.line(at, at + linear, kYellow);
+    if (angular != Vec3{}) paint_.line(at, at + angular, kViolet);
   }
 }
 
-// What turns about x of its frame, and what slides along it, as far as limits and motors of the main axis go.
+// A marker of rotation about x of the joint frame and of sliding along it, within limits and motor range of the main
+// axis.
 bool turns_about_x(JointKind kind) {
   return kind == JointKind::hinge || kind == JointKind::cone || kind == JointKind::universal;
 }
 bool slides_along_x(JointKind kind) { return kind == JointKind::slider || kind == JointKind::wheel; }
 
-// Where the joint may go, where it is, and where its motor drives it: an arc about a hinge's axis, a stretch along a slider's.
+// The range of a joint, its position and its motor target: an arc about the axis of a hinge, a line along that of a
+// slider.
 void Drawing::joint_limits(const JointTable& joints, std::size_t i, float size) {
   const Vec3 anchor = vector_at(joints.anchors, 2 * i);
   const Mat3 frame = to_matrix(quaternion_at(joints.frames, 2 * i));
@@ -248,8 +250,8 @@ void Drawing::joint_limits(const JointTable& joints, std::size_t i, float size) 
   const float drive = joints.motors[2 * i + 1] > 0.0f ? clamp(joints.motors[2 * i], -1.0f, 1.0f) : 0.0f;
   if (turns_about_x(joints.kinds[i])) {
     const auto at = [&](float angle) {
-      const SinCos turn = sin_cos(angle);
-      return anchor + size * (turn.cos * frame.y + turn.sin * frame.z);
+      const SinCos direction = sin_cos(angle);
+      return anchor + size * (direction.cos * frame.y + direction.sin * frame.z);
     };
     if (limited) {
       paint_.arc(anchor, size * frame.y, size * frame.z, low, high, kYellow);
@@ -261,7 +263,7 @@ void Drawing::joint_limits(const JointTable& joints, std::size_t i, float size) 
   }
   if (slides_along_x(joints.kinds[i])) {
     if (limited) paint_.line(anchor + low * frame.x, anchor + high * frame.x, kYellow);
-    // A wheel's motor spins it.
+    // The motor of a wheel spins it.
     if (drive != 0.0f && joints.kinds[i] == JointKind::slider)
       paint_.line(anchor + now * frame.x, anchor + (now + drive * size) * frame.x, kOrange);
   }
@@ -279,11 +281,11 @@ void Drawing::joints() {
       paint_.point(anchor, side == 0 ? kRed : kBlue);
       if (!body) continue;
       paint_.line(center(body.index), anchor, kGrey);
-      const float own = 0.5f * reach(body.index);
+      const float own = 0.5f * extent_of(body.index);
       size = size > 0.0f ? min(size, own) : own;
     }
     const Vec3 anchor_a = vector_at(joints.anchors, 2 * i), anchor_b = vector_at(joints.anchors, 2 * i + 1);
-    // The rod, or the error.
+    // The rod, or the position error.
     paint_.line(anchor_a, anchor_b, joints.kinds[i] == JointKind::distance ? kWhite : kRed);
     if (joints.kinds[i] == JointKind::hinge || joints.kinds[i] == JointKind::slider) {
       const Vec3 axis = rotate(quaternion_at(joints.frames, 2 * i), {size, 0, 0});

@@ -1,5 +1,5 @@
-// What is drawn: layers as runs of the arrays, counts that follow from the tables, places relative to the origin, and that
-// nobody who looks changes what is seen.
+// Tests of draw_debug: layers as runs of the arrays, counts that follow from the tables, positions relative to the
+// origin. Drawing changes no world.
 #include "laws/kit.h"
 
 #include <gyre/debug.h>
@@ -85,7 +85,7 @@ TEST(Draw, CountsFollowFromTheTables) {
   EXPECT_EQ(layer(all, DrawLayer::joints).points, 4u) << "two joints with two anchors";
 }
 
-// A scene far away, seen from there, is the scene at home, to the float's last digits.
+// A far scene drawn from nearby equals the same scene at the origin, up to the last digits of a float.
 TEST(Draw, PlacesAreRelativeToTheOrigin) {
   const DVec3 far{4e6, 0, -8e6};
   const Scene home = make_scene(), away = make_scene(far);
@@ -140,7 +140,7 @@ TEST(Draw, ColoursTellRestAndIslands) {
   EXPECT_NE(color(ColorBy::rest_state, a), awake);
 }
 
-// Whoever looks at a world, and however often, changes no bit of it.
+// Reading a world any number of times changes no bit of it.
 TEST(Draw, LookingChangesNothing) {
   Scene watched = make_scene(), alone = make_scene();
   set_timing(watched.world, true);

@@ -1,4 +1,4 @@
-// explain: why a body is awake, who touches it, what pulls it; as ids and as words. See <gyre/debug.h>.
+// explain: why a body is awake, which bodies touch it, which joints pull it; as ids and as words. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/islands.h"
 #include "debug/step_length.h"
@@ -16,7 +16,7 @@ namespace {
 class Inquiry {
  public:
   Inquiry(const RigidWorld& w, std::uint32_t body)
-      : w_(w), body_(body), pull_(length(w.settings.gravity)), islands_(find_islands(w)) {}
+      : w_(w), body_(body), gravity_(length(w.settings.gravity)), islands_(find_islands(w)) {}
 
   void answer(Explanation& out);
 
@@ -25,7 +25,7 @@ class Inquiry {
   bool is_awake_member(std::uint32_t body) const {
     return islands_.roots[body] == islands_.roots[body_] && w_.bodies.flags[body].awake != 0;
   }
-  std::uint32_t min_still() const;
+  std::uint32_t shortest_still() const;
   std::uint32_t moving_support() const;
   void find_reason(Explanation& out) const;
   void find_touching(Explanation& out) const;
@@ -33,11 +33,11 @@ class Inquiry {
 
   const RigidWorld& w_;
   std::uint32_t body_;
-  float pull_;
+  float gravity_;
   IslandMap islands_;
 };
 
-// What keeps the body itself from resting; `settling` if nothing does.
+// The reason why the body itself does not sleep; `settling` if there is none.
 AwakeReason Inquiry::own_reason(std::uint32_t body) const {
   const BodyFlags& flags = w_.bodies.flags[body];
   if (flags.frozen != 0) return AwakeReason::frozen;
@@ -46,23 +46,24 @@ AwakeReason Inquiry::own_reason(std::uint32_t body) const {
   if (flags.awake == 0) return AwakeReason::asleep;
   if (w_.settings.sleeping == 0) return AwakeReason::sleeping_off;
   if (flags.can_sleep == 0) return AwakeReason::may_not_sleep;
-  const SleepTest rest = test_sleep(w_, body, pull_);
-  if (!rest.allowed && flags.touched == 0) return AwakeReason::unsupported;
-  if (rest.speed > rest.rest_speed) return AwakeReason::moving;
+  const SleepTest test = test_sleep(w_, body, gravity_);
+  if (!test.allowed && flags.constraint_use == 0) return AwakeReason::unsupported;
+  if (test.speed > test.rest_speed) return AwakeReason::moving;
   return AwakeReason::settling;
 }
 
-// Who in the island has rested for the shortest time: the whole island waits for it. Among equals the explained body.
-std::uint32_t Inquiry::min_still() const {
-  std::uint32_t least = body_;
+// The body of the island with the shortest still time, for which the whole island waits. Among equals the explained
+// body.
+std::uint32_t Inquiry::shortest_still() const {
+  std::uint32_t shortest = body_;
   w_.bodies.ids.for_each_live([&](std::uint32_t i) {
     if (!is_movable(w_.bodies.flags[i]) || !is_awake_member(i)) return;
-    if (w_.bodies.sleep[i].still_time < w_.bodies.sleep[least].still_time) least = i;
+    if (w_.bodies.sleep[i].still_time < w_.bodies.sleep[shortest].still_time) shortest = i;
   });
-  return least;
+  return shortest;
 }
 
-// The lowest kinematic body that moves and that somebody of the island lies on or hangs on; the body itself if none.
+// The lowest moving kinematic body that a body of the island touches or is joined to; the explained body if none.
 std::uint32_t Inquiry::moving_support() const {
   std::uint32_t found = body_;
   for_each_island_edge(w_, [&](std::uint32_t a, std::uint32_t b) {
@@ -80,11 +81,11 @@ std::uint32_t Inquiry::moving_support() const {
 void Inquiry::find_reason(Explanation& out) const {
   out.reason = own_reason(body_);
   if (out.reason != AwakeReason::settling) return;
-  const std::uint32_t least = min_still();
-  if (least != body_) {
+  const std::uint32_t shortest = shortest_still();
+  if (shortest != body_) {
     out.reason = AwakeReason::neighbor;
-    out.cause = body_id(w_, least);
-    out.cause_reason = own_reason(least);
+    out.cause = body_id(w_, shortest);
+    out.cause_reason = own_reason(shortest);
     return;
   }
   const std::uint32_t support = moving_support();
@@ -94,7 +95,7 @@ void Inquiry::find_reason(Explanation& out) const {
   out.cause_reason = AwakeReason::kinematic;
 }
 
-// The entry of a body in a list that stays sorted by index.
+// The entry of a body in a list that is sorted by index.
 TouchingBody& entry_of(std::vector<TouchingBody>& list, BodyId body) {
   auto at = list.begin();
   while (at != list.end() && at->body.index < body.index) ++at;
@@ -142,9 +143,9 @@ void Inquiry::answer(Explanation& out) {
   find_joints(out);
   const std::uint32_t root = islands_.roots[body_];
   if (root != kNoIsland) {
-    const SleepTest rest = test_sleep(w_, body_, pull_);
-    out.speed = rest.speed;
-    out.rest_speed = rest.rest_speed;
+    const SleepTest test = test_sleep(w_, body_, gravity_);
+    out.speed = test.speed;
+    out.rest_speed = test.rest_speed;
     out.still_seconds = w_.bodies.sleep[body_].still_time;
     out.seconds_to_sleep = kTimeToSleep;
     out.island = body_id(w_, root);

@@ -1,4 +1,4 @@
-// Staged situations, and the reason that must come out of each.
+// Staged situations with the expected reason of each.
 #include "laws/kit.h"
 
 #include <gyre/debug.h>
@@ -85,7 +85,7 @@ TEST(Explain, FallingSettlingAsleepAndMoving) {
   EXPECT_TRUE(says(e, "sliding"));
 }
 
-// A quiet box on a ground that is joined to one that does not come to rest.
+// A quiet box on a body that is joined to a moving one.
 TEST(Explain, ANeighbourKeepsItAwake) {
   World world = make_world();
   add_ground(world);
@@ -109,7 +109,7 @@ TEST(Explain, ANeighbourKeepsItAwake) {
   EXPECT_EQ(explain(world, swing).reason, AwakeReason::moving);
 }
 
-// A belt: its own velocity moves what lies on it only a little, but it never stands still.
+// A belt moves the bodies on it only a little by its own velocity, but it never stands still.
 TEST(Explain, OnAKinematicBodyThatMoves) {
   World world = make_world();
   const BodyId disc = world.add_body({.type = BodyType::kinematic, .pose = {.position = {0, -0.5, 0}}},

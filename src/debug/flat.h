@@ -1,4 +1,4 @@
-// Flat arrays, as <gyre/debug.h> gives them out: vectors and quaternions as runs of floats.
+// Flat arrays for <gyre/debug.h>: vectors and quaternions as runs of floats.
 #pragma once
 
 #include <gyre/math.h>
@@ -27,7 +27,7 @@ inline Quat quaternion_at(const std::vector<float>& from, std::size_t i) {
   return {from[4 * i], from[4 * i + 1], from[4 * i + 2], from[4 * i + 3]};
 }
 
-// Empties every array that is named.
+// Empties the arrays.
 template <class... Arrays>
 void clear_all(Arrays&... arrays) {
   (arrays.clear(), ...);

@@ -34,7 +34,7 @@ IslandMap find_islands(const RigidWorld& w) {
       map.roots[a] = b;
     }
   });
-  // A root is never above its members: going upward, each one's parent is final.
+  // A root has the lowest index of its members: in ascending order, each parent is final when it is read.
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!moves(i)) continue;
     map.roots[i] = map.roots[map.roots[i]];

@@ -1,4 +1,4 @@
-// Islands as they stand between two steps, for reading: union-find over what binds (rigid/sleep/island.h).
+// Islands between two steps, for reading: union-find over island edges (rigid/sleep/island.h).
 #pragma once
 
 #include "rigid/store/rigid_world.h"
@@ -9,7 +9,7 @@ namespace gyre {
 
 struct IslandMap {
   std::vector<std::uint32_t>
-      roots;  // by body slot: the lowest body of its island; kNoIsland if nothing moves it
+      roots;  // by body slot: the lowest body of its island; kNoIsland for static and kinematic bodies
   std::vector<std::uint32_t> sizes;  // by root: bodies in its island; 0 for others
   std::uint32_t count = 0;
 };

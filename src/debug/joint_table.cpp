@@ -1,4 +1,4 @@
-// read_joints: every joint with its frames, limits and what it bears. See <gyre/debug.h>.
+// read_joints: every joint with its frames, limits and loads. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/step_length.h"
@@ -20,13 +20,13 @@ struct End {
 End find_end(const RigidWorld& w, std::int32_t body, Vec3 local_anchor, Quat local_frame, DVec3 world_anchor,
              DVec3 origin) {
   if (body == kNoBody) return {{}, difference(world_anchor, origin), local_frame};
-  const BodyPose& place = w.bodies.places[body];
+  const BodyPose& body_pose = w.bodies.poses[body];
   return {body_id(w, std::uint32_t(body)),
-          difference(place.center, origin) + rotate(place.orientation, local_anchor),
-          normalized(place.orientation * local_frame)};
+          difference(body_pose.center, origin) + rotate(body_pose.orientation, local_anchor),
+          normalized(body_pose.orientation * local_frame)};
 }
 
-// A distance joint with two different lengths is a rope; a rod has one, a spring none that stops it.
+// A distance joint with two lengths is a rope, with one a rod; a spring has no limits.
 bool has_limits(const JointRecord& joint) {
   if (joint.kind != JointKind::distance) return joint.has_limits;
   return joint.min_length < joint.max_length &&

@@ -16,9 +16,9 @@ void append(std::vector<std::uint8_t>& out, Color color) {
 }  // namespace
 
 Color color_of_number(std::uint32_t number) {
-  // Steps of the golden section leave no two near numbers with a near hue.
-  const std::uint32_t turned = (number + 1) * 2654435769u;
-  const float hue = 6.0f * (float(turned >> 8) / 16777216.0f);
+  // Golden-section steps give neighbouring numbers distant hues.
+  const std::uint32_t golden_step = (number + 1) * 2654435769u;
+  const float hue = 6.0f * (float(golden_step >> 8) / 16777216.0f);
   const auto channel = [&](float shift) {
     float h = hue + shift;
     h = h >= 6.0f ? h - 6.0f : h;
@@ -54,8 +54,8 @@ void Painter::line(Vec3 from, Vec3 to, Color color) {
   ++range_->lines;
 }
 
-void Painter::point(Vec3 place, Color color) {
-  append(out_.point_positions, place);
+void Painter::point(Vec3 position, Color color) {
+  append(out_.point_positions, position);
   append(out_.point_colors, color);
   ++range_->points;
 }

@@ -1,4 +1,4 @@
-// How long the last step was: impulses over it are forces.
+// The length of the last step: impulses divided by it are forces.
 #pragma once
 
 #include "rigid/store/rigid_world.h"

@@ -1,5 +1,5 @@
-// The tables of bodies, contacts, boxes and joints: counts and values against what the world tells elsewhere, and against
-// slow and plain versions of the same.
+// Tests of the tables of bodies, contacts, boxes and joints: counts and values against other readings of the world,
+// and against slow and plain versions.
 #include "laws/kit.h"
 #include "world/world_access.h"
 #include "world/world_state.h"
@@ -22,7 +22,7 @@ Quat turn(const std::vector<float>& from, std::size_t i) {
   return {from[4 * i], from[4 * i + 1], from[4 * i + 2], from[4 * i + 3]};
 }
 
-// Boxes on a ground, some in stacks, one pair joined, one flying.
+// Boxes on a ground, some in stacks, one pair joined, one in flight.
 struct Yard {
   World world = make_world();
   std::vector<BodyId> boxes;
@@ -98,7 +98,7 @@ TEST(BodyTable, ABallsEllipsoidIsTheBall) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(table.semi_axes[std::size_t(axis)], 0.7f, 1e-6f);
 }
 
-// The islands that follow from nothing but contact points between dynamic bodies, and joints.
+// Islands from contact points between dynamic bodies, and joints, alone.
 std::map<std::uint32_t, std::set<std::uint32_t>> islands_by_flooding(const World& world) {
   std::map<std::uint32_t, std::set<std::uint32_t>> linked;
   for (const BodyId id : world.bodies().ids) {
@@ -157,7 +157,7 @@ TEST(BodyTable, IslandsAreThoseOfContactsAndJoints) {
   }
   BodyTable table;
   read_bodies(yard.world, {}, table);
-  // The two that are joined, two stacks, and the ball that flies.
+  // The joined pair, two stacks, and the ball in flight.
   EXPECT_EQ(table.island_count, 4u);
 }
 
@@ -240,7 +240,8 @@ bool holds(const BoxTable& boxes, std::size_t box, Vec3 p) {
   return true;
 }
 
-// Every kind of shape, tumbling: its wireframe lies in its tight box, that in its fat box, that in the trees.
+// Every kind of shape, tumbling: its tight box contains the wireframe, the fat box the tight box, the trees the fat
+// box.
 TEST(BoxTable, BoundsHoldTheShapesAndNodesHoldTheBounds) {
   World world = make_world({.gravity = {0, -1, 0}, .sleeping = false});
   const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0.2f}, {0.1f, 1, 0}, {0, 0.3f, 1}, {0.8f, 0.9f, 0.7f}};
@@ -271,7 +272,7 @@ TEST(BoxTable, BoundsHoldTheShapesAndNodesHoldTheBounds) {
   const DVec3 origin{-7e4, 1, 2};
   BoxTable boxes;
   for (int step = 0; step < 20; ++step) world.step(kStep);
-  // What the broad phase is told at the beginning of the next step is not in its trees yet.
+  // The trees get changed boxes at the beginning of the next step.
   const Array<std::uint32_t>& changed = state_of(world).rigid.shapes.changed;
   read_boxes(world, kAllBoxes, origin, boxes);
   ASSERT_EQ(boxes.corners.size(), 6 * boxes.size());

@@ -1,4 +1,4 @@
-// set_timing, read_times: what the profiler measured. See <gyre/debug.h>.
+// set_timing, read_times: the results of the profiler. See <gyre/debug.h>.
 #include "world/stages.h"
 #include "world/world_access.h"
 #include "world/world_state.h"

@@ -1,4 +1,4 @@
-// Times of stages: parts of the whole, named as the step's table, and nothing when they are off.
+// Times of stages: they sum to the whole, have the names of the step table, and are empty when timing is off.
 #include "laws/kit.h"
 #include "world/stages.h"
 

@@ -1,4 +1,4 @@
-// validate: the walk over a world's structures, as the public header offers it.
+// validate: state validation as the public header offers it.
 #include "world/validate_state.h"
 #include "world/world_access.h"
 #include "world/world_state.h"

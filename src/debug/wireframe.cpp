@@ -1,4 +1,4 @@
-// add_wireframe: the edges and outlines of a shape in its own frame. See <gyre/debug.h>.
+// add_wireframe: edges and outlines of a shape in its own frame. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/flat.h"
 #include "geometry/shape/cooked.h"
@@ -12,7 +12,7 @@ namespace gyre {
 
 namespace {
 
-// Half the side of what is shown of a plane, and its grid.
+// Half the side of the drawn part of a plane, and its grid.
 constexpr float kPlaneHalf = 10.0f;  // m
 constexpr int kPlaneCells = 10;
 constexpr int kMinSegments = 4;
@@ -29,13 +29,13 @@ class Wire {
     append(lines_, from);
     append(lines_, to);
   }
-  // From `u` over `quarters` quarter turns towards `v`, both as long as the radius.
+  // An arc from `u` over `quarters` quarter turns towards `v`; both have the length of the radius.
   void arc(Vec3 center, Vec3 u, Vec3 v, int quarters) {
     const int count = (segments_ * quarters + 3) / 4;
     Vec3 from = center + u;
     for (int i = 1; i <= count; ++i) {
       const SinCos angle = sin_cos(0.5f * kPi * float(quarters) * float(i) / float(count));
-      // A circle ends in the very place where it began.
+      // A circle ends exactly at its first point.
       const Vec3 to = i == count && quarters == 4 ? center + u : center + angle.cos * u + angle.sin * v;
       line(from, to);
       from = to;
@@ -70,7 +70,7 @@ constexpr Vec3 unit(int axis, float length) {
   return {axis == 0 ? length : 0.0f, axis == 1 ? length : 0.0f, axis == 2 ? length : 0.0f};
 }
 
-// Each edge of the inner box, pushed out along both of its faces; they are one where there is no rounding.
+// Each edge of the inner box, moved outward along both of its faces; without rounding the two lines coincide.
 void Wire::box_edges(Vec3 inner, float rounding) {
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -111,7 +111,7 @@ void Wire::shape(const Capsule& c) {
     arc(side * end, x, side * y, 2);
     arc(side * end, z, side * y, 2);
   }
-  for (const Vec3 way : {x, -x, z, -z}) line(way - end, way + end);
+  for (const Vec3 side : {x, -x, z, -z}) line(side - end, side + end);
 }
 
 void Wire::shape(const Cylinder& c) {
@@ -119,14 +119,14 @@ void Wire::shape(const Cylinder& c) {
   const Vec3 end{0, c.half_height, 0};
   circle(end, x, z);
   circle(-end, x, z);
-  for (const Vec3 way : {x, -x, z, -z}) line(way - end, way + end);
+  for (const Vec3 side : {x, -x, z, -z}) line(side - end, side + end);
 }
 
 void Wire::shape(const Cone& c) {
   const Vec3 x{c.radius, 0, 0}, z{0, 0, c.radius};
   const Vec3 end{0, c.half_height, 0};
   circle(-end, x, z);
-  for (const Vec3 way : {x, -x, z, -z}) line(way - end, end);
+  for (const Vec3 side : {x, -x, z, -z}) line(side - end, end);
 }
 
 void Wire::shape(const Plane& plane) {
@@ -144,7 +144,7 @@ void Wire::shape(const Plane& plane) {
 
 void Wire::mesh(const Mesh& mesh) {
   for (std::uint32_t half = 0; half < mesh.indices.size(); ++half) {
-    // An edge of two triangles is drawn once, by the lower half-edge.
+    // The lower half-edge draws an edge of two triangles once.
     if (mesh.twins[half] != Mesh::kNoTwin && mesh.twins[half] < half) continue;
     const std::uint32_t next = half % 3 == 2 ? half - 2 : half + 1;
     line(mesh.vertices[mesh.indices[half]], mesh.vertices[mesh.indices[next]]);
@@ -157,10 +157,12 @@ void Wire::field(const HeightField& field) {
   };
   for (std::uint32_t row = 0; row < field.rows; ++row) {
     for (std::uint32_t column = 0; column < field.columns; ++column) {
-      const bool here = solid(column, row, 0, 0);
-      if (here || solid(column, row, 0, 1)) line(field.sample(column, row), field.sample(column + 1, row));
-      if (here || solid(column, row, 1, 0)) line(field.sample(column, row), field.sample(column, row + 1));
-      if (here) line(field.sample(column, row + 1), field.sample(column + 1, row));
+      const bool is_solid = solid(column, row, 0, 0);
+      if (is_solid || solid(column, row, 0, 1))
+        line(field.sample(column, row), field.sample(column + 1, row));
+      if (is_solid || solid(column, row, 1, 0))
+        line(field.sample(column, row), field.sample(column, row + 1));
+      if (is_solid) line(field.sample(column, row + 1), field.sample(column + 1, row));
     }
   }
 }

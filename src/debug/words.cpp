@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// Neighbours and joints that are named one by one; the rest is counted.
+// Neighbours and joints beyond this number are counted, not named.
 constexpr std::size_t kMaxNamed = 4;
 
 class Sentences {
@@ -27,14 +27,14 @@ class Sentences {
     if (used_ >= sizeof out_.words) used_ = sizeof out_.words - 1;
   }
   void name(BodyId body) {
-    const char* const known = names_.of != nullptr ? names_.of(names_.user, body) : nullptr;
-    if (known != nullptr) {
-      add("%s", known);
+    const char* const own_name = names_.of != nullptr ? names_.of(names_.user, body) : nullptr;
+    if (own_name != nullptr) {
+      add("%s", own_name);
     } else {
       add("body %u", body.index);
     }
   }
-  // Between the parts of a list.
+  // The separator in a list.
   void separate(std::size_t i, std::size_t count) {
     add("%s", i == 0 ? "" : (i + 1 == count ? " and " : ", "));
   }
@@ -53,7 +53,7 @@ class Sentences {
   std::size_t used_ = 0;
 };
 
-// What a body does that keeps its island awake.
+// The activity of a body that keeps its island awake.
 const char* doing(AwakeReason reason) {
   switch (reason) {
     case AwakeReason::may_not_sleep:
@@ -149,10 +149,10 @@ void Sentences::touching() {
   add(" It touches ");
   const std::size_t all = out_.touching.size();
   const std::size_t count = all > kMaxNamed ? kMaxNamed : all;
-  const std::size_t parts = all > kMaxNamed ? count + 1 : count;
+  const std::size_t items = all > kMaxNamed ? count + 1 : count;
   for (std::size_t i = 0; i < count; ++i) {
     const TouchingBody& other = out_.touching[i];
-    separate(i, parts);
+    separate(i, items);
     name(other.body);
     add(" (%d point%s, %.3g N", other.points, other.points == 1 ? "" : "s", double(other.force));
     if (other.depth > 0.0f) add(", %.2g mm deep", 1000.0 * double(other.depth));
@@ -167,10 +167,10 @@ void Sentences::joints() {
   add(" It is pulled by ");
   const std::size_t all = out_.joints.size();
   const std::size_t count = all > kMaxNamed ? kMaxNamed : all;
-  const std::size_t parts = all > kMaxNamed ? count + 1 : count;
+  const std::size_t items = all > kMaxNamed ? count + 1 : count;
   for (std::size_t i = 0; i < count; ++i) {
     const PullingJoint& joint = out_.joints[i];
-    separate(i, parts);
+    separate(i, items);
     add("%s joint %u to ", to_string(joint.kind), joint.joint.index);
     if (joint.other) {
       name(joint.other);

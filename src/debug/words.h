@@ -1,11 +1,11 @@
-// The words of an explanation.
+// The text of an explanation.
 #pragma once
 
 #include <gyre/debug.h>
 
 namespace gyre {
 
-// Fills out.words from everything else in `out`.
+// Writes out.words from the rest of `out`.
 void write_words(Explanation& out, BodyId body, const BodyNames& names);
 
 }  // namespace gyre

@@ -12,7 +12,7 @@ void mark_rolling_lanes(ContactSolve& s, std::uint32_t blocks, Arena& arena) {
     unsigned lanes = 0;
     for (std::uint32_t lane = 0; lane < width; ++lane) {
       const std::uint32_t constraint = s.lists.order[block * width + lane];
-      const std::uint32_t index = constraint == kNoPlace ? kNotRolling : s.rolling.of_constraint[constraint];
+      const std::uint32_t index = constraint == kNoIndex ? kNotRolling : s.rolling.of_constraint[constraint];
       s.rolling_indices[block * width + lane] = index;
       if (index != kNotRolling) lanes |= 1u << lane;
     }
@@ -66,7 +66,7 @@ void order_alike(const BatchContext& batch, std::span<const std::uint32_t> membe
     }
   }
   const std::size_t first = order.size();
-  order.resize(first + (place + width - 1) / width * width, kNoPlace);
+  order.resize(first + (place + width - 1) / width * width, kNoIndex);
   for (const std::uint32_t member : members) order[first + starts[kind_of(member)]++] = member;
   if (shares > 1 && bounds != nullptr)
     find_share_bounds(std::span(firsts).first(shares), place, width, bounds);
@@ -89,7 +89,7 @@ std::span<ContactGroup> lay_out_contacts(BatchContext& batch, std::span<ContactG
                             ? nullptr
                             : &batch.group_bounds[used * std::size_t(batch.partition.count() + 1)];
     if (serial) {
-      order.resize(order.size() + members.size() * width, kNoPlace);
+      order.resize(order.size() + members.size() * width, kNoIndex);
       for (std::size_t i = 0; i < members.size(); ++i) order[(blocks + i) * width] = members[i];
     } else {
       order_alike(batch, members, order, bounds);

@@ -66,7 +66,7 @@ void part_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       if (kinds[i] == in_run) continue;
       const BodyFlags& flags = w.bodies.flags[bodies[i]];
-      kinds[i] = flags.touched != kNotConstrained ? std::uint8_t(kinds[i] + rotation_mode(motion, bodies[i]))
+      kinds[i] = flags.constraint_use != kNotConstrained ? std::uint8_t(kinds[i] + rotation_mode(motion, bodies[i]))
                  : !motion.is_smooth || !is_movable(flags) ? flies
                                                            : stop_at_impact;
     }
@@ -115,7 +115,7 @@ void gather_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
         continue;
       }
       const std::uint32_t body = std::uint32_t(each.body);
-      each = describe_motion(w.bodies, body, motion.motions, w.bodies.flags[body].touched == kPoseRead);
+      each = describe_motion(w.bodies, body, motion.motions, w.bodies.flags[body].constraint_use == kPoseRead);
       // A field may spin a light body up within the step, beyond what the kernels turn.
       if (!w.field_rest.empty() && w.field_rest[body].acts != kNoFields) each.needs_exact_rotation = true;
       any_spins = any_spins || each.needs_exact_rotation;

@@ -28,7 +28,7 @@ std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
 
 // Others may touch it at once: what is fixed is in many batches. (Not std::atomic_ref: Emscripten's library has none yet.)
 void touch_shared(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
-  std::uint8_t* const touched = &w.bodies.flags[body].touched;
+  std::uint8_t* const touched = &w.bodies.flags[body].constraint_use;
   std::uint8_t before = __atomic_load_n(touched, __ATOMIC_RELAXED);
   while (before < touch &&
          !__atomic_compare_exchange_n(touched, &before, touch, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
@@ -113,7 +113,7 @@ class ContactGatherer {
   // A body that is active is in one batch only.
   void touch_body(std::uint32_t body, bool active, std::uint8_t touch) const {
     if (!is_alone_ || !active) return touch_shared(w_, body, touch);
-    std::uint8_t& touched = w_.bodies.flags[body].touched;
+    std::uint8_t& touched = w_.bodies.flags[body].constraint_use;
     touched = max(touched, touch);
   }
   // Every member is written, at its place: what is built elsewhere and copied in wider pieces waits for the smaller ones.
@@ -183,7 +183,7 @@ void gather_contacts(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   const RigidWorld& w = batch.w;
   ContactLists& s = batch.scratch.contacts;
   const std::span<const std::uint32_t> slots = batch.members.contacts;
-  const auto waits = [&](std::uint32_t slot) { return !w.waiting.empty() && w.waiting[slot] != 0; };
+  const auto waits = [&](std::uint32_t slot) { return !w.inactive_contacts.empty() && w.inactive_contacts[slot] != 0; };
   const auto for_each_block = [&](auto&& run) {
     for_blocks(tasks, int(slots.size()), kContactsPerGather,
                [&](int begin, int end, int) { run(std::size_t(begin), std::size_t(end)); });

@@ -71,9 +71,9 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
     // As numbers without a sign, kNoBody is kNoIndex.
     return add_edge(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_edges[slot]);
   };
-  const FilteredList contacts =
-      parallel_filter_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
-  const FilteredList joints = parallel_filter_among(tasks, arena, works, w.awake_links.joints);
+  const FilteredList contacts = parallel_filter_among(tasks, arena, manifolds, w.contacts.with_manifolds,
+                                                      w.active_constraints.contacts);
+  const FilteredList joints = parallel_filter_among(tasks, arena, works, w.active_constraints.joints);
   return {contacts.list, joints.list, contact_edges, joint_edges, contacts.size + joints.size};
 }
 

@@ -64,16 +64,16 @@ void find_resting(BatchContext& batch, Arena& arena) {
   const std::span<const ColoringPair> pairs = contacts.lists.pairs;
   const RestingIslands islands(batch.w, constraints, pairs, batch.joints.edges, batch.members,
                                batch.local_index, arena);
-  contacts.forest = find_contact_trees(batch.w, constraints, pairs, batch.members, islands, arena);
-  contacts.structures = find_contact_structures(batch.w, pairs, batch.members, islands, arena);
+  contacts.forest = find_resting_trees(batch.w, constraints, pairs, batch.members, islands, arena);
+  contacts.structures = find_resting_structures(batch.w, pairs, batch.members, islands, arena);
 }
 void lay_out_resting(ContactSolve& s, Arena& arena) {
   if (s.forest.nodes.empty() && s.structures.empty()) return;
   const int width = s.kernels.width;
   const std::span<const std::uint32_t> places =
-      find_kernel_places(s.lists.order, s.lists.constraints.size(), arena);
-  place_tree_nodes(s.forest, places, width);
-  place_structure_contacts(s.structures, places, width);
+      find_kernel_positions(s.lists.order, s.lists.constraints.size(), arena);
+  set_tree_positions(s.forest, places, width);
+  set_structure_positions(s.structures, places, width);
   const ContactKernels* const kernels = &s.kernels.contacts;
   s.tree_solve = {s.forest.nodes, s.forest.work, s.lists.constraints, s.bodies.motion,
                   kernels,        s.blocks,      s.settings.step};
@@ -209,11 +209,11 @@ void show_bodies(const BatchContext& batch) {
   RigidWorld& w = batch.w;
   for (const std::uint32_t slot : batch.members.joints) {
     const JointRecord& joint = w.joints.records[slot];
-    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].touched = kPoseRead;
-    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].touched = kPoseRead;
+    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].constraint_use = kPoseRead;
+    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].constraint_use = kPoseRead;
   }
   for (const std::uint32_t body : batch.members.bodies) {
-    std::uint8_t& touched = w.bodies.flags[body].touched;
+    std::uint8_t& touched = w.bodies.flags[body].constraint_use;
     if (touched != kNotConstrained) touched = kPoseRead;
   }
 }
@@ -259,7 +259,7 @@ HalfStepping plan_half_steps(RigidWorld& w, float seconds, bool by_rows) {
   plan.h = seconds / float(plan.count);
   plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
   // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
-  if (!w.waiting.empty()) plan.warm_scale = min(plan.warm_scale, kMaxWarm);
+  if (!w.inactive_contacts.empty()) plan.warm_scale = min(plan.warm_scale, kMaxWarm);
   w.settings.last_substep = plan.h;
   w.settings.last_step = seconds;
   return plan;
@@ -313,7 +313,7 @@ void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
   for_blocks(tasks, int(w.bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       const std::uint32_t body = w.bodies.awake[i];
-      w.bodies.flags[body].touched = 0;
+      w.bodies.flags[body].constraint_use = 0;
       w.bodies.motion[body].delta_position = {};
       w.bodies.motion[body].delta_rotation = {};
       w.bodies.motion[body].pushout = 0.0f;
@@ -335,7 +335,7 @@ void begin_scratch(BatchScratch& scratch) {
 // What constraints moved has its velocity from them.
 void forget_moves(RigidWorld& w) {
   for (const std::uint32_t body : w.bodies.awake) {
-    if (w.bodies.flags[body].touched != kNotConstrained) w.bodies.last_moves[body] = {};
+    if (w.bodies.flags[body].constraint_use != kNotConstrained) w.bodies.last_moves[body] = {};
   }
 }
 

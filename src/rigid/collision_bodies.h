@@ -1,5 +1,5 @@
-// What contacts need to know of bodies while they are looked at, by body. Where most bodies rest only those are described that a contact
-// which is asked has: what sleeps costs nothing.
+// The view of bodies that the narrow phase works on, by body. If most bodies sleep, only bodies of active contacts
+// are described, so sleeping bodies cost nothing.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -12,8 +12,8 @@
 
 namespace gyre {
 
-// Whether the body may be elsewhere when the step ends: contacts between bodies that may not are not looked at.
-inline bool may_move(const RigidWorld& w, std::uint32_t body) {
+// True if the body may move within the step. The narrow phase skips contacts between two bodies that do not.
+inline bool can_move(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   if (flags.awake == 0 || flags.frozen != 0 || flags.type == BodyType::fixed) return false;
   const BodyMotion& motion = w.bodies.motion[body];
@@ -23,24 +23,24 @@ inline bool may_move(const RigidWorld& w, std::uint32_t body) {
 
 class CollisionBodies {
  public:
-  // Room in `arena`; `seconds` is how long the step lasts.
+  // Memory comes from `arena`; `seconds` is the length of the step.
   CollisionBodies(const RigidWorld& w, Arena& arena, float seconds);
 
   void make(TaskSystem& tasks, Arena& arena);
 
-  std::span<const CollisionBody> collision_bodies() const { return looks_; }
+  std::span<const CollisionBody> collision_bodies() const { return bodies_; }
   std::span<const BodyCenter> centers() const { return centers_; }
   std::span<const std::uint8_t> awake() const { return awake_; }
 
  private:
   std::size_t count() const { return w_.bodies.motion.size(); }
-  // Bits by body.
+  // A bit for each body of an active contact.
   std::span<std::uint64_t> find_needed(Arena& arena) const;
-  void look_at(std::uint32_t i);
+  void describe(std::uint32_t i);
 
   const RigidWorld& w_;
   float seconds_;
-  std::span<CollisionBody> looks_;
+  std::span<CollisionBody> bodies_;
   std::span<BodyCenter> centers_;
   std::span<std::uint8_t> awake_;
 };

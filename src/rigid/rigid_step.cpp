@@ -29,17 +29,18 @@ PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
   return pair;
 }
 
-// Bodies that a joint keeps from touching stay beside each other: their pairs are found whenever one moves.
+// Bodies whose joint disables their collision stay close to each other, so their pairs are found whenever one of them
+// moves.
 void drop_blocked_pairs(const RigidWorld& w, Array<std::uint64_t>& keys, std::size_t from) {
   if (w.joints.blocked.empty()) return;
-  std::size_t kept = from;
+  std::size_t count = from;
   for (std::size_t i = from; i < keys.size(); ++i) {
     const std::uint64_t key = keys[i];
     const std::uint32_t a = w.shapes.bodies[std::uint32_t(key >> 32)],
                         b = w.shapes.bodies[std::uint32_t(key)];
-    if (!w.joints.blocked.contains(pair_key(a, b))) keys[kept++] = key;
+    if (!w.joints.blocked.contains(pair_key(a, b))) keys[count++] = key;
   }
-  keys.resize_uninitialized(kept);
+  keys.resize_uninitialized(count);
 }
 
 void report_begin(RigidWorld& w, const Contact& contact) {
@@ -55,13 +56,12 @@ void report_begin(RigidWorld& w, const Contact& contact) {
 }
 
 bool finite_state(const BodyMotion& motion, Quat orientation) {
-  // What is not finite is no zero when taken from itself, nor is a sum with that.
+  // A value that is not finite, minus itself, is not zero; nor is any sum that contains the difference.
   const Vec3 nothing = (motion.linear_velocity - motion.linear_velocity) +
-                       (motion.angular_velocity - motion.angular_velocity) +
-                       (motion.delta_position - motion.delta_position);
-  const float turn = (orientation.x - orientation.x) + (orientation.y - orientation.y) +
-                     (orientation.z - orientation.z) + (orientation.w - orientation.w);
-  return nothing.x + nothing.y + nothing.z + turn == 0.0f;
+                       (motion.angular_velocity - motion.angular_velocity) + (motion.delta_position - motion.delta_position);
+  const float rotation = (orientation.x - orientation.x) + (orientation.y - orientation.y) +
+                         (orientation.z - orientation.z) + (orientation.w - orientation.w);
+  return nothing.x + nothing.y + nothing.z + rotation == 0.0f;
 }
 
 void list_marked(RigidWorld& w, std::span<const std::uint32_t> bodies) {
@@ -74,7 +74,7 @@ void list_marked(RigidWorld& w, std::span<const std::uint32_t> bodies) {
   }
 }
 
-// Whether the fat box did not hold its shape's way in the coming step, and is made anew.
+// Fits a new fat box if the present one does not cover the motion of the shape in the coming step. True if it did.
 bool ensure_fat_box_covers_motion(RigidWorld& w, std::uint32_t shape, float seconds) {
   const ShapeBox box = find_box(w, shape, seconds);
   const WorldBox needed = needed_box(box.tight, box.motion);
@@ -87,10 +87,10 @@ bool ensure_fat_box_covers_motion(RigidWorld& w, std::uint32_t shape, float seco
 void list_if_moving(RigidWorld& w, std::uint32_t shape) {
   const BodyMotion& motion = w.bodies.motion[w.shapes.bodies[shape]];
   if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{})
-    w.shapes.hurried.push_back(shape);
+    w.shapes.moved_shapes.push_back(shape);
 }
 
-// The promise of collision/broadphase/fat_box.h as a step begins.
+// Establishes the invariant of collision/broadphase/fat_box.h at the beginning of a step.
 void ensure_fat_boxes_cover_motion(RigidWorld& w, TaskSystem& tasks, float seconds) {
   if (seconds > w.shapes.fat_box_horizon) {
     w.refit_marks.resize(w.shapes.colliders.size(), 0);
@@ -103,21 +103,21 @@ void ensure_fat_boxes_cover_motion(RigidWorld& w, TaskSystem& tasks, float secon
     });
     list_marked(w, w.bodies.awake);
   } else {
-    for (const std::uint32_t shape : w.shapes.hurried) {
+    for (const std::uint32_t shape : w.shapes.moved_shapes) {
       if (!w.shapes.ids.live(shape)) continue;
       if (ensure_fat_box_covers_motion(w, shape, seconds)) w.shapes.changed.push_back(shape);
     }
   }
   w.shapes.fat_box_horizon = seconds;
-  w.clocks.hurried.trim(w.shapes.hurried, w.shapes.hurried.size());
-  w.shapes.hurried.clear();
+  w.clocks.moved_shapes.trim(w.shapes.moved_shapes, w.shapes.moved_shapes.size());
+  w.shapes.moved_shapes.clear();
 }
 
-// Takes a body whose state went wrong back to where it last was and keeps it there. Impulses that are no numbers must not
-// stay with its contacts and joints: they would go over to the next body, and the bits of a NaN differ between processors.
+// Returns a body with a state that is not finite to its last pose and freezes it there. Its contacts and joints lose
+// their impulses: a NaN would spread to other bodies, and its bits differ between processors.
 void freeze(RigidWorld& w, std::uint32_t body) {
   w.bodies.motion[body] = {};
-  w.bodies.orientations[body] = w.bodies.places[body].orientation;
+  w.bodies.orientations[body] = w.bodies.poses[body].orientation;
   w.bodies.flags[body].frozen = 1;
   w.bodies.inertia[body] = {};
   w.bodies.awake_stale = true;
@@ -133,7 +133,7 @@ void freeze(RigidWorld& w, std::uint32_t body) {
   }
 }
 
-// Contacts of a body that woke after they were asked: what may stop it there.
+// Lists the CCD blockers among the contacts of a body that woke after the narrow phase.
 void collect_ccd_blockers(RigidWorld& w, std::uint32_t body) {
   for_each_contact_of_body(w, body, [&](std::uint32_t slot) {
     if (blocks_fast_bodies(w.contacts.contacts[slot], w.shapes.proxies)) w.touches.ccd_blockers.set(slot);
@@ -143,7 +143,7 @@ void collect_ccd_blockers(RigidWorld& w, std::uint32_t body) {
 }  // namespace
 
 void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch) {
-  // Where only a step listed them, they are in order most often.
+  // The list is usually in order if only steps appended to it.
   bool rises = true;
   for (std::size_t i = 1; i < changed.size() && rises; ++i) rises = changed[i - 1] < changed[i];
   if (rises) return;
@@ -223,25 +223,26 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
   const ArenaScope scope(arena);
   CollisionBodies bodies(w, arena, seconds);
   bodies.make(tasks, arena);
-  const CollideInput input{w.shapes.colliders, bodies.collision_bodies(), bodies.centers(), bodies.awake(),
-                           w.shapes.proxies,   w.awake_links.contacts,    recycle_contacts};
+  const CollideInput input{w.shapes.colliders, bodies.collision_bodies(), bodies.centers(),
+                           bodies.awake(),     w.shapes.proxies,          w.active_constraints.contacts,
+                           recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
   remove_internal_edge_contacts(w.contacts, input, w.touches.on_static, arena, tasks, w.internal_edges);
 }
 
 void link_islands(RigidWorld& w) {
   w.touches.ended.for_each_set([&](std::size_t slot) {
-    // `touching` already tells the new state: what ended was touching before.
+    // `touching` has the new state already; an ended contact touched before.
     Contact ended = w.contacts.contacts[slot];
     ended.touching = 1;
     report_end(w, ended);
   });
   w.touches.began.for_each_set([&](std::size_t slot) { report_begin(w, w.contacts.contacts[slot]); });
   remove_gone(w.contacts, w.touches.gone, [](std::uint32_t, const Contact&) {});
-  const std::size_t told = w.events.sleep_changes.size();
+  const std::size_t first_woken = w.events.sleep_changes.size();
   wake_touched(w);
   refresh_awake(w.bodies);
-  for (std::size_t i = told; i < w.events.sleep_changes.size(); ++i)
+  for (std::size_t i = first_woken; i < w.events.sleep_changes.size(); ++i)
     collect_ccd_blockers(w, w.events.sleep_changes[i].body.index);
 }
 
@@ -249,11 +250,11 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
                    Array<std::uint32_t>& frozen, bool last) {
   const ArenaScope scope(arena);
   BodyStore& bodies = w.bodies;
-  const auto went_wrong = [&](std::uint32_t n) {
+  const auto is_not_finite = [&](std::uint32_t n) {
     const std::uint32_t i = bodies.awake[n];
     return !finite_state(bodies.motion[i], bodies.orientations[i]);
   };
-  for (const std::uint32_t n : parallel_filter(tasks, arena, bodies.awake.size(), went_wrong).list)
+  for (const std::uint32_t n : parallel_filter(tasks, arena, bodies.awake.size(), is_not_finite).list)
     frozen.push_back(bodies.awake[n]);
   for (const std::uint32_t i : frozen) freeze(w, i);
   refresh_awake(bodies);
@@ -267,8 +268,8 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
   for_blocks(tasks, int(awake.size()), kBodiesPerBlock, [&](int begin, int, int) {
     const std::span<const std::uint32_t> block = block_at(std::size_t(begin));
     for (const std::uint32_t i : block) {
-      bodies.places[i].center += bodies.motion[i].delta_position;
-      bodies.places[i].orientation = bodies.orientations[i];
+      bodies.poses[i].center += bodies.motion[i].delta_position;
+      bodies.poses[i].orientation = bodies.orientations[i];
       if (last) {
         bodies.forces[i].force = {};
         bodies.forces[i].torque = {};
@@ -283,16 +284,16 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
 }
 
 void break_joints(RigidWorld& w, float seconds) {
-  const auto goes = [&](std::int32_t body) {
+  const auto moves = [&](std::int32_t body) {
     return body != kNoBody && is_simulated(w.bodies.flags[std::size_t(body)]);
   };
-  w.awake_links.joints.for_each_set([&](std::size_t number) {
+  w.active_constraints.joints.for_each_set([&](std::size_t number) {
     const auto slot = std::uint32_t(number);
     if (!w.joints.ids.live(slot)) return;
     const JointRecord& joint = w.joints.records[slot];
     if (joint.break_force <= 0.0f && joint.break_torque <= 0.0f) return;
-    // What sleeps still has the impulses of the step in which it fell asleep, which it withstood.
-    if (!goes(joint.body_a) && !goes(joint.body_b)) return;
+    // A sleeping joint keeps the impulses of the step in which it fell asleep; it withstood those.
+    if (!moves(joint.body_a) && !moves(joint.body_b)) return;
     const float force = length(joint.total_linear) / seconds;
     const float torque = length(joint.total_angular) / seconds;
     if ((joint.break_force > 0.0f && force > joint.break_force) ||

@@ -1,4 +1,5 @@
-// The rigid half of a step, as stages that world/step.cpp lists. Each is a function from arrays to arrays.
+// The stages of a step that work on rigid bodies; world/step.cpp lists them. Each is a function from arrays to
+// arrays.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -9,50 +10,52 @@
 
 namespace gyre {
 
-// Kept from step to step only for its memory.
+// Memory of the stage clamp_fast_bodies. Its contents last for one step.
 struct ContinuousScratch {
   Array<FastBody> fast;
-  Array<SavedMotion> kept;
+  Array<SavedMotion> saved;
   Array<std::uint32_t> found;
   Bitset listed;
   Bitset near_blockers;  // by shape
   ContinuousCollision collision;
   Array<GatePair> gates;
-  Array<std::uint32_t> moved;  // bodies that follow others by joints
+  Array<std::uint32_t> moved;  // bodies that joints move after CCD
 };
 
-// A list of changed proxies, ascending and without repeats; the other two are scratch.
+// Sorts a list of changed proxies and removes repeats. `keys` and `scratch` are working memory.
 void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch);
-// Tells the broad phase what came, went or moved its fat box since the last step. Commands do not know how long the step will be:
-// boxes of what they placed or set moving get its way here, and all do where the step is longer than the last.
+// Updates the broad phase with new, removed and refitted proxies. A command does not know the length of the step, so
+// the fat boxes of shapes that it placed or set moving are extended by their motion here. If the step is longer than
+// the last, all fat boxes are checked.
 void refit(RigidWorld& w, TaskSystem& tasks, float seconds);
-// New pairs of fat boxes become contacts, in key order.
-// Returns how many pairs of boxes the broad phase named.
+// Makes contacts of new pairs of fat boxes, in the order of their keys. Returns the number of pairs that the broad
+// phase reported.
 std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks);
-// Looks at every contact that could have changed: manifolds in, touch changes out.
+// The narrow phase: updates the manifolds of all active contacts and finds which contacts began, ended or are gone.
 void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContacts recycle_contacts,
                    float seconds);
-// Events of touches; removes pairs that came apart; wakes what was touched.
+// Reports begun and ended touches, removes contacts whose fat boxes separated, and wakes bodies that awake bodies
+// touch.
 void link_islands(RigidWorld& w);
-// New places, poses, inertia and fat boxes of awake bodies; freezes bodies whose state is not finite. Returns how many
-// were frozen (their slots are appended to `frozen`).
-// `last`: forces that the user gave end with the step; false where only a part of it is done.
+// Applies the motion of the step to poses, inertia and fat boxes of awake bodies. Bodies whose state is not finite
+// are frozen; their slots are appended to `frozen`. `last` is false if only a piece of the step is done: then the
+// user's forces stay.
 void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds,
                    Array<std::uint32_t>& frozen, bool last = true);
-// Joints that bore more than they can break.
+// Reports joints whose force or torque exceeded their limit.
 void break_joints(RigidWorld& w, float seconds);
 
-// Sweeps bodies that moved far against what is in their way and takes them back to the first impact.
+// Continuous collision: moves each fast body back to its first impact with a blocker.
 void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const SolverKernels& kernels, Arena& arena,
                        TaskSystem& tasks);
 
-// Fits a new fat box around one shape, with its way in a step of this length, and lists it as changed.
+// Fits a new fat box around one shape, extended by its motion in a step of this length, and lists it as changed.
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds);
-// A command changed how the body moves: the coming step sees to its boxes.
+// A command changed the velocity of the body. The next step checks its fat boxes.
 void mark_moved(RigidWorld& w, std::uint32_t body);
-// Fits a new fat box around what a command placed, with no way yet; the coming step sees to that.
+// Fits a fat box without motion around a shape that a command placed. The next step adds its motion.
 void refit_placed_shape(RigidWorld& w, std::uint32_t shape);
-// Removes one contact's traces: its end-of-touch event.
+// Reports the end of touch of a contact that is about to be removed.
 void report_end(RigidWorld& w, const Contact& contact);
 
 }  // namespace gyre

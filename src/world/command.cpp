@@ -1,4 +1,4 @@
-// How every command is carried out. Checks are in command_check.cpp; here everything holds.
+// Executes commands. command_check.cpp has checked their arguments.
 #include "world/command.h"
 
 #include "base/float_mode.h"
@@ -14,20 +14,20 @@ namespace gyre {
 
 namespace {
 
-// What leaves a float's range must not get into the state.
+// Values beyond the range of float must not enter the state.
 Vec3 finite_or(Vec3 value, Vec3 otherwise) { return is_finite(value) ? value : otherwise; }
 
-// A body that a user pushes is awake.
+// Wakes a body to which the user applies a force or impulse.
 void wake_if_movable(RigidWorld& w, std::uint32_t body) {
   if (is_movable(w.bodies.flags[body])) wake(w, body);
 }
 
-// Takes all contacts of a shape away, with end events.
+// Removes all contacts of a shape and reports their ends.
 void drop_contacts(RigidWorld& w, std::uint32_t shape) {
   remove_contacts_of_shape(w.contacts, shape, [&](std::uint32_t, const Contact& contact) { report_end(w, contact); }, w.listed);
 }
 
-// The proxy's part that follows from the body.
+// The fields of a proxy that follow from the body.
 void refresh_proxy(RigidWorld& w, std::uint32_t shape) {
   Proxy& proxy = w.shapes.proxies[shape];
   const BodyFlags& flags = w.bodies.flags[w.shapes.bodies[shape]];
@@ -35,7 +35,7 @@ void refresh_proxy(RigidWorld& w, std::uint32_t shape) {
   proxy.pushes = flags.type == BodyType::dynamic;
 }
 
-// Mass, centre and inertia from shapes and overrides; the origin is, or stays, at `origin`.
+// Mass, centre and inertia from shapes and overrides; the origin of the body stays at `origin`.
 void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   BodyStore& bodies = w.bodies;
   const Vec3 old_center = bodies.masses[body].center;
@@ -54,12 +54,12 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
       own.mass = given.mass;
     }
     if (given.has_center != 0) {
-      // Kept about the new centre unless it is given too (Huygens-Steiner).
+      // The inertia moves to the new centre unless it was set, too (Huygens-Steiner).
       own.inertia = own.inertia + point_inertia(own.mass, given.center - own.center);
       own.center = given.center;
     }
     if (given.has_inertia != 0) own.inertia = given.inertia;
-    if (!(own.mass > 0.0f)) own.mass = 1.0f;  // a dynamic body without mass would be moved by nothing
+    if (!(own.mass > 0.0f)) own.mass = 1.0f;  // a dynamic body without mass would not move
     mass.mass = own.mass;
     mass.inverse_mass = 1.0f / own.mass;
     mass.center = own.center;
@@ -72,16 +72,17 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
     mass.center = given.center;
   }
   for (const ShapeId id : bodies.shapes[body]) {
-    const Transform& place = w.shapes.places[id.index];
-    const float reach = outer_radius(w.shapes.colliders[id.index].shape, inverse_times(place, mass.center));
-    mass.reach = max(mass.reach, reach);
+    const Transform& local = w.shapes.body_from_shape[id.index];
+    const float distance =
+        outer_radius(w.shapes.colliders[id.index].shape, inverse_times(local, mass.center));
+    mass.bounding_radius = max(mass.bounding_radius, distance);
   }
   bodies.masses.set(body, mass);
-  // The velocity belongs to the centre of mass: where that moves in the body, so does it.
+  // The velocity is that of the centre of mass, so it changes when the centre moves in the body.
   BodyMotion& motion = bodies.motion[body];
   const Vec3 carried = cross(motion.angular_velocity, rotate(origin.orientation, mass.center - old_center));
   motion.linear_velocity = finite_or(motion.linear_velocity + carried, motion.linear_velocity);
-  bodies.places[body] = {origin * mass.center, origin.orientation};
+  bodies.poses[body] = {origin * mass.center, origin.orientation};
   shift_joint_ends(w, body, mass.center - old_center);
   bodies.orientations[body] = origin.orientation;
   refresh_inertia(bodies, body);
@@ -90,7 +91,7 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
 }
 void refresh_mass(RigidWorld& w, std::uint32_t body) { refresh_mass(w, body, origin_pose(w.bodies, body)); }
 
-// A body's shapes, ascending.
+// The shapes of a body, ascending.
 template <class List>
 void insert_sorted(List& list, ShapeId item) {
   std::size_t at = 0;
@@ -109,7 +110,7 @@ void erase_index(List& list, std::uint32_t index) {
 ShapeId attach_shape(RigidWorld& w, std::uint32_t body, const ShapeDef& def) {
   const std::uint32_t shape = add_shape_slot(w.shapes).index;
   w.shapes.bodies[shape] = body;
-  w.shapes.places.set(shape, {def.local.position, normalized(def.local.orientation)});
+  w.shapes.body_from_shape.set(shape, {def.local.position, normalized(def.local.orientation)});
   w.shapes.geometry[shape] = def.geometry;
   w.shapes.density[shape] = def.density;
   w.shapes.materials.set(shape, def.material);
@@ -213,7 +214,7 @@ CommandResult execute(WorldState& s, const SetPose& c) {
   wake_if_movable(w, body);
   wake_neighbours(w, body);
   const Pose pose{c.pose.position, normalized(c.pose.orientation)};
-  w.bodies.places[body] = {pose * w.bodies.masses[body].center, pose.orientation};
+  w.bodies.poses[body] = {pose * w.bodies.masses[body].center, pose.orientation};
   w.bodies.orientations[body] = pose.orientation;
   refresh_inertia(w.bodies, body);
   for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
@@ -238,9 +239,10 @@ CommandResult execute(WorldState& s, const MoveKinematic& c) {
   const Pose pose{c.pose.position, orientation};
   const DVec3 center = pose * w.bodies.masses[body].center;
   BodyMotion& motion = w.bodies.motion[body];
-  motion.linear_velocity = finite_or((1.0f / c.seconds) * difference(center, w.bodies.places[body].center) + Vec3{}, {});
-  motion.angular_velocity =
-      finite_or((1.0f / c.seconds) * rotation_between(w.bodies.places[body].orientation, orientation) + Vec3{}, {});
+  motion.linear_velocity =
+      finite_or((1.0f / c.seconds) * difference(center, w.bodies.poses[body].center) + Vec3{}, {});
+  motion.angular_velocity = finite_or(
+      (1.0f / c.seconds) * rotation_between(w.bodies.poses[body].orientation, orientation) + Vec3{}, {});
   mark_moved(w, body);
   return {true, {}, {}, {}};
 }
@@ -281,7 +283,7 @@ CommandResult execute(WorldState& s, const SetDamping& c) {
   return {true, {}, {}, {}};
 }
 
-// The surface of every contact of a shape, mixed anew.
+// Combines the materials of every contact of a shape again.
 void remix(RigidWorld& w, std::uint32_t shape) {
   for_each_contact_of_shape(w.contacts, shape, [&](std::uint32_t slot) {
     Contact& contact = w.contacts.contacts[slot];
@@ -399,10 +401,10 @@ CommandResult execute(WorldState& s, const SetCombineRules& c) {
   return {true, {}, {}, {}};
 }
 
-// Sums that leave a float's range are held at its ends.
+// Sums beyond the range of float are clamped.
 Vec3 bounded(Vec3 v) {
-  constexpr float kMost = 3.0e38f;
-  return {clamp(v.x, -kMost, kMost), clamp(v.y, -kMost, kMost), clamp(v.z, -kMost, kMost)};
+  constexpr float kMax = 3.0e38f;
+  return {clamp(v.x, -kMax, kMax), clamp(v.y, -kMax, kMax), clamp(v.z, -kMax, kMax)};
 }
 CommandResult execute(WorldState& s, const AddForce& c) {
   const std::uint32_t body = c.body.index;
@@ -434,7 +436,7 @@ CommandResult execute(WorldState& s, const Step& c) {
 void remove_joint_now(WorldState& state, std::uint32_t joint) { remove_joint(state.rigid, joint); }
 
 CommandResult submit(WorldState& state, const Command& command) {
-  const FloatMode mode;  // commands and the serial parts of a step compute too
+  const FloatMode mode;  // commands and the serial parts of a step compute, too
   const Error why = check_command(state, command);
   if (why) {
     report_problem(state, why.code, {}, "%s", why.message);

@@ -1,5 +1,5 @@
-// Every change of a world as one small struct, and the one door that they all go through: check it, show it to the log,
-// do it. A recording is a list of these, so it cannot miss one.
+// Every change of a world as a small struct, and the one function through which all changes pass: it checks the
+// command, shows it to the log, and executes it. A recording is a list of commands, so it cannot miss a change.
 #pragma once
 
 #include "world/flat_joint.h"
@@ -144,14 +144,14 @@ struct Step {
   float seconds = 0;
 };
 
-// Recordings know a command by its place: new ones come last.
+// Recordings store the index of a command in this list: append new ones.
 using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
                              SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
                              SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled,
                              SetMotion, SetSolver>;
 
-// What a command gave back: whether it was done, and the id of what it made.
+// The result of a command: success, and the id of the new object.
 struct CommandResult {
   bool done = false;
   BodyId body;
@@ -160,13 +160,14 @@ struct CommandResult {
   FieldId field{};
 };
 
-// Checks the command, shows it to the log, does it. A command that is refused changes nothing and is one problem.
+// Checks the command, shows it to the log and executes it. A refused command changes nothing and is reported as one
+// problem.
 CommandResult submit(WorldState& state, const Command& command);
 
-// Takes a joint away as part of a step (it broke), not as a command of the user's.
+// Removes a joint that broke, as part of a step and not as a command.
 void remove_joint_now(WorldState& state, std::uint32_t joint);
 
-// Why a command would be refused: command_check.cpp. Code none if it would not.
+// Why a command would be refused; code none if it would not. See command_check.cpp.
 Error check_command(const WorldState& state, const Command& command);
 
 }  // namespace gyre

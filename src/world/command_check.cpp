@@ -1,4 +1,4 @@
-// What every command must hold before it is carried out. The message names object, field, value and allowed range.
+// The preconditions of every command. A message names object, field, value and allowed range.
 #include "world/field_commands.h"
 #include "world/joint_commands.h"
 #include "world/refusal.h"
@@ -56,15 +56,15 @@ Error check_pose(const char* field, const Pose& pose) {
 
 Error check_material(const char* field, const Material& m) {
   char name[64];
-  const auto part = [&](const char* what) {
+  const auto member = [&](const char* what) {
     std::snprintf(name, sizeof name, "%s.%s", field, what);
     return name;
   };
-  Error e = check_range(part("static_friction"), m.static_friction, 0.0f, 1.0e6f);
-  if (e.ok()) e = check_range(part("dynamic_friction"), m.dynamic_friction, 0.0f, 1.0e6f);
-  if (e.ok()) e = check_range(part("restitution"), m.restitution, 0.0f, 1.0f);
-  if (e.ok()) e = check_range(part("rolling_friction"), m.rolling_friction, 0.0f, 1.0e6f);
-  if (e.ok()) e = check_range(part("spinning_friction"), m.spinning_friction, 0.0f, 1.0e6f);
+  Error e = check_range(member("static_friction"), m.static_friction, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range(member("dynamic_friction"), m.dynamic_friction, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range(member("restitution"), m.restitution, 0.0f, 1.0f);
+  if (e.ok()) e = check_range(member("rolling_friction"), m.rolling_friction, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range(member("spinning_friction"), m.spinning_friction, 0.0f, 1.0e6f);
   return e;
 }
 
@@ -190,9 +190,9 @@ Error check_drive(const PoseDrive& d) {
 }
 
 Error check_path(const FlatJoint& d) {
-  const std::size_t least = d.path_closed ? 3 : 2;
-  if (d.path.size() < least || d.path.size() > std::size_t(kMaxPathPoints))
-    return refuse("joint.points has %d points; it must have %d to %d", int(d.path.size()), int(least),
+  const std::size_t min_points = d.path_closed ? 3 : 2;
+  if (d.path.size() < min_points || d.path.size() > std::size_t(kMaxPathPoints))
+    return refuse("joint.points has %d points; it must have %d to %d", int(d.path.size()), int(min_points),
                   kMaxPathPoints);
   if (d.path_orientation > PathOrientation::following)
     return refuse("joint.orientation is %d; there is no such", int(d.path_orientation));
@@ -208,7 +208,7 @@ Error check_path(const FlatJoint& d) {
   return ok();
 }
 
-// What only kinds beyond the first five look at.
+// Fields that only kinds beyond the first five have.
 Error check_kind(const FlatJoint& d) {
   if (d.axis_b) {
     const Error e = check_direction("joint.axis_b", *d.axis_b);

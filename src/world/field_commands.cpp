@@ -117,7 +117,7 @@ CommandResult execute(WorldState& s, const AddField& c) {
   Array<FieldRecord>& fields = s.rigid.fields;
   constexpr std::uint32_t kLastGeneration = 0xffff;
   std::uint32_t slot = 0;
-  // A slot that has used up its generations is not handed out again.
+  // A slot that has used up its generations is never used again.
   while (slot < fields.size() && (fields[slot].is_live() || fields[slot].generation >= kLastGeneration))
     ++slot;
   if (slot == fields.size()) fields.push_back({});

@@ -1,4 +1,4 @@
-// Commands about fields, and explosions: checked and carried out like those of command.h.
+// Commands on fields, and explosions: checked and executed like those of command.h.
 #pragma once
 
 #include "rigid/store/field_record.h"
@@ -18,9 +18,9 @@ CommandResult execute(WorldState& state, const SetField& c);
 CommandResult execute(WorldState& state, const RemoveField& c);
 CommandResult execute(WorldState& state, const Explode& c);
 
-// Whether the field of an id exists.
+// True if the field of an id exists.
 bool is_field(const WorldState& state, FieldId id);
-// Why fields that came from outside cannot be a state; null if they can.
+// Why loaded fields cannot be a state; null if they can.
 const char* fault_in_fields(std::span<const FieldRecord> fields);
 
 }  // namespace gyre

@@ -1,5 +1,5 @@
-// The definition of a joint with the fields of all kinds side by side, as commands carry it and recordings store it. Users write one
-// definition per kind (gyre/joints.h). for_each_field is the one list that relates the two forms.
+// The definition of a joint with the fields of all kinds side by side, as commands carry it and recordings store it.
+// Users write one definition per kind (gyre/joints.h). for_each_field is the one list that relates the two forms.
 #pragma once
 
 #include <gyre/joints.h>

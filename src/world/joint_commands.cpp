@@ -19,7 +19,7 @@ void wake_joint_bodies(RigidWorld& w, const JointRecord& joint) {
   }
 }
 
-// A body's joints, ascending.
+// The sorted list of the joints of a body.
 template <class List>
 void insert_sorted(List& list, std::uint32_t slot) {
   std::size_t at = 0;
@@ -35,7 +35,7 @@ void erase_slot(List& list, std::uint32_t slot) {
   }
 }
 
-// The two bodies of joints that keep them from colliding.
+// The key of the body pair of a joint, by which its collision is disabled.
 std::uint64_t block_key(const JointRecord& joint) {
   return pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
 }
@@ -43,7 +43,7 @@ bool blocks(const JointRecord& joint) {
   return !joint.collide_connected && joint.body_a != kNoBody && joint.body_b != kNoBody;
 }
 
-// Contacts between two bodies that may now collide again (or no more) are found anew by touching their boxes.
+// Lists the fat boxes of both bodies as changed, so that the broad phase finds their contacts again.
 void recheck_pairs(RigidWorld& w, const JointRecord& joint) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body == kNoBody) continue;
@@ -51,7 +51,7 @@ void recheck_pairs(RigidWorld& w, const JointRecord& joint) {
   }
 }
 
-// From now on the two bodies do not collide: contacts that they have by now go away.
+// Disables the collision of two bodies; their contacts are removed.
 void block_pair(RigidWorld& w, const JointRecord& joint) {
   w.joints.blocked.find_or_insert(block_key(joint), 0u)++;
   for (const ShapeId id : w.bodies.shapes[std::size_t(joint.body_a)]) {
@@ -74,9 +74,9 @@ struct JointEnd {
 };
 JointEnd joint_end(const RigidWorld& w, std::int32_t body, DVec3 anchor, Quat world_from_joint) {
   if (body == kNoBody) return {{}, world_from_joint, anchor};
-  const BodyPose& place = w.bodies.places[body];
-  return {rotate_inverse(place.orientation, difference(anchor, place.center)),
-          normalized(conjugate(place.orientation) * world_from_joint), anchor};
+  const BodyPose& body_pose = w.bodies.poses[body];
+  return {rotate_inverse(body_pose.orientation, difference(anchor, body_pose.center)),
+          normalized(conjugate(body_pose.orientation) * world_from_joint), anchor};
 }
 
 DVec3 default_anchor_b(const RigidWorld& w, const JointRecord& joint, const FlatJoint& def) {
@@ -85,8 +85,8 @@ DVec3 default_anchor_b(const RigidWorld& w, const JointRecord& joint, const Flat
   return joint.body_b == kNoBody ? DVec3{} : origin_pose(w.bodies, std::uint32_t(joint.body_b)).position;
 }
 
-// The frames on a and on b as the joint is added, world. Where both are one, x is along `axis` and z along `axis_b` as far as
-// that is across.
+// The world frames of a new joint on a and b. If the two are equal, x is along `axis`, and z along the part of
+// `axis_b` at a right angle to it.
 struct JointFrames {
   Quat a, b;
 };
@@ -101,7 +101,7 @@ JointFrames make_frames(const FlatJoint& def) {
       return {from_directions({1, 0, 0}, x), from_directions({1, 0, 0}, other)};
     case JointKind::universal:
     case JointKind::wheel: {
-      // y across both axes; x is a's and z is b's, and what angle they make stays.
+      // y is at a right angle to both axes. x is that of a and z that of b; the angle between them is kept.
       const Vec3 y = normalized(cross(other, x), any_perpendicular(x));
       return {from_matrix({x, y, cross(x, y)}), from_matrix({cross(y, other), y, other})};
     }
@@ -125,16 +125,16 @@ JointFrames make_frames(const FlatJoint& def) {
 
 // ---------------------------------------------------------------------------------------------------- what acts on it
 
-// What the two bodies move along a line through their anchors, kg; 0 if nothing can move.
+// The effective mass of the two bodies along a line through their anchors, kg; 0 if nothing can move.
 double mass_along(const RigidWorld& w, const JointRecord& joint, DVec3 anchor_a, DVec3 anchor_b) {
-  const Vec3 way = normalized(difference(anchor_b, anchor_a), {0, 1, 0});
+  const Vec3 direction = normalized(difference(anchor_b, anchor_a), {0, 1, 0});
   double inverse = 0.0;
   const auto add = [&](std::int32_t body, DVec3 anchor) {
     if (body == kNoBody) return;
     const std::size_t i = std::size_t(body);
-    const BodyPose& place = w.bodies.places[i];
-    const BodyInertia at = world_inertia(w.bodies.masses[i], w.bodies.flags[i], place.orientation);
-    const Vec3 arm = cross(difference(anchor, place.center), way);
+    const BodyPose& body_pose = w.bodies.poses[i];
+    const BodyInertia at = world_inertia(w.bodies.masses[i], w.bodies.flags[i], body_pose.orientation);
+    const Vec3 arm = cross(difference(anchor, body_pose.center), direction);
     inverse += double(at.inverse_mass) + double(dot(arm, at.inverse * arm));
   };
   add(joint.body_a, anchor_a);
@@ -142,7 +142,7 @@ double mass_along(const RigidWorld& w, const JointRecord& joint, DVec3 anchor_a,
   return inverse > 0.0 ? 1.0 / inverse : 0.0;
 }
 
-// A spring that is told by its frequency, as one of stiffness and damping.
+// Stiffness and damping of a spring that is given by frequency and damping ratio.
 void set_frequency(JointRecord& joint, const FlatJoint& def, double mass) {
   const double omega = 2.0 * kPiDouble * double(*def.frequency);
   joint.is_spring = true;
@@ -184,7 +184,7 @@ void set_axis_of(JointAxisRecord& to, const JointAxisDef& def) {
   to.friction = def.friction;
 }
 
-// What a definition says of the axis that its limits are about.
+// The main axis of a definition: its limits, motor and friction.
 JointAxisDef main_axis_of(const FlatJoint& def) {
   JointAxisDef axis{.motion = def.limits ? AxisMotion::limited : AxisMotion::free};
   if (def.limits) axis.limits = *def.limits;
@@ -269,14 +269,14 @@ void add_path(RigidWorld& w, JointDetail& detail, const FlatJoint& def, const Jo
   detail.path_parameter = nearest_on_path(curve, Vec3{});
   detail.start = path_length(curve, detail.path_parameter);
   detail.reference_a = path_frame(curve, detail.path_parameter);
-  // Where nothing else is said, an open curve ends where it ends.
-  JointAxisRecord& way = detail.axes[int(JointAxis::linear_x)];
+  // By default the range of an open path is its whole length.
+  JointAxisRecord& path_axis = detail.axes[int(JointAxis::linear_x)];
   if (def.path_closed || def.limits) return;
-  way.motion = AxisMotion::limited;
-  way.limits = {-detail.start, path_length(curve, curve.end()) - detail.start};
+  path_axis.motion = AxisMotion::limited;
+  path_axis.limits = {-detail.start, path_length(curve, curve.end()) - detail.start};
 }
 
-// The points of other curves close up.
+// The points of other paths form a closed curve.
 void drop_path(JointStore& joints, const JointDetail& detail) {
   if (detail.path_count == 0) return;
   const std::size_t first = detail.path_first, count = detail.path_count;
@@ -298,7 +298,7 @@ void set_pulley(JointDetail& detail, const FlatJoint& def, DVec3 anchor_b) {
   rope.limits = {0.0f, def.length ? *def.length : present};
 }
 
-// Whether the joint says more than a record can hold.
+// True if the joint has data beyond its record.
 bool needs_detail(const FlatJoint& def) {
   switch (def.kind) {
     case JointKind::fixed:
@@ -332,10 +332,10 @@ void fill_detail(RigidWorld& w, const JointRecord& joint, JointDetail& detail, c
   if (def.kind == JointKind::cone) detail.drive.max_force = 0.0f;
   if (def.kind == JointKind::mouse) detail.drive.max_torque = 0.0f;
   const auto orientation = [&](std::int32_t body) {
-    return body == kNoBody ? Quat{} : w.bodies.places[std::size_t(body)].orientation;
+    return body == kNoBody ? Quat{} : w.bodies.poses[std::size_t(body)].orientation;
   };
   const auto center = [&](std::int32_t body, DVec3 anchor) {
-    return body == kNoBody ? anchor : w.bodies.places[std::size_t(body)].center;
+    return body == kNoBody ? anchor : w.bodies.poses[std::size_t(body)].center;
   };
   if (def.kind == JointKind::rack_and_pinion) {
     const DVec3 from = center(joint.body_a, a.world_anchor), to = center(joint.body_b, b.world_anchor);
@@ -344,7 +344,7 @@ void fill_detail(RigidWorld& w, const JointRecord& joint, JointDetail& detail, c
   if (def.kind == JointKind::pulley) set_pulley(detail, def, b.world_anchor);
   if (def.kind == JointKind::path) add_path(w, detail, def, a, orientation(joint.body_a));
   if (def.kind == JointKind::universal || def.kind == JointKind::wheel) {
-    // The axes are where they are, also if they do not meet at a right angle.
+    // The axes keep their directions, even if they are not at a right angle.
     const float sine = dot(rotate(frames.a, {1, 0, 0}), rotate(frames.b, {0, 0, 1}));
     detail.axes[int(JointAxis::angular_y)].locked_position =
         atan2(sine, std::sqrt(max(0.0f, 1.0f - sine * sine)));
@@ -442,13 +442,13 @@ void set_joint_axis(RigidWorld& w, std::uint32_t slot, JointAxis axis, const Joi
   JointRecord& joint = w.joints.records[slot];
   if (detail_of(w.joints, slot) == nullptr) make_detail(w.joints, slot);
   JointAxisRecord& to = w.joints.details[slot].axes[int(axis)];
-  // Only what can be either may be locked; where it is locked, it stays where it is now.
+  // Only axes that can be free or locked may be locked. A locked axis keeps its present position.
   const bool may_lock =
       joint.kind == JointKind::six_dof || (joint.kind == JointKind::wheel && axis == JointAxis::angular_x);
   const bool was_locked = to.motion == AxisMotion::locked;
   set_axis_of(to, may_lock ? def : freed(def));
   if (to.motion == AxisMotion::locked && !was_locked) to.locked_position = to.position;
-  // Stops begin a step with what they bore in the last: those that are no more bear nothing when they come back.
+  // Limits are warm started with the impulse of the last step. Removed limits must not keep theirs.
   const bool is_limited = to.motion == AxisMotion::limited;
   if (!is_limited) to.low_impulse = to.high_impulse = 0.0f;
   if (joint.kind == JointKind::hinge || joint.kind == JointKind::slider) {
@@ -477,9 +477,9 @@ void shift_joint_ends(RigidWorld& w, std::uint32_t body, Vec3 by) {
     Vec3& anchor = is_a ? joint.local_anchor_a : joint.local_anchor_b;
     anchor -= by;
     if (joint.kind != JointKind::rack_and_pinion) continue;
-    // Its way is counted from centre to centre.
+    // The displacement of the prismatic axis is measured between the centres.
     const auto orientation = [&](std::int32_t of) {
-      return of == kNoBody ? Quat{} : w.bodies.places[std::size_t(of)].orientation;
+      return of == kNoBody ? Quat{} : w.bodies.poses[std::size_t(of)].orientation;
     };
     const Vec3 along = rotate(orientation(joint.body_b) * joint.local_frame_b, {1, 0, 0});
     const float further = dot(rotate(orientation(std::int32_t(body)), by), along);

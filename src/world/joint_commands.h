@@ -1,4 +1,4 @@
-// How joints are added, changed and taken away. What is asked was checked before (command_check.cpp).
+// Adds, changes and removes joints. command_check.cpp has checked the arguments.
 #pragma once
 
 #include "rigid/store/rigid_world.h"
@@ -12,10 +12,10 @@ void set_motor(RigidWorld& w, std::uint32_t slot, const Motor& motor);
 void set_joint_axis(RigidWorld& w, std::uint32_t slot, JointAxis axis, const JointAxisDef& def);
 void set_drive(RigidWorld& w, std::uint32_t slot, const PoseDrive& drive);
 void set_joint_enabled(RigidWorld& w, std::uint32_t slot, bool enabled);
-// A body's centre of mass has moved in it: its joints hold it where they held it before.
+// The centre of mass of a body moved within the body: joints keep their anchors.
 void shift_joint_ends(RigidWorld& w, std::uint32_t body, Vec3 by);
 
-// Which axes a kind has that something may act on: a bit each.
+// The axes of a kind that limits, motors and springs can act on, one bit each.
 std::uint32_t open_axes(JointKind kind);
 bool has_pose_drive(JointKind kind);
 

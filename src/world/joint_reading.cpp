@@ -8,11 +8,11 @@ namespace gyre {
 
 namespace {
 
-// The two ends as they stand and move.
+// The two ends of a joint: pose and motion.
 struct JointMotion {
   BodyMotion a, b;
   Quat frame_a, frame_b;
-  Vec3 speed;  // of b's anchor against a's body there
+  Vec3 speed;  // of b's anchor relative to the body of a at that point
   Vec3 turning;
 };
 JointMotion state_of(const RigidWorld& w, const JointRecord& joint) {
@@ -20,7 +20,7 @@ JointMotion state_of(const RigidWorld& w, const JointRecord& joint) {
     return body == kNoBody ? BodyMotion{} : w.bodies.motion[std::size_t(body)];
   };
   const auto orientation = [&](std::int32_t body) {
-    return body == kNoBody ? Quat{} : w.bodies.places[std::size_t(body)].orientation;
+    return body == kNoBody ? Quat{} : w.bodies.poses[std::size_t(body)].orientation;
   };
   const JointAnchors anchors = joint_anchors(w, joint);
   JointMotion s;
@@ -50,7 +50,7 @@ float line_speed(const RigidWorld& w, const JointRecord& joint, const JointDetai
     case JointKind::pulley: {
       const JointAnchors anchors = joint_anchors(w, joint);
       const auto speed = [&](const BodyMotion& m, std::int32_t body, DVec3 anchor, DVec3 ground) {
-        const Vec3 arm = difference(anchor, w.bodies.places[std::size_t(body)].center);
+        const Vec3 arm = difference(anchor, w.bodies.poses[std::size_t(body)].center);
         return dot(m.linear_velocity + cross(m.angular_velocity, arm),
                    normalized(difference(anchor, ground)));
       };
@@ -80,7 +80,8 @@ float turn_speed(const JointRecord& joint, const JointMotion& s, int axis) {
   }
 }
 
-// The axes that a kind has a place on: a bit each. Those that something may act on, if there are any.
+// The axes of a kind that have a position, one bit each: those that limits, motors and springs can act on, if there
+// are any.
 std::uint32_t readable_axes(JointKind kind) {
   const auto bit = [](JointAxis axis) { return 1u << int(axis); };
   if (const std::uint32_t open = open_axes(kind)) return open;
@@ -97,7 +98,7 @@ std::uint32_t readable_axes(JointKind kind) {
   }
 }
 
-// Forces along the one axis of joints that keep it in their record: what the rows across it do not explain.
+// Forces along the one axis of joints that store it in their record: the total without the rows across it.
 float force_in_record(const JointRecord& joint, const JointMotion& s) {
   const Vec3 along = rotate(s.frame_a, {1, 0, 0});
   return joint.kind == JointKind::hinge ? dot(joint.total_angular, along) : dot(joint.total_linear, along);
@@ -106,13 +107,13 @@ float force_in_record(const JointRecord& joint, const JointMotion& s) {
 }  // namespace
 
 JointAnchors joint_anchors(const RigidWorld& w, const JointRecord& joint) {
-  const auto place = [&](std::int32_t body, Vec3 local, DVec3 world) {
+  const auto position = [&](std::int32_t body, Vec3 local, DVec3 world) {
     if (body == kNoBody) return world;
-    const BodyPose& at = w.bodies.places[std::size_t(body)];
+    const BodyPose& at = w.bodies.poses[std::size_t(body)];
     return at.center + rotate(at.orientation, local);
   };
-  return {place(joint.body_a, joint.local_anchor_a, joint.world_anchor_a),
-          place(joint.body_b, joint.local_anchor_b, joint.world_anchor_b)};
+  return {position(joint.body_a, joint.local_anchor_a, joint.world_anchor_a),
+          position(joint.body_b, joint.local_anchor_b, joint.world_anchor_b)};
 }
 
 JointState read_joint(const RigidWorld& w, std::uint32_t slot) {

@@ -1,4 +1,4 @@
-// What can be read of joints: forces, places and speeds on their axes, energy in their springs.
+// Readings of joints: forces, positions and speeds of their axes, energy of their springs.
 #pragma once
 
 #include "rigid/store/rigid_world.h"
@@ -7,7 +7,7 @@
 
 namespace gyre {
 
-// The places of a joint's two anchors.
+// The positions of the two anchors of a joint.
 struct JointAnchors {
   DVec3 a, b;
 };

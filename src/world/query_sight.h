@@ -1,4 +1,4 @@
-// Lines of sight for commands: the queries of world_query.cpp, asked from inside.
+// Line of sight for commands, by the queries of world_query.cpp.
 #pragma once
 
 #include <gyre/math.h>
@@ -9,7 +9,7 @@ namespace gyre {
 
 struct WorldState;
 
-// Whether nothing stands between the two points but shapes of the body itself and sensors. What a line starts inside of does
+// True if only shapes of the body itself and sensors are between the two points. A shape that contains the start does
 // not hide anything.
 bool is_in_sight(WorldState& state, DVec3 from, DVec3 to, std::uint32_t body);
 

@@ -1,5 +1,5 @@
-// The stages of a step by name, in order: for the profiler, the step table in docs/step.md and the first difference of two
-// replays.
+// The names of the stages of a step, in order, for the profiler, the step table in docs/step.md and the first
+// difference of two replays.
 #pragma once
 
 #include <cstdint>
@@ -22,22 +22,22 @@ inline constexpr const char* kStageNames[kStageCount] = {"refit",        "find_p
                                                          "link_islands", "solve",       "clamp_fast_bodies",
                                                          "finish_bodies", "break_joints", "put_to_sleep"};
 
-// Beside the stages the profiler keeps the step as a whole.
+// The profiler measures the whole step beside its stages.
 constexpr int kWholeStep = kStageCount;
 inline constexpr const char* kWholeStepName = "step";
 
-// What there was to do in a step, for the profiler.
+// The amounts of work in a step, for the profiler.
 enum class CounterName : std::uint8_t {
-  refitted_boxes,  // shapes whose fat box the broad phase was shown anew
-  new_pairs,       // of fat boxes, which became contacts
+  refitted_boxes,  // shapes whose fat box changed in the broad phase
+  new_pairs,       // of fat boxes; each became a contact
   contacts,        // pairs of fat boxes
-  full_looks,      // contacts whose shapes were asked, because the pair had moved
-  manifolds,       // that the solver had
-  colors,          // groups that they were solved in
-  joints,          // that the solver had
-  swept_joints,    // of these: springs, ropes, and nets too dense to be solved directly
+  full_looks,      // contacts whose manifolds were computed, because their bodies had moved
+  manifolds,       // in the solver
+  colors,          // graph colours of the manifolds
+  joints,          // in the solver
+  swept_joints,    // of these: iterative ones, such as springs, ropes and graphs too dense for a direct solve
   awake_bodies,
-  fast_bodies,     // swept, because they moved far
+  fast_bodies,  // bodies that CCD swept
 };
 constexpr int kCounterCount = 10;
 inline constexpr const char* kCounterNames[kCounterCount] = {"refitted_boxes", "new_pairs", "contacts",

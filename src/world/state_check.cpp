@@ -1,5 +1,5 @@
-// Whether columns that came from outside hang together: every index leads somewhere, every ring closes, every count has
-// its room. A state that passes can be stepped without harm, however strange its numbers are.
+// Checks loaded columns: every index is valid, every ring closes, every count fits its array. A state that passes can
+// be stepped safely, whatever its numbers are.
 #include "world/field_commands.h"
 #include "world/world_state.h"
 
@@ -38,14 +38,14 @@ const char* fault_in_motion(const RigidWorld& w) {
 const char* fault_in_sizes(const RigidWorld& w) {
   const BodyStore& b = w.bodies;
   const std::size_t bodies = b.ids.capacity();
-  if (b.motion.size() != bodies || b.places.size() != bodies || b.masses.size() != bodies ||
+  if (b.motion.size() != bodies || b.poses.size() != bodies || b.masses.size() != bodies ||
       b.forces.size() != bodies || b.flags.size() != bodies || b.sleep.size() != bodies ||
       b.overrides.size() != bodies || b.user_data.size() != bodies) {
     return "the body columns differ in length";
   }
   const ShapeStore& s = w.shapes;
   const std::size_t shapes = s.ids.capacity();
-  if (s.bodies.size() != shapes || s.places.size() != shapes || s.proxies.size() != shapes ||
+  if (s.bodies.size() != shapes || s.body_from_shape.size() != shapes || s.proxies.size() != shapes ||
       s.materials.size() != shapes || s.geometry.size() != shapes || s.density.size() != shapes ||
       s.user_data.size() != shapes) {
     return "the shape columns differ in length";
@@ -59,8 +59,9 @@ const char* fault_in_sizes(const RigidWorld& w) {
 const char* fault_in_body(const BodyStore& bodies, std::uint32_t i) {
   const BodyFlags& flags = bodies.flags[i];
   if (flags.type > BodyType::dynamic) return "a body of unknown type";
-  const BodyPose& place = bodies.places[i];
-  if (!is_finite(place.center) || !is_finite(place.orientation)) return "a body whose place is not finite";
+  const BodyPose& body_pose = bodies.poses[i];
+  if (!is_finite(body_pose.center) || !is_finite(body_pose.orientation))
+    return "a body whose place is not finite";
   if (!is_finite(bodies.motion[i].linear_velocity) || !is_finite(bodies.motion[i].angular_velocity)) {
     return "a body whose velocity is not finite";
   }
@@ -70,7 +71,7 @@ const char* fault_in_body(const BodyStore& bodies, std::uint32_t i) {
   return nullptr;
 }
 
-// Each group must be one ring that starts at its lowest body: who wakes one member walks the ring to its end.
+// Each group must be one ring that starts at its lowest body, since waking a member visits the whole ring.
 const char* fault_in_groups(const BodyStore& bodies) {
   const std::uint32_t count = std::uint32_t(bodies.sleep.size());
   std::uint32_t members = 0, walked = 0;
@@ -101,8 +102,8 @@ const char* fault_in_shape(const RigidWorld& w, std::uint32_t i) {
   const std::uint32_t body = w.shapes.bodies[i];
   if (!w.bodies.ids.live(body)) return "a shape without a body";
   if (proxy.body != body) return "a proxy of another body than its shape";
-  const Transform& place = w.shapes.places[i];
-  if (!is_finite(place.position) || !is_finite(place.orientation)) return "a shape whose place is not finite";
+  const Transform& local = w.shapes.body_from_shape[i];
+  if (!is_finite(local.position) || !is_finite(local.orientation)) return "a shape whose place is not finite";
   const Aabb& box = proxy.fat_box;
   if (!is_finite(box.low) || !is_finite(box.high)) return "a fat box that is not finite";
   for (int axis = 0; axis < 3; ++axis) {
@@ -121,7 +122,7 @@ const char* fault_in_joint(const RigidWorld& w, const JointRecord& joint) {
   return nullptr;
 }
 
-// Whether a kind cannot be solved without details.
+// True if joints of this kind cannot be solved without details.
 bool needs_detail(JointKind kind) { return kind > JointKind::distance; }
 
 const char* fault_in_detail(const JointStore& joints, std::uint32_t slot) {

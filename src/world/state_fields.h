@@ -1,6 +1,6 @@
-// The fields of every record that is simulation state, one function a record: what is saved, loaded, hashed and compared
-// is exactly what stands here, without padding and in this order. f is called with one scalar, vector or enum at a time;
-// FieldWriter and its like (io/snapshot/snapshot) take these apart.
+// The fields of every state record, one function for each record. Exactly these fields are saved, loaded, hashed and
+// compared, without padding and in this order. f is called with one scalar, vector or enum at a time; FieldWriter and
+// similar classes (io/snapshot/snapshot) take vectors apart.
 #pragma once
 
 #include "collision/contact/contact_store.h"
@@ -68,7 +68,7 @@ void for_each_field(T& r, F&& f) {
 }
 template <Is<BodyMotion> T, class F>
 void for_each_field(T& r, F&& f) {
-  // `moved` and `turned` live for a step only; the inverse mass follows from the mass.
+  // The motion of the step is valid within a step only; the inverse mass follows from the mass.
   for_each_field(r.linear_velocity, f), for_each_field(r.angular_velocity, f);
 }
 template <Is<BodyPose> T, class F>
@@ -78,7 +78,7 @@ void for_each_field(T& r, F&& f) {
 template <Is<BodyMass> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.mass), f(r.inverse_mass), for_each_field(r.center, f), for_each_field(r.inertia, f);
-  for_each_field(r.inverse_inertia, f), f(r.reach), f(r.size), f(r.isotropic);
+  for_each_field(r.inverse_inertia, f), f(r.bounding_radius), f(r.size), f(r.isotropic);
 }
 template <Is<BodyForces> T, class F>
 void for_each_field(T& r, F&& f) {
@@ -87,7 +87,8 @@ void for_each_field(T& r, F&& f) {
 }
 template <Is<BodyFlags> T, class F>
 void for_each_field(T& r, F&& f) {
-  f(r.type), f(r.awake), f(r.can_sleep), f(r.continuous), f(r.frozen), f(r.locked_linear), f(r.locked_angular), f(r.touched);
+  f(r.type), f(r.awake), f(r.can_sleep), f(r.continuous), f(r.frozen), f(r.locked_linear),
+      f(r.locked_angular), f(r.constraint_use);
 }
 template <Is<BodySleep> T, class F>
 void for_each_field(T& r, F&& f) {

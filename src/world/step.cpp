@@ -1,4 +1,4 @@
-// One step of the world, as the list of its stages. Each is a function from arrays to arrays in the folders below.
+// One step of the world as a list of stages. Each stage is a function from arrays to arrays in a lower layer.
 #include "base/check.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/integrate/spring_stability.h"
@@ -14,23 +14,23 @@ namespace gyre {
 namespace {
 
 #if defined(GYRE_VALIDATE) && GYRE_VALIDATE
-// Large worlds are walked now and then only: a walk costs several times what a stage does.
-bool is_walked(const WorldState& s, StageName stage) {
+// Large worlds are validated only now and then: a validation takes several times as long as a stage.
+bool is_validated(const WorldState& s, StageName stage) {
   constexpr std::size_t kSmall = 2000;
   constexpr std::uint64_t kEvery = 16;
   const RigidWorld& w = s.rigid;
   const bool small = w.bodies.motion.size() + w.shapes.colliders.size() + w.contacts.live < kSmall;
-  return s.walks && (small || (s.step_count % kEvery == 0 && int(stage) == kStageCount - 1));
+  return s.validates && (small || (s.step_count % kEvery == 0 && int(stage) == kStageCount - 1));
 }
 
 void validate_after(const WorldState& s, StageName stage) {
-  if (!is_walked(s, stage)) return;
+  if (!is_validated(s, stage)) return;
   const Error fault = validate_state(s, stage);
   if (fault) check_failed(kStageNames[int(stage)], fault.message, __FILE__, __LINE__);
 }
 #endif
 
-// Times a stage and lets tools look at the state after it.
+// Runs and times a stage, then calls the hook of tools.
 template <class Fn>
 void run_stage(WorldState& s, StageName stage, Fn&& fn) {
   {
@@ -51,9 +51,9 @@ void begin_step(WorldState& s) {
   refresh_awake(s.rigid.bodies);
 }
 
-// Joints that broke go after the step's own reading of them.
+// Broken joints stay until the end of the step, because its results refer to them.
 void remove_broken_joints(WorldState& s) {
-  for (const JointBroken& broken : s.shown.broken) remove_joint_now(s, broken.joint.index);
+  for (const JointBroken& broken : s.published_events.broken) remove_joint_now(s, broken.joint.index);
 }
 
 void report_frozen(WorldState& s) {
@@ -63,7 +63,7 @@ void report_frozen(WorldState& s) {
   }
 }
 
-// An explicit scheme must not explode in silence: the step that it would need is told, in every step that is longer.
+// An explicit integrator must not explode silently: a step longer than the critical one is reported every time.
 void report_stiffness(WorldState& s) {
   const RigidWorld& w = s.rigid;
   const MotionSettings motion = motion_settings(w);
@@ -71,20 +71,20 @@ void report_stiffness(WorldState& s) {
   const SpringMode mode = find_fastest_mode(w, s.arena);
   if (mode.springs == 0) return;
   const double longest = critical_step(motion.integrator, mode.frequency, mode.decay);
-  const double parts = double(s.solve.report.parts);
-  const double step = parts > 0.0 ? double(w.settings.last_step) / parts : double(w.settings.last_substep);
+  const double pieces = double(s.solve.report.parts);
+  const double step = pieces > 0.0 ? double(w.settings.last_step) / pieces : double(w.settings.last_substep);
   if (step <= longest) return;
   const JointRecord& joint = w.joints.records[mode.joint];
   const std::int32_t body = joint.body_b != kNoBody ? joint.body_b : joint.body_a;
-  constexpr double kTurn = 6.283185307179586;
+  constexpr double kRadiansPerTurn = 6.283185307179586;
   report_problem(s, ErrorCode::unstable, body_id(w, std::uint32_t(body)),
                  "%s cannot follow the explicit springs (%.4g Hz, most of it joint %u): it moves by %.4g s "
                  "at a time, the critical "
                  "step is %.4g s; use more sub-steps or springs 'implicit'",
-                 to_string(motion.integrator), mode.frequency / kTurn, mode.joint, step, longest);
+                 to_string(motion.integrator), mode.frequency / kRadiansPerTurn, mode.joint, step, longest);
 }
 
-// A method that was asked for by name does not take islands of any size.
+// A solver method that the user chose may not take islands of this size.
 void report_large_islands(WorldState& s) {
   const RowStats& rows = s.solve.rows;
   if (rows.too_large == 0) return;
@@ -97,18 +97,18 @@ void report_large_islands(WorldState& s) {
 
 void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
 
-// Right after the stage, which leaves contacts that it did not look at as they were.
+// Must run right after the stage `collide`, which leaves contacts that it did not update as they were.
 void count_manifold_updates(WorldState& s) {
   if (!s.profile.enabled()) return;
-  std::size_t full_looks = 0;
+  std::size_t updates = 0;
   for (const Contact& contact : s.rigid.contacts.contacts) {
     if (contact.manifold_room == 0 || contact.ended != 0 || contact.recycled != 0) continue;
-    if (may_move(s.rigid, contact.body_a) || may_move(s.rigid, contact.body_b)) ++full_looks;
+    if (can_move(s.rigid, contact.body_a) || can_move(s.rigid, contact.body_b)) ++updates;
   }
-  count(s, CounterName::full_looks, full_looks);
+  count(s, CounterName::full_looks, updates);
 }
 
-// What the profiler is told of a step's work, from what the stages left behind.
+// Reports the work of a step to the profiler.
 void count_work(WorldState& s) {
   if (!s.profile.enabled()) return;
   const RigidWorld& w = s.rigid;
@@ -121,7 +121,7 @@ void count_work(WorldState& s) {
   count(s, CounterName::fast_bodies, s.continuous.fast.size());
 }
 
-// Who touches whom, and where.
+// The collision stages: fat boxes, pairs, manifolds, touches.
 void detect_collisions(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
   run_stage(s, StageName::refit, [&] { refit(w, *s.tasks, seconds); });
@@ -132,7 +132,7 @@ void detect_collisions(WorldState& s, float seconds) {
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
 }
 
-// What follows on the motion of `seconds`, the last of a step of `whole` or not.
+// The stages after the solve of `seconds`, which is the last piece of a step of `whole` seconds or not.
 void finish_step(WorldState& s, float seconds, float whole, bool last) {
   RigidWorld& w = s.rigid;
   run_stage(s, StageName::clamp_fast_bodies,
@@ -142,18 +142,19 @@ void finish_step(WorldState& s, float seconds, float whole, bool last) {
   run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
 }
 
-// With as many sub-steps, at least those of the settings, as keep the error of what constraints move within the tolerance.
+// Solves with as many sub-steps, at least those of the settings, as keep the error of constrained bodies within the
+// tolerance.
 void solve_to_tolerance(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
   MotionSettings& motion = w.motion_settings[0];
-  const std::int32_t least = w.settings.substeps;
+  const std::int32_t min_substeps = w.settings.substeps;
   const std::size_t hits = w.events.hits.size();
-  std::int32_t substeps = clamp(motion.planned_substeps, least, max(least, kMaxPlanned / 2));
-  s.impacts.before.keep(w);
+  std::int32_t substeps = clamp(motion.planned_substeps, min_substeps, max(min_substeps, kMaxPlanned / 2));
+  s.impacts.before.save(w);
   const auto solve = [&] {
     w.settings.substeps = substeps;
     solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
-    w.settings.substeps = least;
+    w.settings.substeps = min_substeps;
   };
   solve();
   motion.planned_substeps = 0;
@@ -161,22 +162,22 @@ void solve_to_tolerance(WorldState& s, float seconds) {
   double error = 0.0;
   while (2 * substeps <= kMaxPlanned) {
     s.impacts.other = w.bodies.motion;
-    s.impacts.before.put_back(w);
+    s.impacts.before.restore(w);
     w.events.hits.resize(hits);
     substeps *= 2;
     solve();
     error = step_difference(w, s.impacts.other, seconds);
     if (!(error > double(motion.tolerance))) break;
   }
-  // The next step begins with half of these, or with a quarter where that should do.
+  // The next step begins with half of these, or with a quarter if the error is small.
   const std::int32_t planned = error < 0.25 * double(motion.tolerance) ? substeps / 4 : substeps / 2;
-  if (planned > least) motion.planned_substeps = planned;
+  if (planned > min_substeps) motion.planned_substeps = planned;
   const int a_substep = w.solver.empty() ? 2 : 1;
   s.solve.report.parts = max(s.solve.report.parts, a_substep * substeps);
   s.solve.report.error = max(s.solve.report.error, float(error));
 }
 
-void step_at_once(WorldState& s, float seconds) {
+void step_undivided(WorldState& s, float seconds) {
   detect_collisions(s, seconds);
   s.rigid.now = s.time;
   run_stage(s, StageName::solve, [&] {
@@ -187,17 +188,19 @@ void step_at_once(WorldState& s, float seconds) {
   finish_step(s, seconds, seconds, true);
 }
 
-// How often a part of a step is tried until it ends at an impact, and the shortest part, as a share of the step.
+// How often a piece of an adaptive step is tried until it ends at an impact, and the shortest piece as a share of the
+// step.
 constexpr int kMaxTries = 8;
 constexpr double kShortest = 1.0e-7;
 
-// The solve of at most `left`, as long as it takes until the first impact. Says how long that is, and whether it is one.
+// Solves up to the first impact, but at most `left` seconds. Returns the length of the piece, s; `is_impact` tells
+// whether it ends at an impact.
 double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impact) {
   RigidWorld& w = s.rigid;
   const std::int32_t substeps = w.settings.substeps;
   const std::size_t hits = w.events.hits.size();
-  const bool bounded = w.waiting.empty();
-  if (!bounded) s.impacts.before.keep(w);
+  const bool bounded = w.inactive_contacts.empty();
+  if (!bounded) s.impacts.before.save(w);
   double length = left;
   is_impact = false;
   for (int n = 0;; ++n) {
@@ -207,8 +210,8 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
     if (bounded || n + 1 == kMaxTries) break;
     const FirstImpact first = find_first_impact(w, s.impacts.before, length);
     if (!(first.time < length)) break;
-    is_impact = !first.turn;
-    s.impacts.before.put_back(w);
+    is_impact = !first.is_turning_point;
+    s.impacts.before.restore(w);
     w.events.hits.resize(hits);
     length = max(first.time, kShortest * double(seconds));
   }
@@ -216,32 +219,32 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
   return length;
 }
 
-// Strikes what has met; then who touches whom must be asked again, since others are ahead of those that were struck.
-void strike(WorldState& s, float threshold, float seconds, float left) {
+// Resolves impacts. Bodies that got an impulse may meet other shapes, so collisions are then detected again.
+void apply_impacts(WorldState& s, float threshold, float seconds, float left) {
   RigidWorld& w = s.rigid;
   if (!resolve_impacts(w, s.impacts, threshold)) return;
-  for (const std::uint32_t body : s.impacts.struck) {
+  for (const std::uint32_t body : s.impacts.hit_bodies) {
     for (const ShapeId id : w.bodies.shapes[body]) refit_shape(w, id.index, seconds);
   }
   detect_collisions(s, left);
 }
 
-// From impact to impact. What would bounce on for less than 1/64 of the step does not bounce any more: so a ball that bounces
-// infinitely often in finite time comes to rest.
+// Steps from impact to impact. A bounce that would last less than 1/64 of the step is suppressed, so a ball with
+// infinitely many bounces in finite time comes to rest.
 void step_to_impacts(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
-  const std::int32_t most = motion_settings(w).max_impacts;
+  const std::int32_t max_impacts = motion_settings(w).max_impacts;
   const float threshold = max(length(w.settings.gravity) * seconds / 128.0f, 1.0e-6f);
   StepStats report;
   double left = double(seconds);
-  for (int part = 0; left > 0.0; ++part) {
+  for (int piece = 0; left > 0.0; ++piece) {
     w.now = s.time + (double(seconds) - left);
     detect_collisions(s, float(left));
-    report.bounded = report.impacts >= most || part > 3 * most;
+    report.bounded = report.impacts >= max_impacts || piece > 3 * max_impacts;
     if (report.bounded) {
-      w.waiting.clear();
+      w.inactive_contacts.clear();
     } else {
-      strike(s, threshold, seconds, float(left));
+      apply_impacts(s, threshold, seconds, float(left));
       list_inactive_contacts(w, threshold);
     }
     double length = left;
@@ -254,26 +257,26 @@ void step_to_impacts(WorldState& s, float seconds) {
     finish_step(s, float(length), seconds, last);
     left = last ? 0.0 : left - length;
   }
-  w.waiting.clear();
+  w.inactive_contacts.clear();
   s.solve.report = report;
 }
 
 void end_step(WorldState& s, float seconds) {
   s.time += double(seconds);
   ++s.step_count;
-  // What commands add from now on belongs to the next step.
-  std::swap(s.shown, s.rigid.events);
+  // Events of later commands belong to the next step.
+  std::swap(s.published_events, s.rigid.events);
   RigidEvents& next = s.rigid.events;
   next.begins.clear(), next.ends.clear(), next.hits.clear();
   next.sensors.clear(), next.broken.clear(), next.sleep_changes.clear();
-  const RigidEvents& e = s.shown;
+  const RigidEvents& e = s.published_events;
   ScratchClocks& clocks = s.rigid.clocks;
-  clocks.begins.trim(next.begins, s.shown.begins);
-  clocks.ends.trim(next.ends, s.shown.ends);
-  clocks.hits.trim(next.hits, s.shown.hits);
-  clocks.sensors.trim(next.sensors, s.shown.sensors);
-  clocks.broken.trim(next.broken, s.shown.broken);
-  clocks.sleep_changes.trim(next.sleep_changes, s.shown.sleep_changes);
+  clocks.begins.trim(next.begins, s.published_events.begins);
+  clocks.ends.trim(next.ends, s.published_events.ends);
+  clocks.hits.trim(next.hits, s.published_events.hits);
+  clocks.sensors.trim(next.sensors, s.published_events.sensors);
+  clocks.broken.trim(next.broken, s.published_events.broken);
+  clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
   s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes};
   s.stepping = false;
 }
@@ -289,7 +292,7 @@ void step_world(WorldState& s, float seconds) {
     if (motion_settings(s.rigid).time == TimeStepping::adaptive)
       step_to_impacts(s, seconds);
     else
-      step_at_once(s, seconds);
+      step_undivided(s, seconds);
   }
   end_step(s, seconds);
   report_frozen(s);

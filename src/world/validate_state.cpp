@@ -1,4 +1,4 @@
-// The rules, group by group. See state_walk.h.
+// The rules, by group. See validate_state.h.
 #include "world/validate_state.h"
 
 #include "base/float_mode.h"
@@ -26,10 +26,10 @@ class StateValidator {
   Error run();
 
  private:
-  // Whether the step has come at least so far; between steps it has.
+  // True if the stage is done; between steps all are.
   bool is_past(StageName stage) const { return !after_ || *after_ >= stage; }
-  // The solver has moved velocities and orientations on, and nobody has looked yet whether they are finite.
-  bool is_on_the_way() const {
+  // Between the solve and finish_bodies, velocities and orientations are new and not yet checked to be finite.
+  bool is_within_solve() const {
     return after_ && *after_ >= StageName::solve && *after_ < StageName::finish_bodies;
   }
   bool is_right_after(StageName stage) const { return after_ && *after_ == stage; }
@@ -37,9 +37,9 @@ class StateValidator {
   void list_changed();
   Error lists_of_bodies() const;
   Error list_of_awake() const;
-  Error awake_links() const;
+  Error active_constraints() const;
   Error blocked_bodies() const;
-  Error places() const;
+  Error poses() const;
   Error fat_boxes() const;
   Error contacts_have_pairs() const;
   Error pairs_have_contacts() const;
@@ -47,14 +47,14 @@ class StateValidator {
   Error groups_of_batch(const BatchScratch& solve) const;
   Error everything_is_solved() const;
   Error islands() const;
-  Error nobody_sleeps_beside_motion() const;
+  Error no_sleeper_touches_motion() const;
 
-  bool was_shown(std::uint32_t shape) const { return changed_mark_[shape] == 0; }
+  bool is_in_broadphase(std::uint32_t shape) const { return changed_mark_[shape] == 0; }
 
   const WorldState& s_;
   const RigidWorld& w_;
   std::optional<StageName> after_;
-  std::vector<std::uint32_t> changed_;      // proxies that the broad phase has not been shown; ascending
+  std::vector<std::uint32_t> changed_;      // proxies that the broad phase does not know yet; ascending
   std::vector<std::uint8_t> changed_mark_;  // the same by shape
 };
 
@@ -66,7 +66,8 @@ void StateValidator::list_changed() {
   }
 }
 
-// Each shape is in the list of its body and each joint in those of its bodies, ascending and once; nothing else is.
+// Each shape is in the list of its body and each joint in those of its bodies, once and ascending. The lists have no
+// other entries.
 Error StateValidator::lists_of_bodies() const {
   std::size_t listed_shapes = 0, listed_joints = 0, joint_ends = 0;
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
@@ -104,36 +105,38 @@ Error StateValidator::lists_of_bodies() const {
 
 Error StateValidator::list_of_awake() const {
   if (w_.bodies.awake_stale) return {};
-  std::size_t next = 0, sleepers = 0;
+  std::size_t next = 0, sleeping_count = 0;
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
     const BodyFlags& flags = w_.bodies.flags[body];
     const bool awake =
         w_.bodies.ids.live(body) && flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
-    sleepers += w_.bodies.ids.live(body) && is_movable(flags) && flags.awake == 0 ? 1 : 0;
+    sleeping_count += w_.bodies.ids.live(body) && is_movable(flags) && flags.awake == 0 ? 1 : 0;
     const bool listed = next < w_.bodies.awake.size() && w_.bodies.awake[next] == body;
     if (awake != listed)
       return broken("body %u is %s but %s listed so", body, awake ? "awake" : "not awake",
                     listed ? "is" : "is not");
     if (listed) ++next;
   }
-  if (sleepers != w_.bodies.sleepers) return broken("%zu bodies sleep, not %zu", sleepers, w_.bodies.sleepers);
+  if (sleeping_count != w_.bodies.sleeping_count)
+    return broken("%zu bodies sleep, not %zu", sleeping_count, w_.bodies.sleeping_count);
   return next == w_.bodies.awake.size() ? Error{}
                                         : broken("the list of awake bodies has more than there are");
 }
 
-// Bodies that a joint keeps from colliding are known as such, as often as there are such joints.
-// Whatever has a body that goes along is asked; that others are too costs time only.
-Error StateValidator::awake_links() const {
-  const auto goes = [&](std::uint32_t body) { return is_simulated(w_.bodies.flags[body]); };
+// Each contact and joint of a simulated body is active. More active ones only cost time.
+Error StateValidator::active_constraints() const {
+  const auto moves = [&](std::uint32_t body) { return is_simulated(w_.bodies.flags[body]); };
   for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
     const Contact& contact = w_.contacts.contacts[slot];
-    if (contact.manifold_room == 0 || w_.awake_links.contacts.test(slot)) continue;
-    if (goes(contact.body_a) || goes(contact.body_b)) return broken("contact %u has an awake body, but nobody asks it", slot);
+    if (contact.manifold_room == 0 || w_.active_constraints.contacts.test(slot)) continue;
+    if (moves(contact.body_a) || moves(contact.body_b))
+      return broken("contact %u has an awake body, but nobody asks it", slot);
   }
   for (std::uint32_t slot = 0; slot < w_.joints.ids.capacity(); ++slot) {
-    if (!w_.joints.ids.live(slot) || w_.awake_links.joints.test(slot)) continue;
+    if (!w_.joints.ids.live(slot) || w_.active_constraints.joints.test(slot)) continue;
     const JointRecord& joint = w_.joints.records[slot];
-    if ((joint.body_a != kNoBody && goes(std::uint32_t(joint.body_a))) || (joint.body_b != kNoBody && goes(std::uint32_t(joint.body_b))))
+    if ((joint.body_a != kNoBody && moves(std::uint32_t(joint.body_a))) ||
+        (joint.body_b != kNoBody && moves(std::uint32_t(joint.body_b))))
       return broken("joint %u has an awake body, but nobody asks it", slot);
   }
   return {};
@@ -154,12 +157,12 @@ Error StateValidator::blocked_bodies() const {
   return joints == counted ? Error{} : broken("bodies are kept from colliding by more joints than there are");
 }
 
-// What is derived from the place of the centre of mass is what derivation gives.
-Error StateValidator::places() const {
-  if (is_on_the_way()) return {};
+// Orientations equal those of the poses.
+Error StateValidator::poses() const {
+  if (is_within_solve()) return {};
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
     if (!w_.bodies.ids.live(body)) continue;
-    if (!(w_.bodies.orientations[body] == w_.bodies.places[body].orientation))
+    if (!(w_.bodies.orientations[body] == w_.bodies.poses[body].orientation))
       return broken("body %u has two orientations", body);
   }
   return {};
@@ -194,8 +197,9 @@ Error StateValidator::contacts_have_pairs() const {
     if (w_.joints.blocked.contains(pair_key(contact.body_a, contact.body_b)))
       return broken("contact %u is of bodies %u and %u, which a joint keeps from colliding", slot,
                     contact.body_a, contact.body_b);
-    // Pairs that have come apart go in link_islands.
-    if (!is_past(StageName::link_islands) || !was_shown(contact.shape_a) || !was_shown(contact.shape_b))
+    // The stage link_islands removes pairs whose fat boxes separated.
+    if (!is_past(StageName::link_islands) || !is_in_broadphase(contact.shape_a) ||
+        !is_in_broadphase(contact.shape_b))
       continue;
     if (!overlap(a.fat_box, b.fat_box))
       return broken("contact %u is of shapes %u and %u, whose fat boxes are apart", slot, contact.shape_a,
@@ -208,12 +212,12 @@ Error StateValidator::pairs_have_contacts() const {
   if (w_.broadphase_stale || !is_past(StageName::find_pairs)) return {};
   Array<std::uint32_t> found;
   for (std::uint32_t shape = 0; shape < w_.shapes.ids.capacity(); ++shape) {
-    if (!w_.shapes.ids.live(shape) || !was_shown(shape)) continue;
+    if (!w_.shapes.ids.live(shape) || !is_in_broadphase(shape)) continue;
     const Proxy& proxy = w_.shapes.proxies[shape];
     found.clear();
     w_.broadphase->query(w_.shapes.proxies, proxy.fat_box, found);
     for (const std::uint32_t other : found) {
-      if (other <= shape || !was_shown(other)) continue;
+      if (other <= shape || !is_in_broadphase(other)) continue;
       const Proxy& other_proxy = w_.shapes.proxies[other];
       if (!may_pair(proxy, other_proxy) || w_.joints.blocked.contains(pair_key(proxy.body, other_proxy.body)))
         continue;
@@ -224,7 +228,7 @@ Error StateValidator::pairs_have_contacts() const {
   return {};
 }
 
-// No group has a moving body twice, and each constraint is in one group. What is left of the last step is looked at
+// No colour has a moving body twice, and each constraint has one colour. The results of the last solve are checked
 // between steps, too.
 Error StateValidator::groups_of_constraints() const {
   Error fault = groups_of_batch(s_.solve.together);
@@ -245,7 +249,7 @@ Error StateValidator::groups_of_batch(const BatchScratch& solve) const {
   return {};
 }
 
-// Whether the lists of all batches together are the slots for which acts(slot) holds, each once.
+// True if the lists of all batches together are the slots with acts(slot), each once.
 template <class Acts>
 bool are_all(const IslandBatches& batches, std::span<const std::uint32_t> SolveBatch::*list,
              std::size_t slots, const Acts& acts) {
@@ -262,8 +266,8 @@ bool are_all(const IslandBatches& batches, std::span<const std::uint32_t> SolveB
   return true;
 }
 
-// What acts is in one batch, as are all that it moves; and the solver had as much of it. The batches are found anew, and
-// smaller, so that there are several.
+// Each acting constraint is in one batch, which has all bodies that it moves, and the solver had as many constraints.
+// The batches are found again with a smaller size, so that there are several.
 Error StateValidator::everything_is_solved() const {
   Arena arena;
   TaskSystem alone;
@@ -303,7 +307,7 @@ Error StateValidator::everything_is_solved() const {
                                           : broken("the solver has other joints than those that act");
 }
 
-// The bodies of a sleeping group hang together, if they came to rest by themselves. Those that were put to sleep in full
+// The bodies of a sleeping group are connected if they fell asleep by themselves. Bodies that were put to sleep in
 // motion may have contacts that are about to end.
 Error StateValidator::islands() const {
   std::vector<std::uint32_t> parent(w_.bodies.motion.size());
@@ -318,20 +322,20 @@ Error StateValidator::islands() const {
     b = root_of(b);
     parent[max(a, b)] = min(a, b);
   });
-  std::vector<std::uint8_t> was_restless(parent.size(), 0);
+  std::vector<std::uint8_t> fell_asleep_moving(parent.size(), 0);
   for (const BodySleep& sleep : w_.bodies.sleep) {
-    if (sleep.group != kNoGroup && sleep.still_time < kTimeToSleep) was_restless[sleep.group] = 1;
+    if (sleep.group != kNoGroup && sleep.still_time < kTimeToSleep) fell_asleep_moving[sleep.group] = 1;
   }
   for (std::uint32_t body = 0; body < parent.size(); ++body) {
     const std::uint32_t group = w_.bodies.sleep[body].group;
-    if (group == kNoGroup || was_restless[group] != 0) continue;
+    if (group == kNoGroup || fell_asleep_moving[group] != 0) continue;
     if (root_of(body) != root_of(group))
       return broken("body %u sleeps in the group of body %u, but nothing links them", body, group);
   }
   return {};
 }
 
-Error StateValidator::nobody_sleeps_beside_motion() const {
+Error StateValidator::no_sleeper_touches_motion() const {
   Error error;
   for_each_island_edge(w_, [&](std::uint32_t a, std::uint32_t b) {
     const auto check = [&](std::uint32_t sleeper, std::uint32_t other) {
@@ -346,7 +350,7 @@ Error StateValidator::nobody_sleeps_beside_motion() const {
 }
 
 Error StateValidator::run() {
-  Error error = is_on_the_way() ? Error{} : check_columns(w_);
+  Error error = is_within_solve() ? Error{} : check_columns(w_);
   const auto next = [&](Error (StateValidator::*rule)() const, bool holds = true) {
     if (error.ok() && holds) error = (this->*rule)();
   };
@@ -355,14 +359,14 @@ Error StateValidator::run() {
   next(&StateValidator::lists_of_bodies);
   next(&StateValidator::list_of_awake);
   next(&StateValidator::blocked_bodies);
-  next(&StateValidator::places);
+  next(&StateValidator::poses);
   next(&StateValidator::contacts_have_pairs);
   next(&StateValidator::fat_boxes);
   next(&StateValidator::pairs_have_contacts);
   next(&StateValidator::groups_of_constraints);
   next(&StateValidator::islands);
-  next(&StateValidator::nobody_sleeps_beside_motion, is_right_after(StageName::link_islands));
-  next(&StateValidator::awake_links);
+  next(&StateValidator::no_sleeper_touches_motion, is_right_after(StageName::link_islands));
+  next(&StateValidator::active_constraints);
   next(&StateValidator::everything_is_solved, is_right_after(StageName::solve));
   return error;
 }
@@ -370,7 +374,7 @@ Error StateValidator::run() {
 }  // namespace
 
 Error validate_state(const WorldState& state, std::optional<StageName> after) {
-  const FloatMode mode;  // what is derived is derived again, with the same rounding
+  const FloatMode mode;  // derived data is computed again, with the same rounding
   return StateValidator(state, after).run();
 }
 

@@ -1,7 +1,7 @@
-// Walks the structures of a whole world and finds the first rule that is broken: what docs/architecture.md calls the promises
-// of the parts to each other. Slow: for tests, debug builds and people who hunt a bug.
+// Checks all structures of a world against each other and reports the first rule that is broken; docs/architecture.md
+// lists these rules. Slow: for tests, debug builds and the search for bugs.
 //
-// state_check.cpp asks less: whether columns that came from outside can be a state at all.
+// state_check.cpp checks less: that loaded columns can be a state.
 #pragma once
 
 #include "world/stages.h"
@@ -14,8 +14,8 @@ namespace gyre {
 
 struct WorldState;
 
-// Code none, or the rule and where it is broken, in words. `after`: the stage of the step that has just ended; none between
-// two steps. Some rules hold only after some stages.
+// Code none, or a message with the broken rule and its object. `after`: the last stage that ended; none between two
+// steps. Some rules hold only after some stages.
 Error validate_state(const WorldState& state, std::optional<StageName> after = {});
 
 }  // namespace gyre

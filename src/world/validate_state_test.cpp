@@ -1,5 +1,4 @@
-// The walk finds nothing wrong in worlds that are right, after any stage of any step; and it finds every rule that is broken
-// on purpose.
+// State validation accepts valid worlds after any stage of any step, and finds every rule that is broken on purpose.
 #include "world/validate_state.h"
 #include "determinism/random_world.h"
 #include "determinism/scenes.h"
@@ -16,40 +15,41 @@
 namespace gyre {
 namespace {
 
-// Walks a world after each stage of its steps, and keeps the first fault.
-class Watch {
+// Validates a world after each stage of its steps, and keeps the first fault.
+class StageValidator {
  public:
-  explicit Watch(World& world) : state_(state_of(world)) {
-    state_.stage_hook = {[](void* user, const char* stage) { static_cast<Watch*>(user)->look(stage); }, this};
+  explicit StageValidator(World& world) : state_(state_of(world)) {
+    state_.stage_hook = {
+        [](void* user, const char* stage) { static_cast<StageValidator*>(user)->validate(stage); }, this};
   }
-  ~Watch() { state_.stage_hook = {}; }
-  Watch(const Watch&) = delete;
-  Watch& operator=(const Watch&) = delete;
+  ~StageValidator() { state_.stage_hook = {}; }
+  StageValidator(const StageValidator&) = delete;
+  StageValidator& operator=(const StageValidator&) = delete;
   const std::string& fault() const { return fault_; }
-  int walks() const { return walks_; }
+  int validations() const { return validations_; }
 
  private:
-  void look(const char* name) {
+  void validate(const char* name) {
     int stage = 0;
     while (stage < kStageCount - 1 && std::strcmp(kStageNames[stage], name) != 0) ++stage;
     const Error error = validate_state(state_, StageName(stage));
-    ++walks_;
+    ++validations_;
     if (error.ok() || !fault_.empty()) return;
     fault_ = "step " + std::to_string(state_.step_count) + ", after " + name + ": " + error.message;
   }
 
   WorldState& state_;
   std::string fault_;
-  int walks_ = 0;
+  int validations_ = 0;
 };
 
-class WalkScenes : public testing::TestWithParam<int> {};
-TEST_P(WalkScenes, FindsNothingWrong) {
+class ValidateScenes : public testing::TestWithParam<int> {};
+TEST_P(ValidateScenes, FindsNothingWrong) {
   const scenes::Scene& scene = scenes::kScenes[GetParam()];
   Result<World> world = World::create();
   ASSERT_TRUE(world);
   scene.build(*world);
-  Watch watch(*world);
+  StageValidator validator(*world);
   for (int step = 0; step < scenes::kSteps; ++step) {
     if (scene.drive != nullptr) scene.drive(*world, step);
     if (step % 10 == 0) {
@@ -57,23 +57,23 @@ TEST_P(WalkScenes, FindsNothingWrong) {
       ASSERT_EQ(between.code, ErrorCode::none) << "before step " << step << ": " << between.message;
     }
     world->step(scenes::kStepSeconds);
-    ASSERT_EQ(watch.fault(), "");
+    ASSERT_EQ(validator.fault(), "");
   }
-  EXPECT_EQ(watch.walks(), scenes::kSteps * kStageCount);
+  EXPECT_EQ(validator.validations(), scenes::kSteps * kStageCount);
 }
-INSTANTIATE_TEST_SUITE_P(All, WalkScenes, testing::Range(0, int(std::size(scenes::kScenes))),
+INSTANTIATE_TEST_SUITE_P(All, ValidateScenes, testing::Range(0, int(std::size(scenes::kScenes))),
                          [](const testing::TestParamInfo<int>& which) {
                            return std::string(scenes::kScenes[which.param].name);
                          });
 
-// Worlds that nobody chose, with every kind of command, and snapshots taken and restored in between.
-void walk_random_worlds(std::uint32_t first, std::uint32_t count, int steps) {
+// Random worlds with every kind of command, and with snapshots saved and restored in between.
+void validate_random_worlds(std::uint32_t first, std::uint32_t count, int steps) {
   for (std::uint32_t number = first; number < first + count; ++number) {
     scenes::RandomWorld random(number);
     Result<World> world = World::create(random.def());
     ASSERT_TRUE(world) << number;
     random.build(*world);
-    Watch watch(*world);
+    StageValidator validator(*world);
     std::vector<std::byte> snapshot;
     for (int step = 0; step < steps; ++step) {
       random.drive(*world, step);
@@ -85,26 +85,26 @@ void walk_random_worlds(std::uint32_t first, std::uint32_t count, int steps) {
       ASSERT_EQ(between.code, ErrorCode::none)
           << "world " << number << ", before step " << step << ": " << between.message;
       world->step(scenes::kStepSeconds);
-      ASSERT_EQ(watch.fault(), "") << "world " << number;
+      ASSERT_EQ(validator.fault(), "") << "world " << number;
       between = validate_state(state_of(*world));
       ASSERT_EQ(between.code, ErrorCode::none)
           << "world " << number << ", after step " << step << ": " << between.message;
     }
   }
 }
-TEST(WalkRandomWorlds, FindsNothingWrong) { walk_random_worlds(1, 12, 60); }
-TEST(LongWalkRandomWorlds, FindsNothingWrong) { walk_random_worlds(100, 400, 120); }
+TEST(ValidateRandomWorlds, FindsNothingWrong) { validate_random_worlds(1, 12, 60); }
+TEST(LongValidateRandomWorlds, FindsNothingWrong) { validate_random_worlds(100, 400, 120); }
 
 // ---------------------------------------------------------------------------------------------------- rules that fail
 
-// Two stacks that sleep, one that is pushed, two joined bodies that swing, a far ball.
+// Two sleeping stacks, one pushed stack, two joined bodies that swing, a far ball.
 World make_busy_world() {
   Result<World> world = World::create();
   scenes::add_fixed(*world, {0, -1, 0}, Box{{50, 1, 50}});
   for (int i = 0; i < 6; ++i) scenes::add_moving(*world, {4.0 * (i % 3), 0.5 + i / 3, 0}, Box{});
   const BodyId a = scenes::add_moving(*world, {0, 8, 8}, Sphere{0.5f});
   const BodyId b = scenes::add_moving(*world, {1, 8, 8}, Sphere{0.5f});
-  // Springs, which are swept; joints whose equations are solved directly have no colours.
+  // Springs are iterative; joints that are solved directly have no colours.
   world->add_joint(DistanceDef{.b = a, .anchor = {0, 9, 8}, .stiffness = 1.0e4f});
   world->add_joint(DistanceDef{.a = a, .b = b, .anchor = {0, 8, 8}, .stiffness = 1.0e4f});
   for (int i = 0; i < 120; ++i) world->step(scenes::kStepSeconds);
@@ -113,7 +113,7 @@ World make_busy_world() {
   return std::move(*world);
 }
 
-// The message of the walk over what `spoil` leaves of that world.
+// The message of the validation of that world after `spoil`.
 template <class Spoil>
 std::string fault_after(Spoil&& spoil, std::optional<StageName> stage = {}) {
   World world = make_busy_world();
@@ -124,9 +124,9 @@ std::string fault_after(Spoil&& spoil, std::optional<StageName> stage = {}) {
 }
 testing::AssertionResult tells(const std::string& fault, const char* words) {
   if (fault.find(words) != std::string::npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "the walk says \"" << fault << "\", not \"" << words << "\"";
+  return testing::AssertionFailure() << "validation says \"" << fault << "\", not \"" << words << "\"";
 }
-// The first contact of two bodies that are awake and touch.
+// The first contact of two awake bodies that touch.
 Contact& awake_contact(WorldState& s) {
   for (Contact& contact : s.rigid.contacts.contacts) {
     if (contact.manifold_room != 0 && contact.manifold_count > 0 &&
@@ -141,7 +141,7 @@ void acquire_manifolds(WorldState& s, Contact& contact) {
   contact.manifold_count = 0;
 }
 
-TEST(Walk, FindsListsThatDisagree) {
+TEST(ValidateState, FindsListsThatDisagree) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.shapes[1].clear(); }),
                     "a shape is not in the list of its body"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.shapes[2] = s.rigid.bodies.shapes[1]; }),
@@ -154,31 +154,32 @@ TEST(Walk, FindsListsThatDisagree) {
                     "body 1 lists joint 1, which is between others"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.awake.pop_back(); }),
                     "body 8 is awake but is not listed so"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { ++s.rigid.bodies.sleepers; }), "4 bodies sleep, not 5"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.awake_links.contacts.reset_all(); }),
+  EXPECT_TRUE(
+      tells(fault_after([](WorldState& s) { ++s.rigid.bodies.sleeping_count; }), "4 bodies sleep, not 5"));
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.active_constraints.contacts.reset_all(); }),
                     "has an awake body, but nobody asks it"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.awake_links.joints.reset_all(); }),
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.active_constraints.joints.reset_all(); }),
                     "joint 0 has an awake body, but nobody asks it"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.joints.blocked.clear(); }),
                     "joint 1 keeps its bodies from colliding, but they are not known"));
 }
 
-TEST(Walk, FindsColumnsThatCannotBe) {
+TEST(ValidateState, FindsInvalidColumns) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.flags[1].awake ^= 1; }),
                     "the state does not hang together"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.motion.pop_back(); }),
                     "the body columns differ in length"));
 }
 
-TEST(Walk, FindsPlacesThatDisagree) {
+TEST(ValidateState, FindsPosesThatDisagree) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.orientations[3].x += 1e-6f; }),
                     "body 3 has two orientations"));
 }
 
-TEST(Walk, FindsBoxesThatDoNotHold) {
+TEST(ValidateState, FindsBoxesThatDoNotContainTheirShapes) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.shapes.proxies[4].fat_box.high.x -= 0.2f; }),
                     "the fat box of shape 4 does not contain the shape"));
-  // Larger than the tree was told: it still holds the shape.
+  // The box is larger than the tree's copy, but it still contains the shape.
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.shapes.proxies[4].fat_box.high.y += 0.01f; }),
                     "broad phase: a tree knows a proxy by another box than its own"));
   EXPECT_TRUE(
@@ -186,7 +187,7 @@ TEST(Walk, FindsBoxesThatDoNotHold) {
             "broad phase: "));
 }
 
-TEST(Walk, FindsContactsWithoutPairsAndPairsWithoutContacts) {
+TEST(ValidateState, FindsContactsWithoutPairsAndPairsWithoutContacts) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) {
                       const Contact contact = awake_contact(s);
                       remove_contact(
@@ -207,10 +208,10 @@ TEST(Walk, FindsContactsWithoutPairsAndPairsWithoutContacts) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.contacts.slot_of_pair.clear(); }), "contacts: "));
 }
 
-TEST(Walk, FindsGroupsThatShareABody) {
+TEST(ValidateState, FindsColorsWithABodyTwice) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) {
                       ASSERT_GE(s.solve.together.contacts.pairs.size(), 2u);
-                      // Both in group 0, as if the second had not seen the first.
+                      // Both have colour 0, as if the second had not seen the first.
                       s.solve.together.contacts.pairs[1] = s.solve.together.contacts.pairs[0];
                       s.solve.together.contact_colors.color[1] = s.solve.together.contact_colors.color[0];
                     }),
@@ -223,7 +224,7 @@ TEST(Walk, FindsGroupsThatShareABody) {
                     "a group of joints has a moving body twice"));
 }
 
-TEST(Walk, FindsWhatTheSolverWasNotGiven) {
+TEST(ValidateState, FindsConstraintsThatTheSolverMissed) {
   // Right after the step nothing has changed since its stage `solve`.
   constexpr StageName kSolve = StageName::solve;
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { --s.solve.counts.manifolds; }, kSolve),
@@ -236,8 +237,8 @@ TEST(Walk, FindsWhatTheSolverWasNotGiven) {
                     "the solver has other joints than those that act"));
 }
 
-TEST(Walk, FindsIslandsThatDoNotHangTogether) {
-  // The sleeping stacks of bodies 1 and 4, and of 2 and 5, as if they were one.
+TEST(ValidateState, FindsGroupsThatAreNotConnected) {
+  // The sleeping stacks of bodies 1 and 4, and of 2 and 5, as one group.
   const auto join_groups = [](WorldState& s) {
     Array<BodySleep>& sleep = s.rigid.bodies.sleep;
     ASSERT_EQ(sleep[1].group, 1u);

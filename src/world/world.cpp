@@ -83,7 +83,7 @@ bool World::set_combine_rules(CombineRule friction, CombineRule restitution) {
 
 namespace {
 
-// Why the world cannot be computed as `def` says from now on; code none if it can.
+// Why `def` cannot be the settings of the world from now on; code none if it can.
 Error check_change(const WorldState& s, const WorldDef& def) {
   if (s.stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
   return check_world_def(def);
@@ -96,10 +96,10 @@ bool refuse_change(WorldState& s, const Error& why) {
 }  // namespace
 
 bool World::set_threads(int threads) {
-  WorldDef wanted = state_->def;
-  wanted.threads = threads;
-  Error why = check_change(*state_, wanted);
-  if (why.ok() && wanted.host_tasks.run != nullptr) {
+  WorldDef new_def = state_->def;
+  new_def.threads = threads;
+  Error why = check_change(*state_, new_def);
+  if (why.ok() && new_def.host_tasks.run != nullptr) {
     why = make_error(ErrorCode::unsupported, "threads: this world uses the host's own tasks");
   }
   if (why) return refuse_change(*state_, why);
@@ -108,11 +108,11 @@ bool World::set_threads(int threads) {
   return true;
 }
 bool World::set_broad_phase(BroadPhaseKind kind) {
-  WorldDef wanted = state_->def;
-  wanted.stepping.broad_phase = kind;
-  const Error why = check_change(*state_, wanted);
+  WorldDef new_def = state_->def;
+  new_def.stepping.broad_phase = kind;
+  const Error why = check_change(*state_, new_def);
   if (why) return refuse_change(*state_, why);
-  // The next step builds it from all boxes. Which of them changed it is told then, too.
+  // The next step builds it from all boxes, including the changed ones.
   state_->rigid.broadphase = make_broadphase(kind);
   state_->rigid.broadphase_stale = true;
   state_->queried_changes.store(kNothingQueried, std::memory_order_relaxed);
@@ -123,7 +123,7 @@ bool World::set_broad_phase(BroadPhaseKind kind) {
 bool World::add_force(BodyId body, Vec3 force) { return submit(*state_, AddForce{body, force, {}}).done; }
 bool World::add_force_at(BodyId body, Vec3 force, DVec3 point) {
   const FloatMode mode;
-  // t = (p - COM) x f. A stale body's centre is zero: the command is refused all the same.
+  // t = (p - COM) x f. The centre of a stale body is zero; its command is refused anyway.
   return submit(*state_, AddForce{body, force, cross(difference(point, center_of_mass(body)), force)}).done;
 }
 bool World::add_torque(BodyId body, Vec3 torque) { return submit(*state_, AddForce{body, {}, torque}).done; }

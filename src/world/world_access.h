@@ -1,5 +1,5 @@
-// The engine's own way into a World: its state, and a World made of a state. Users have none; io and debug, which are built on
-// the state, go through here.
+// The engine's access to the state of a World, and a World made of a state. Users have neither; io and debug, which
+// work on the state, use it.
 #pragma once
 
 #include "world/world_state.h"

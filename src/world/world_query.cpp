@@ -1,5 +1,4 @@
-// The public World's questions: checks, the broad phase brought up to date, answers put in order and given ids, batches over
-// the workers.
+// The public queries of World: checks, update of the broad phase, sorted results with ids, batches on the workers.
 #include <gyre/world.h>
 
 #include "base/float_mode.h"
@@ -13,7 +12,7 @@ namespace gyre {
 
 namespace {
 
-constexpr int kBlock = 32;  // questions that one worker takes at a time
+constexpr int kBlock = 32;  // queries that a worker takes at a time
 
 // ---------------------------------------------------------------------------------------------------------------- checks
 
@@ -55,7 +54,7 @@ Error check_question(const ShapePose& shape) { return check_shape_pose(shape); }
 
 // ------------------------------------------------------------------------------------------------------------- the world
 
-// Shows the broad phase what came, went or moved since it last looked. Whoever comes first does it for all.
+// Updates the broad phase with changes since its last update. The first query does it for all.
 void show_changes(WorldState& s) {
   RigidWorld& w = s.rigid;
   if (s.queried_changes.load(std::memory_order_acquire) == w.shapes.changed.size()) return;
@@ -79,12 +78,12 @@ bool accepts(const RigidWorld& w, const QueryFilter& filter, std::uint32_t shape
   return filter.accepts == nullptr || filter.accepts(filter.user, shape_id(w, shape), body_id(w, proxy.body));
 }
 
-// Calls ask(input), with all that collision needs to answer.
+// Calls ask(input) with the input of the collision queries.
 template <class Ask>
 void ask_world(const WorldState& s, const QueryFilter& filter, Ask&& ask) {
   const RigidWorld& w = s.rigid;
   const auto pose_of = [&](std::uint32_t shape) {
-    return origin_pose(w.bodies, w.shapes.bodies[shape]) * w.shapes.places[shape];
+    return origin_pose(w.bodies, w.shapes.bodies[shape]) * w.shapes.body_from_shape[shape];
   };
   const auto is_accepted = [&](std::uint32_t shape) { return accepts(w, filter, shape); };
   const QueryInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, pose_of,
@@ -105,7 +104,7 @@ WorldShape world_shape(const ShapeCast& cast) {
 
 // -------------------------------------------------------------------------------------------------------------- answers
 
-// Who answers: what all public answers begin with.
+// Body, shape and triangle, with which all public results begin.
 template <class Answer>
 Answer named(const RigidWorld& w, std::uint32_t shape, std::uint32_t triangle) {
   Answer answer;
@@ -130,7 +129,7 @@ CastHit public_answer(const RigidWorld& w, const ShapeHit& hit) {
 ClosestPoint public_answer(const RigidWorld& w, const ShapeNear& near) {
   auto out = named<ClosestPoint>(w, near.shape, near.triangle);
   out.point = near.point;
-  out.query_point = near.query_point;
+  out.query_point = near.own_point;
   out.normal = near.normal;
   out.distance = near.distance;
   return out;
@@ -154,7 +153,7 @@ bool comes_before(const Answer& a, const Answer& b) {
   return a.shape.index != b.shape.index ? a.shape.index < b.shape.index : a.triangle < b.triangle;
 }
 
-// The first answers, in order, as many as there is room for.
+// The first results in order, as many as fit.
 template <class Answer>
 class FirstAnswers {
  public:
@@ -183,7 +182,7 @@ void cast(const QueryInput& input, const ShapeCast& shape, HitVisit found) {
   cast_shape(input, world_shape(shape), found);
 }
 
-// Of the nearest hit; an empty one if there is none.
+// The nearest hit; an empty one if there is none.
 template <class Question>
 CastHit nearest_hit(const WorldState& s, const Question& question, const QueryFilter& filter) {
   ShapeHit nearest;
@@ -234,7 +233,7 @@ ClosestPoint nearest_point(const WorldState& s, const ShapePose& shape, double m
   return any ? public_answer(s.rigid, nearest) : ClosestPoint{};
 }
 
-// Calls `found` for each shape within the distance, until it says false.
+// Calls `found` for each shape within the distance, until it returns false.
 template <class Found>
 void for_each_near(const WorldState& s, const ShapePose& shape, double max_distance,
                    const QueryFilter& filter, Found&& found) {
@@ -281,7 +280,7 @@ Penetration deepest(const WorldState& s, const ShapePose& shape, const QueryFilt
   return out;
 }
 
-// Checks a single question and gets the world ready for it.
+// Checks a single query and updates the broad phase.
 template <class Question>
 bool is_ready(WorldState& s, const Question& question) {
   if (s.stepping || check_question(question)) return false;
@@ -289,7 +288,7 @@ bool is_ready(WorldState& s, const Question& question) {
   return true;
 }
 
-// Calls ask(i, question) for each question, over the workers, or alone if they are busy.
+// Calls ask(i, question) for each query, on the workers, or on the calling thread if they are busy.
 template <class Question, class Ask>
 Error ask_each(WorldState& s, std::span<const Question> questions, std::size_t room, Ask&& ask) {
   if (s.stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
@@ -303,9 +302,9 @@ Error ask_each(WorldState& s, std::span<const Question> questions, std::size_t r
   }
   show_changes(s);
   const std::unique_lock<std::mutex> workers(s.batch_lock, std::try_to_lock);
-  constexpr std::size_t kMost = 1u << 30;  // what a loop in blocks can count
-  for (std::size_t first = 0; first < questions.size(); first += kMost) {
-    const auto count = int(min(questions.size() - first, kMost));
+  constexpr std::size_t kMaxQuestions = 1u << 30;  // what a blocked loop can count
+  for (std::size_t first = 0; first < questions.size(); first += kMaxQuestions) {
+    const auto count = int(min(questions.size() - first, kMaxQuestions));
     const auto answer_some = [&](int begin, int end, int) {
       for (std::size_t i = first + std::size_t(begin); i < first + std::size_t(end); ++i)
         ask(i, questions[i]);
@@ -320,14 +319,14 @@ Error ask_each(WorldState& s, std::span<const Question> questions, std::size_t r
   return {};
 }
 
-// One answer each: out[i] = answer(question).
+// One result for each query: out[i] = answer(question).
 template <class Question, class Answer, class Ask>
 Error answer_each(WorldState& s, std::span<const Question> questions, std::span<Answer> out, Ask&& answer) {
   return ask_each(s, questions, out.size(),
                   [&](std::size_t i, const Question& question) { out[i] = Answer(answer(question)); });
 }
 
-// All answers of each: counts[i] = fill(question, its part of out).
+// All results of each query: counts[i] = fill(question, its part of out).
 template <class Question, class Answer, class Ask>
 Error fill_each(WorldState& s, std::span<const Question> questions, std::span<Answer> out,
                 std::span<std::uint32_t> counts, Ask&& fill) {

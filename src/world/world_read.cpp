@@ -1,4 +1,4 @@
-// The public World's reading side: single getters, bulk columns, sums over the world.
+// The reading side of the public World: single getters, bulk columns, sums over the world.
 #include <gyre/world.h>
 
 #include "base/float_mode.h"
@@ -44,7 +44,8 @@ void fill(BodyCopy& copy, const WorldState& s, bool only_awake) {
   });
   resize(copy, count);
 }
-// By ascending index. The first thread that asks after a change makes the copy for all. (In one place for both: code counts on the web.)
+// By ascending index. After a change, the first reading thread makes the copy for all. (One function for both lists:
+// code size counts on the web.)
 BodyColumns read_bodies(WorldState& s, BodyCopy& copy, bool only_awake) {
   if (copy.made_at.load(std::memory_order_acquire) != s.changes) {
     const std::lock_guard<std::mutex> lock(s.query_lock);
@@ -58,7 +59,7 @@ BodyColumns read_bodies(WorldState& s, BodyCopy& copy, bool only_awake) {
 
 // Angular momentum about the centre of mass, world frame, in double.
 DVec3 spin_momentum(const BodyStore& bodies, std::uint32_t i) {
-  const Quat q = bodies.places[i].orientation;
+  const Quat q = bodies.poses[i].orientation;
   return DVec3(rotate(q, bodies.masses[i].inertia * rotate_inverse(q, bodies.motion[i].angular_velocity)));
 }
 
@@ -69,11 +70,11 @@ bool World::exists(ShapeId shape) const { return lives(*state_, shape); }
 bool World::exists(JointId joint) const { return lives(*state_, joint); }
 
 Pose World::pose(BodyId body) const {
-  const FloatMode mode;  // the origin is worked out from the centre of mass
+  const FloatMode mode;  // the origin is derived from the centre of mass
   return exists(body) ? origin_pose(state_->rigid.bodies, body.index) : Pose{};
 }
 DVec3 World::center_of_mass(BodyId body) const {
-  return exists(body) ? state_->rigid.bodies.places[body.index].center : DVec3{};
+  return exists(body) ? state_->rigid.bodies.poses[body.index].center : DVec3{};
 }
 Vec3 World::linear_velocity(BodyId body) const {
   return exists(body) ? state_->rigid.bodies.motion[body.index].linear_velocity : Vec3{};
@@ -112,7 +113,7 @@ const AnyShape* World::geometry(ShapeId shape) const {
   return exists(shape) ? &state_->rigid.shapes.geometry[shape.index] : nullptr;
 }
 Transform World::local_transform(ShapeId shape) const {
-  return exists(shape) ? state_->rigid.shapes.places[shape.index] : Transform{};
+  return exists(shape) ? state_->rigid.shapes.body_from_shape[shape.index] : Transform{};
 }
 Material World::material(ShapeId shape) const {
   return exists(shape) ? state_->rigid.shapes.materials[shape.index] : Material{};
@@ -167,7 +168,7 @@ std::size_t World::contacts(std::span<ContactPoint> out) const {
         point.shape_b = shape_id(w, contact.shape_b);
         point.body_a = body_id(w, contact.body_a);
         point.body_b = body_id(w, contact.body_b);
-        point.position = w.bodies.places[contact.body_a].center + from.from_a;
+        point.position = w.bodies.poses[contact.body_a].center + from.from_a;
         point.normal = manifold.normal;
         point.tangent_1 = any_perpendicular(manifold.normal);
         point.tangent_2 = cross(manifold.normal, point.tangent_1);
@@ -190,7 +191,7 @@ std::size_t World::contact_pairs(std::span<ContactPair> out) const {
   const RigidWorld& w = state_->rigid;
   std::size_t count = 0;
   for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
-    const Contact& contact = w.contacts.contacts[slot];  // of an empty slot: it touches nothing
+    const Contact& contact = w.contacts.contacts[slot];  // an empty slot touches nothing
     if (contact.touching == 0 || contact.sensor != 0) continue;
     if (slot < w.touches.began.size() && w.touches.began.test(slot)) continue;
     if (count++ >= out.size()) continue;
@@ -215,7 +216,7 @@ WorldStats World::stats() const {
   counts.joints = int(w.joints.ids.size());
   counts.colors = state_->solve.colors;
   counts.pairs = int(w.contacts.live);
-  // Slots that are free have the flags of fixed bodies, and contacts that touch nothing and have no manifolds.
+  // Free slots have the flags of static bodies; their contacts touch nothing and have no manifolds.
   for (const BodyFlags& flags : w.bodies.flags) counts.awake_bodies += is_simulated(flags) ? 1 : 0;
   for (const Contact& contact : w.contacts.contacts) {
     counts.touching += contact.touching != 0 ? 1 : 0;
@@ -288,7 +289,7 @@ Energy World::energy() const {
     energy.kinetic += 0.5 * mass * length_squared(DVec3(motion.linear_velocity)) +
                       0.5 * dot(spin_momentum(w.bodies, i), DVec3(motion.angular_velocity));
     energy.potential -=
-        mass * double(w.bodies.forces[i].gravity_scale) * dot(gravity, w.bodies.places[i].center);
+        mass * double(w.bodies.forces[i].gravity_scale) * dot(gravity, w.bodies.poses[i].center);
   });
   w.joints.ids.for_each_live([&](std::uint32_t slot) { energy.elastic += spring_energy(w, slot); });
   return energy;
@@ -302,7 +303,7 @@ Momentum World::momentum() const {
     if (!is_movable(w.bodies.flags[i])) return;
     const DVec3 p = double(w.bodies.masses[i].mass) * DVec3(w.bodies.motion[i].linear_velocity);
     momentum.linear += p;
-    momentum.angular += cross(w.bodies.places[i].center, p) + spin_momentum(w.bodies, i);
+    momentum.angular += cross(w.bodies.poses[i].center, p) + spin_momentum(w.bodies, i);
   });
   return momentum;
 }

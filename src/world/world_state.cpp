@@ -17,7 +17,7 @@ namespace {
 
 std::uint16_t next_world_number() {
   static std::atomic<std::uint32_t> count{0};
-  // Never 0: a null id is of no world.
+  // Never 0: a null id belongs to no world.
   return std::uint16_t(1 + count.fetch_add(1, std::memory_order_relaxed) % 65535);
 }
 
@@ -33,23 +33,23 @@ class HashVisitor {
   template <class T>
   void operator()(const char*, const Array<T>& column) {
     if (is_later_column<Array<T>> && column.empty()) return;
-    add_at_once(column.size());
+    add_word(column.size());
     for (const T& record : column) add_record(record);
   }
   template <class T>
     requires IsColumn<T>
   void operator()(const char*, const T& column) {
-    add_at_once(column.size());
+    add_word(column.size());
     for (std::size_t i = 0; i < column.size(); ++i) add_record(column[i]);
   }
   void operator()(const char*, const IdPool& ids) {
-    for (const std::uint32_t generation : ids.generations()) add_at_once(generation);
+    for (const std::uint32_t generation : ids.generations()) add_word(generation);
   }
   void operator()(const char*, const std::vector<AnyShape>& geometry) {
-    for (const AnyShape& shape : geometry) add_at_once(hash_shape(shape));
+    for (const AnyShape& shape : geometry) add_word(hash_shape(shape));
   }
   std::uint64_t value() {
-    eat(used_);
+    update(used_);
     used_ = 0;
     return hasher_.value();
   }
@@ -57,20 +57,20 @@ class HashVisitor {
  private:
   template <class T>
   void add_record(const T& record) {
-    // Every field takes a byte or more of its record: there is room for all of them without looking at each.
+    // Every field has at least one byte of its record, so this room suffices without a check for each field.
     static_assert(sizeof(T) + std::size_t(kGroup) <= std::size_t(kWords));
     if (used_ + int(sizeof(T)) > kWords) drain();
     int used = used_;
-    for_each_field(record, [this, &used](const auto& value) { words_[used++] = word_of(value); });
+    for_each_field(record, [this, &used](const auto& value) { words_[used++] = to_word(value); });
     used_ = used;
   }
   template <class T>
   void add(const T& value) {
     if (used_ == kWords) drain();
-    words_[used_++] = word_of(value);
+    words_[used_++] = to_word(value);
   }
   template <class T>
-  static std::uint64_t word_of(const T& value) {
+  static std::uint64_t to_word(const T& value) {
     if constexpr (std::is_same_v<T, double>) {
       return __builtin_bit_cast(std::uint64_t, value);
     } else if constexpr (std::is_same_v<T, float>) {
@@ -79,20 +79,20 @@ class HashVisitor {
       return std::uint64_t(value);
     }
   }
-  // Fields go to the hash in groups; a count that is told at once comes before those of the group that is not full yet.
-  void add_at_once(std::uint64_t word) {
+  // Fields are hashed in groups. A word that is added directly is hashed before the fields of an incomplete group.
+  void add_word(std::uint64_t word) {
     drain();
     hasher_.add(word);
   }
   void drain() {
     const int whole = used_ / kGroup * kGroup;
-    eat(whole);
+    update(whole);
     used_ -= whole;
     for (int i = 0; i < used_; ++i) words_[i] = words_[whole + i];
   }
-  void eat(int count) {
+  void update(int count) {
     if constexpr (std::endian::native == std::endian::little) {
-      hasher_.add(std::as_bytes(std::span(words_, std::size_t(count))));  // the same bytes, all together
+      hasher_.add(std::as_bytes(std::span(words_, std::size_t(count))));  // the same bytes at once
     } else {
       for (int i = 0; i < count; ++i) hasher_.add(words_[i]);
     }
@@ -159,17 +159,17 @@ void derive_state(RigidWorld& w) {
   bodies.shapes.resize(count);
   bodies.joints.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
-    bodies.orientations[i] = bodies.places[i].orientation;
+    bodies.orientations[i] = bodies.poses[i].orientation;
     refresh_inertia(bodies, i);
     bodies.shapes[i].clear();
   }
   bodies.awake_stale = true;
   refresh_awake(bodies);
   w.shapes.colliders.resize(w.shapes.ids.capacity());
-  // Which boxes the broad phase has not seen yet is not kept. All of them are shown to it: of the pairs that it then
-  // finds, only those have no contact yet that it would have found anyway.
+  // The list of boxes that the broad phase has not seen is not saved. All boxes are listed. Of the pairs that it then
+  // finds, only those have no contact that it would have found anyway.
   w.shapes.changed.clear();
-  w.shapes.hurried.clear();
+  w.shapes.moved_shapes.clear();
   w.shapes.fat_box_horizon = 0.0f;
   w.shapes.ids.for_each_live([&](std::uint32_t shape) {
     refresh_collider(w.shapes, shape);
@@ -191,14 +191,14 @@ void derive_state(RigidWorld& w) {
 }
 
 std::uint64_t hash_state(const WorldState& state) {
-  const FloatMode mode;  // shapes are hashed as the engine knows them, with unit normals
+  const FloatMode mode;  // shapes are hashed in their form for collision, with unit normals
   HashVisitor visitor;
   for_each_column(state, visitor);
   return visitor.value();
 }
 
 void report_problem(WorldState& state, ErrorCode code, BodyId body, const char* format, ...) {
-  constexpr std::size_t kMaxProblems = 256;  // a host that never looks must not fill the memory
+  constexpr std::size_t kMaxProblems = 256;  // bounds the memory of hosts that never read problems
   if (state.problems.size() >= kMaxProblems) return;
   Problem problem;
   problem.code = code;

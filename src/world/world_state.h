@@ -1,5 +1,5 @@
-// Everything a world owns. What is simulation state is named once, in for_each_column: saving, loading, hashing and
-// comparing are visitors of that one list, so a new array cannot be forgotten in one of them.
+// Everything that a world owns. for_each_column names all simulation state once; saving, loading, hashing and
+// comparison are visitors of this list, so none of them can miss a new array.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -22,17 +22,17 @@
 
 namespace gyre {
 
-// Sees every command just before it is carried out, and every step when it is done. The recorder is one.
+// Receives every command just before it is executed, and every step when it is done. The recorder is one.
 class CommandLog {
  public:
   virtual ~CommandLog() = default;
   virtual void on_command(const Command& command) = 0;
   virtual void on_step_done(WorldState& state) = 0;
-  // The state was replaced as a whole, by that of a snapshot.
+  // The state was replaced by that of a snapshot.
   virtual void on_restored(WorldState& state) = 0;
 };
 
-// Called after every stage of a step with the stage's name: tools compare two worlds with it.
+// Called after every stage of a step with the name of the stage. Tools compare two worlds with it.
 struct StageHook {
   void (*call)(void* context, const char* stage) = nullptr;
   void* context = nullptr;
@@ -40,13 +40,13 @@ struct StageHook {
 
 constexpr std::size_t kNothingQueried = std::size_t(-1);
 
-// What World::bodies() hands out, made once after a change by whichever thread asks first (under WorldState::query_lock) and then
-// read by all: its spans stay what they are until the next change.
+// A result of World::bodies(). After a change, the first reading thread makes it (under WorldState::query_lock); all
+// threads read it. Its spans are valid until the next change.
 struct BodyCopy {
   std::vector<BodyId> ids;
   std::vector<Pose> poses;
   std::vector<Vec3> linear_velocities, angular_velocities;
-  std::atomic<std::uint64_t> made_at{~std::uint64_t(0)};  // WorldState::changes when it was made
+  std::atomic<std::uint64_t> made_at{~std::uint64_t(0)};  // WorldState::changes at that time
 };
 
 struct WorldState {
@@ -55,7 +55,7 @@ struct WorldState {
   double time = 0.0;             // s
   std::uint64_t step_count = 0;
 
-  // Everything below can be rebuilt, or is about this process and not about the simulated world.
+  // Everything below can be derived, or belongs to this process and not to the simulated world.
   WorldDef def;
   std::unique_ptr<TaskSystem> tasks;
   const SolverKernels* kernels = nullptr;
@@ -69,27 +69,28 @@ struct WorldState {
   CommandLog* log = nullptr;
   Array<Problem> problems;
   Array<std::uint32_t> frozen;
-  RigidEvents shown;              // events of the last step; rigid.events collects those of the next
-  Events events;                  // spans into `shown`
+  RigidEvents published_events;  // events of the last step; rigid.events collects those of the next
+  Events events;                 // spans of `published_events`
   bool stepping = false;
-  bool walks = true;              // builds with GYRE_VALIDATE: after each stage all structures are walked
+  bool validates = true;          // builds with GYRE_VALIDATE: state validation after each stage
   std::uint16_t number = 0;       // of this world, in its ids
-  // How many entries of rigid.shapes.changed queries have shown to the broad phase already; kNothingQueried when it may not even
-  // have been built. Queries bring it up to date under the lock, since several threads may ask at once.
+  // The number of entries of rigid.shapes.changed that queries have given to the broad phase; kNothingQueried if it
+  // may not be built yet. Queries update it under the lock, since several threads may query at once.
   std::atomic<std::size_t> queried_changes{kNothingQueried};
   std::mutex query_lock;
   std::mutex batch_lock;          // the workers answer one batch of queries at a time
   Array<std::uint32_t> changes_to_show;
   Array<std::uint64_t> change_keys, change_scratch;
-  // Counts changes of the state, so that a copy knows whether it is still true. Whatever changes bodies counts one up (note_change).
+  // Counts the changes of the state, so that a copy is known to be current. Every change of bodies must call
+  // note_change.
   std::uint64_t changes = 0;
-  // Copies that bulk reading hands out: of all bodies, and of those awake.
+  // The copies for bulk reading: of all bodies, and of awake bodies.
   BodyCopy all_bodies, awake_bodies;
 };
 
 inline void note_change(WorldState& state) { ++state.changes; }
 
-// Columns that are read and set one record at a time.
+// Columns whose records are read and set one at a time.
 template <class T>
 constexpr bool is_column = false;
 template <class T>
@@ -101,16 +102,16 @@ concept IsColumn = is_column<T>;
 template <IsColumn T>
 using RecordOf = std::remove_cvref_t<decltype(std::declval<const T&>()[std::size_t{0}])>;
 
-// Columns that came after the first format: those of a world without such things are empty, and such a world has the hash and
-// the snapshot that it always had.
+// Columns that were added after the first format. They are empty in worlds that do not need them; such a world has
+// the hash and the snapshot of older versions.
 template <class Column>
 constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || std::is_same_v<Column, Array<JointDetail>> ||
                                  std::is_same_v<Column, Array<PathPoint>> || std::is_same_v<Column, Array<FieldRecord>> ||
                                  std::is_same_v<Column, Array<MotionSettings>> || std::is_same_v<Column, Array<LastMove>> ||
                                  std::is_same_v<Column, Array<SolverSettings>>;
 
-// Calls visit(name, column) for every column that is simulation state, in a fixed order. A column is an Array or an IsColumn of
-// records that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
+// Calls visit(name, column) for every state column, in a fixed order. A column is an Array or an IsColumn of records
+// that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
 template <class State, class Visitor>
 void for_each_column(State& s, Visitor&& visit) {
   visit("time", s.time);
@@ -124,7 +125,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("body_ids", s.rigid.bodies.ids);
   visit("body_motion", s.rigid.bodies.motion);
   visit("body_last_moves", s.rigid.bodies.last_moves);
-  visit("body_places", s.rigid.bodies.places);
+  visit("body_places", s.rigid.bodies.poses);
   visit("body_masses", s.rigid.bodies.masses);
   visit("body_forces", s.rigid.bodies.forces);
   visit("body_flags", s.rigid.bodies.flags);
@@ -133,7 +134,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("body_user_data", s.rigid.bodies.user_data);
   visit("shape_ids", s.rigid.shapes.ids);
   visit("shape_bodies", s.rigid.shapes.bodies);
-  visit("shape_places", s.rigid.shapes.places);
+  visit("shape_places", s.rigid.shapes.body_from_shape);
   visit("shape_proxies", s.rigid.shapes.proxies);
   visit("shape_materials", s.rigid.shapes.materials);
   visit("shape_geometry", s.rigid.shapes.geometry);
@@ -147,22 +148,22 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("manifolds", s.rigid.contacts.manifolds);
 }
 
-// A world with default state: no bodies; threads and kernels by the def.
+// A world with default state: no bodies; threads and kernels as in the def.
 std::unique_ptr<WorldState> make_world_state(const WorldDef& def);
-// Why a def cannot be used; code none if it can.
+// Why a def is invalid; code none if it is valid.
 Error check_world_def(const WorldDef& def);
 
-// Why columns that came from outside cannot be a state: indices out of range, sets that disagree. Code none if they can.
+// Why loaded columns cannot be a state: invalid indices, inconsistent sets. Code none if they can.
 Error check_columns(const RigidWorld& w);
-// Derives everything that is not state from columns that hang together.
+// Derives all data that is not state from consistent columns.
 void derive_state(RigidWorld& w);
-// Both in one: what loading ends with.
+// Checks and derives: the last step of loading.
 Error rebuild_derived(RigidWorld& w);
 
 // 64-bit hash of all columns.
 std::uint64_t hash_state(const WorldState& state);
 
-// Lists a problem for the user.
+// Adds a problem for the user.
 #if defined(__GNUC__)
 __attribute__((format(printf, 4, 5)))
 #endif

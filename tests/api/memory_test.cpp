@@ -70,7 +70,7 @@ Taken taken_by_steps(World& world, int steps) {
   return {news.load() - before, allocation_count() - blocks};
 }
 void expect_none(World& world, int warm_up, int steps, const char* name) {
-  state_of(world).walks = false;  // the walks of debug builds take memory
+  state_of(world).validates = false;  // state validation in debug builds takes memory
   for (int i = 0; i < warm_up; ++i) world.step(kStep);
   const Taken t = taken_by_steps(world, steps);
   std::printf("[row] %s: %ld allocations, %llu by the engine's door, in %d steps\n", name, t.news,
@@ -247,7 +247,7 @@ TEST(NoAllocation, WhileFastBodiesFly) {
 // Questions of every kind, alone and in batches over two threads, in a heap that moves on between them.
 TEST(NoAllocation, InQueries) {
   World world = make_world({.threads = 2});
-  state_of(world).walks = false;
+  state_of(world).validates = false;
   std::vector<float> heights(33 * 33);
   for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = 0.1f * float(i * 7919u % 10u);
   world.add_body({.type = BodyType::fixed},

@@ -34,8 +34,8 @@ TEST(Cone, HoldsItsSwingWithinAnEllipse) {
       for (int i = 0; i < 240; ++i) {
         // A weight that pulls the axis to one side: it comes to rest where the ellipse is farthest that way.
         const Vec3 x = rotate(world.pose(body).orientation, {1, 0, 0});
-        const Vec3 geometric_stiffness{0, float(std::sin(a)), float(-std::cos(a))};
-        world.add_torque(body, 1.0f * cross(x, geometric_stiffness) - 0.3f * world.angular_velocity(body));
+        const Vec3 down{0, float(std::sin(a)), float(-std::cos(a))};
+        world.add_torque(body, 1.0f * cross(x, down) - 0.3f * world.angular_velocity(body));
         world.step(kStep);
         const SwingOf s = swing_of(world, body);
         most = std::max(most, std::hypot(s.y / double(ly), s.z / double(lz)));

@@ -89,9 +89,9 @@ TEST(Spring, OfAnyStiffnessIsStable) {
     for (const double damping : {0.0, 1.0, 1e6}) {
       for (const double mass : {1e-3, 1.0, 1e3}) {
         World world = make_world({.sleeping = false});
-        const double rest = 1.0, geometric_stiffness = 0.01;
+        const double rest = 1.0, extension = 0.01;
         const float moment = float(mass * 1e-2);
-        const BodyId body = world.add_body(point_body(mass, {moment, moment, moment}, {0, -rest - geometric_stiffness, 0}));
+        const BodyId body = world.add_body(point_body(mass, {moment, moment, moment}, {0, -rest - extension, 0}));
         world.add_joint(DistanceDef{
             .b = body, .length = float(rest), .stiffness = float(stiffness), .damping = float(damping)});
         const auto energy = [&] {
@@ -99,8 +99,8 @@ TEST(Spring, OfAnyStiffnessIsStable) {
           return e.kinetic + e.elastic + e.potential;
         };
         const double start = energy();
-        const double scale = 0.5 * stiffness * geometric_stiffness * geometric_stiffness +
-                             mass * kGravity * geometric_stiffness;
+        const double scale = 0.5 * stiffness * extension * extension +
+                             mass * kGravity * extension;
         double most = start;
         for (int i = 0; i < 600; ++i) {
           world.step(kStep);

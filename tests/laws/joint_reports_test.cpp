@@ -271,15 +271,15 @@ TEST(Rope, SlipsOverADrumAsEulerAndEytelweinSay) {
         world.add_joint(
             HingeDef{.a = links[std::size_t(i - 1)], .b = links.back(), .anchor = from, .axis = {0, 0, 1}});
     }
-    const auto geometric_stiffness = [&](double by) {
+    const auto pull = [&](double by) {
       world.add_force(links.front(), {0, -10, 0});
       world.add_force(links.back(), {0, float(-10.0 * by), 0});
       world.step(kStep);
     };
-    for (int i = 0; i < 60; ++i) geometric_stiffness(1.0);
-    for (int i = 0; i < 60; ++i) geometric_stiffness(1.0 + (ratio - 1.0) * (i + 1) / 60.0);
+    for (int i = 0; i < 60; ++i) pull(1.0);
+    for (int i = 0; i < 60; ++i) pull(1.0 + (ratio - 1.0) * (i + 1) / 60.0);
     const double before = world.pose(links.back()).position.y;
-    for (int i = 0; i < 60; ++i) geometric_stiffness(ratio);
+    for (int i = 0; i < 60; ++i) pull(ratio);
     return before - world.pose(links.back()).position.y > 0.02;
   };
   double holds = 1.0, slips = 6.0;

@@ -15,13 +15,13 @@ namespace {
 constexpr char kRecordingMagic[9] = "GYREPLAY";
 constexpr std::size_t kFileHeaderBytes = 8 + 4 + 4 + 8;
 constexpr std::size_t kChunkHeaderBytes = 4 + 4 + 8 + 8;
-constexpr std::size_t kChunkLengthPlace = 8;
-constexpr std::size_t kChunkChecksumPlace = 16;
+constexpr std::size_t kChunkLengthOffset = 8;
+constexpr std::size_t kChunkChecksumOffset = 16;
 
-// Of the chunk's head up to the checksum, and the payload.
+// The checksum of the chunk header up to the checksum itself, and of the payload.
 std::uint64_t checksum_of(const std::byte* chunk, std::size_t payload_bytes) {
   Hasher hasher;
-  hasher.add(std::span<const std::byte>(chunk, kChunkChecksumPlace));
+  hasher.add(std::span<const std::byte>(chunk, kChunkChecksumOffset));
   hasher.add(std::span<const std::byte>(chunk + kChunkHeaderBytes, payload_bytes));
   return hasher.value();
 }
@@ -47,7 +47,7 @@ void write_chunk(ByteWriter& out, ChunkKind kind, std::uint32_t number, std::spa
   out.put(std::uint64_t(payload.size()));
   out.put(std::uint64_t(0));
   out.put_bytes(payload);
-  out.patch(start + kChunkChecksumPlace, checksum_of(out.view().data() + start, payload.size()));
+  out.patch(start + kChunkChecksumOffset, checksum_of(out.view().data() + start, payload.size()));
 }
 
 Error ChunkReader::read_header() {
@@ -64,15 +64,15 @@ Error ChunkReader::read_header() {
     return make_error(ErrorCode::unsupported, "recording: it is of format %u; this version reads format %u",
                       version, kRecordingVersion);
   }
-  place_ = kFileHeaderBytes;
+  offset_ = kFileHeaderBytes;
   return {};
 }
 
 bool ChunkReader::next(Chunk& chunk) {
-  const std::size_t left = bytes_.size() - place_;
+  const std::size_t left = bytes_.size() - offset_;
   if (left < kChunkHeaderBytes) return false;
-  const std::byte* const start = bytes_.data() + place_;
-  ByteReader in(bytes_.subspan(place_));
+  const std::byte* const start = bytes_.data() + offset_;
+  ByteReader in(bytes_.subspan(offset_));
   const auto kind = in.get<std::uint32_t>();
   const auto number = in.get<std::uint32_t>();
   const auto length = in.get<std::uint64_t>();
@@ -83,25 +83,25 @@ bool ChunkReader::next(Chunk& chunk) {
   if (!required && kind < kFirstOptionalKind) return false;
   chunk.kind = ChunkKind(kind);
   chunk.payload = in.get_bytes(length);
-  place_ += kChunkHeaderBytes + std::size_t(length);
+  offset_ += kChunkHeaderBytes + std::size_t(length);
   ++number_;
   return true;
 }
 
 void reseal_recording(std::span<std::byte> bytes) {
-  std::size_t place = kFileHeaderBytes;
-  for (std::uint32_t number = 0; place + kChunkHeaderBytes <= bytes.size(); ++number) {
-    std::byte* const start = bytes.data() + place;
-    const std::size_t left = bytes.size() - place - kChunkHeaderBytes;
-    auto length = load_little<std::uint64_t>(start + kChunkLengthPlace);
+  std::size_t offset = kFileHeaderBytes;
+  for (std::uint32_t number = 0; offset + kChunkHeaderBytes <= bytes.size(); ++number) {
+    std::byte* const start = bytes.data() + offset;
+    const std::size_t left = bytes.size() - offset - kChunkHeaderBytes;
+    auto length = load_little<std::uint64_t>(start + kChunkLengthOffset);
     if (length > left) length = left;
     const std::span<std::byte> payload(start + kChunkHeaderBytes, std::size_t(length));
     const std::uint32_t kind = load_little<std::uint32_t>(start);
     if (kind == std::uint32_t(ChunkKind::snapshot)) reseal_snapshot(payload);
     store_little(start + 4, number);
-    store_little(start + kChunkLengthPlace, length);
-    store_little(start + kChunkChecksumPlace, checksum_of(start, payload.size()));
-    place += kChunkHeaderBytes + payload.size();
+    store_little(start + kChunkLengthOffset, length);
+    store_little(start + kChunkChecksumOffset, checksum_of(start, payload.size()));
+    offset += kChunkHeaderBytes + payload.size();
   }
 }
 

@@ -1,13 +1,14 @@
-// The container of a recording: a header, then chunks with length, sequence number and checksum, so that a file that was cut
-// off or damaged can be read up to the last whole chunk.
+// The container of a recording: a header, then chunks with length, sequence number and checksum. A truncated or
+// damaged file can be read up to the last complete chunk.
 //
 //   header: magic (8 bytes), format version (u32), spare (u32), layout of the state (u64)
-//   chunk: kind (u32), number of the chunk (u32), length (u64), checksum of all that and the payload (u64), payload
+//   chunk: kind (u32), sequence number (u32), length (u64), checksum of these and the payload (u64), payload
 //
-// To be played, a recording begins with a snapshot. Then, for each step: geometry that is new, commands of which the last is
-// the step itself, and a hash after it: of the state, or in most steps of what moves. Another snapshot may stand where the world was put back to one. To be
-// looked at, it has a track beside or instead of that (track_format.h), whose chunks have kinds from 256 on. An end chunk
-// closes the file. docs/recording.md has it byte by byte.
+// A recording that can be played begins with a snapshot. For each step it has new geometry, commands of which the
+// last is the step itself, and a hash of the result: of the state, or in most steps of the motion only. Another
+// snapshot follows where the world was restored to one. A recording that can be viewed has a pose track beside these
+// or instead of them (track_format.h), whose chunk kinds begin at 256. An end chunk closes the file.
+// docs/recording.md describes every byte.
 #pragma once
 
 #include "io/codec/bytes.h"
@@ -18,8 +19,8 @@ namespace gyre {
 
 constexpr std::uint32_t kRecordingVersion = 1;
 
-// Of state and commands together, and of the hash of motions where a recording has any: only builds with the same ones play
-// each other's recordings.
+// The layout of state and commands, and of motion hashes if the recording has any. Builds with the same layout can
+// play each other's recordings.
 std::uint64_t recording_layout(bool motion_hashes);
 
 enum class ChunkKind : std::uint32_t {
@@ -37,10 +38,10 @@ enum class ChunkKind : std::uint32_t {
   track_label = 261,
   track_note = 262,
 
-  motion_hash = 263,  // step count of the world (u64), hash of what moves (u64); instead of a step hash
+  motion_hash = 263,  // step count of the world (u64), hash of the motion (u64); instead of a step hash
 };
 
-// Kinds from here on are passed over by who does not know them: a later version may add some.
+// A reader skips unknown kinds from here on: later versions may add some.
 constexpr std::uint32_t kFirstOptionalKind = 256;
 inline bool is_optional(ChunkKind kind) { return std::uint32_t(kind) >= kFirstOptionalKind; }
 
@@ -50,30 +51,30 @@ struct Chunk {
 };
 
 void write_recording_header(ByteWriter& out, std::uint64_t layout);
-// Appends a whole chunk.
+// Appends one chunk.
 void write_chunk(ByteWriter& out, ChunkKind kind, std::uint32_t number, std::span<const std::byte> payload);
 
-// Walks the chunks of a recording.
+// Reads the chunks of a recording in order.
 class ChunkReader {
  public:
   explicit ChunkReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  // Why these are no chunks that can be read; code none if they are. To be called first.
+  // Must be called first. Code none if the bytes are a recording that this version reads.
   Error read_header();
-  // The layout of the state in the header: whether snapshots and commands can be read.
+  // The layout of the state in the header, which decides whether snapshots and commands can be read.
   std::uint64_t layout() const { return layout_; }
-  // The next chunk. False at the end of the bytes, or where they are damaged: from there on nothing can be trusted. Its kind
-  // is one of the above, or optional.
+  // Reads the next chunk. False at the end of the bytes and at damage; nothing after it can be trusted. The kind is
+  // one of the above, or optional.
   bool next(Chunk& chunk);
 
  private:
   std::span<const std::byte> bytes_;
-  std::size_t place_ = 0;
+  std::size_t offset_ = 0;
   std::uint32_t number_ = 0;
   std::uint64_t layout_ = 0;
 };
 
-// Makes numbers, lengths and checksums right again in a recording that was changed, as far as its chunks can still be told
-// apart. For tests that damage what lies behind them.
+// Restores numbers, lengths and checksums of a recording that was changed, as far as its chunks can still be
+// separated. For tests that damage the data behind them.
 void reseal_recording(std::span<std::byte> bytes);
 
 }  // namespace gyre

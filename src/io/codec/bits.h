@@ -1,8 +1,8 @@
-// Numbers of any count of bits, one after the other: the lowest bit of a number first, and the lowest bit of a byte first. Writer
-// and reader have the same calls, which take their value by reference: the writer reads it, the reader sets it. So a code that is
-// written as one template over both cannot disagree with itself.
+// Numbers of any number of bits in sequence, the lowest bit of a number and of a byte first. Writer and reader have
+// the same calls, which take their value by reference: the writer reads it, the reader sets it. A code that is one
+// template over both cannot disagree with itself.
 //
-// The reader is for bytes from outside: past their end it gives zeros and is failed from then on.
+// The reader accepts any bytes: past their end it returns zeros and stays failed.
 #pragma once
 
 #include "io/codec/bytes.h"
@@ -20,7 +20,7 @@ class BitWriter {
  public:
   static constexpr bool kReads = false;
 
-  // Appends the `count` lowest bits of `value`, which has no others; count from 0 to 64.
+  // Appends the lowest `count` bits of `value`, which has no others; count is 0 to 64.
   void code_bits(const std::uint64_t& value, int count) {
     if (count > 32) {
       put(value & 0xffffffffu, 32);
@@ -29,9 +29,9 @@ class BitWriter {
       put(value, count);
     }
   }
-  // How many bits there are.
+  // The number of bits written.
   std::size_t size() const { return 8 * used_ + std::size_t(filled_); }
-  // Fills the last byte with zeros and gives all bytes; the writer is empty again.
+  // Pads the last byte with zeros and returns all bytes; the writer is empty again.
   std::vector<std::byte> take() {
     const std::size_t size = used_ + (std::size_t(filled_) + 7) / 8;
     spill();
@@ -53,14 +53,14 @@ class BitWriter {
     word_ >>= 32;
     filled_ -= 32;
   }
-  // Four bytes of the word to where the next ones belong.
+  // Stores four bytes of the word at the end of the data.
   void spill() {
     constexpr std::size_t kMinRoom = 256;
     if (used_ + 4 > bytes_.size()) bytes_.resize(2 * used_ + kMinRoom);
     store_little(bytes_.data() + used_, std::uint32_t(word_));
   }
 
-  std::vector<std::byte> bytes_;  // and room for more
+  std::vector<std::byte> bytes_;  // with spare room at the end
   std::size_t used_ = 0;
   std::uint64_t word_ = 0;
   int filled_ = 0;  // bits of `word_` in use, fewer than 32 between calls
@@ -82,21 +82,21 @@ class BitReader {
   }
   void fail() { failed_ = true; }
   bool failed() const { return failed_; }
-  // Nothing wrong, and no more left than zeros that fill the last byte.
-  bool finished() const { return !failed_ && place_ == bytes_.size() && filled_ < 8 && word_ == 0; }
-  // How many bits are left at most.
+  // True if nothing failed and only the zeros remain that pad the last byte.
+  bool finished() const { return !failed_ && offset_ == bytes_.size() && filled_ < 8 && word_ == 0; }
+  // An upper bound of the remaining bits.
   std::uint64_t left() const {
-    return failed_ ? 0 : 8 * std::uint64_t(bytes_.size() - place_) + std::uint64_t(filled_);
+    return failed_ ? 0 : 8 * std::uint64_t(bytes_.size() - offset_) + std::uint64_t(filled_);
   }
 
  private:
   std::uint64_t get(int count) {
     for (; filled_ < count; filled_ += 8) {
-      if (place_ == bytes_.size()) {
+      if (offset_ == bytes_.size()) {
         failed_ = true;
         return 0;
       }
-      word_ |= std::uint64_t(bytes_[place_++]) << filled_;
+      word_ |= std::uint64_t(bytes_[offset_++]) << filled_;
     }
     const std::uint64_t value = word_ & ((std::uint64_t(1) << count) - 1);
     word_ >>= count;
@@ -105,25 +105,25 @@ class BitReader {
   }
 
   std::span<const std::byte> bytes_;
-  std::size_t place_ = 0;
+  std::size_t offset_ = 0;
   std::uint64_t word_ = 0;
-  int filled_ = 0;  // bits of `word_` not yet given
+  int filled_ = 0;  // bits of `word_` not yet returned
   bool failed_ = false;
 };
 
-// A number of which small values are likely: Exp-Golomb code of order `order` (value below 2^62). With v = value + 2^order and
-// n the bits of v: n - 1 - order zeros, a one, and the n - 1 bits of v below its highest. J. Teuhola, "A compression method
-// for clustered bit-vectors", 1978.
+// Codes a number of which small values are likely: Exp-Golomb code of order `order` (value below 2^62). With v =
+// value + 2^order and n the bits of v: n - 1 - order zeros, a one, and the n - 1 bits of v below its highest. J.
+// Teuhola, "A compression method for clustered bit-vectors", 1978.
 template <class Bits>
 void code_count(Bits& bits, std::uint64_t& value, int order) {
   constexpr int kMaxBits = 62;
   const std::uint64_t shifted = value + (std::uint64_t(1) << order);
   int extra = Bits::kReads ? 0 : int(std::bit_width(shifted)) - 1 - order;
   for (int zeros = 0;; ++zeros) {
-    std::uint64_t stop = zeros == extra;
-    bits.code_bits(stop, 1);
-    if constexpr (Bits::kReads) extra = stop ? zeros : zeros + 1;
-    if (stop) break;
+    std::uint64_t end_bit = zeros == extra;
+    bits.code_bits(end_bit, 1);
+    if constexpr (Bits::kReads) extra = end_bit ? zeros : zeros + 1;
+    if (end_bit) break;
     if (bits.failed() || order + zeros >= kMaxBits) {
       if constexpr (Bits::kReads) bits.fail();
       value = 0;
@@ -136,7 +136,7 @@ void code_count(Bits& bits, std::uint64_t& value, int order) {
     value = (low | std::uint64_t(1) << (order + extra)) - (std::uint64_t(1) << order);
 }
 
-// Signed numbers as unsigned ones: 0, -1, 1, -2, 2 ... become 0, 1, 2, 3, 4 ...
+// Maps signed numbers to unsigned ones: 0, -1, 1, -2, 2 ... become 0, 1, 2, 3, 4 ...
 constexpr std::uint64_t fold_sign(std::int64_t value) {
   return std::uint64_t(value) << 1 ^ std::uint64_t(value >> 63);
 }

@@ -80,7 +80,7 @@ TEST(Bits, WhatIsLeftOverIsNotFinished) {
   const std::vector<std::byte> dirty = {std::byte(0x81)};
   BitReader other(dirty);
   other.code_bits(value, 3);
-  EXPECT_FALSE(other.finished());  // what fills the last byte is not zero
+  EXPECT_FALSE(other.finished());  // the padding is not zero
 }
 
 TEST(Bits, SignsFoldAndUnfold) {

@@ -1,6 +1,6 @@
-// Bytes out and in, little-endian on every machine. The reader is for bytes from outside: it never looks past their end,
-// checks counts against what is left before anything is allocated, and once something did not fit it stays failed and
-// gives zeros, so that callers may ask once at the end.
+// Little-endian bytes on every machine. The reader accepts any bytes: it never reads past their end and checks counts
+// against the remaining bytes before it allocates. After an error it stays failed and returns zeros, so callers may
+// check once at the end.
 #pragma once
 
 #include "base/container/array.h"
@@ -14,7 +14,7 @@
 
 namespace gyre {
 
-// A number's bits as the unsigned integer of its size; bool and enums are one byte.
+// The bits of a number as the unsigned integer of its size; bool and enums take one byte.
 template <class T>
 auto to_bits(T value) {
   if constexpr (std::is_same_v<T, float>) {
@@ -42,10 +42,10 @@ Bits load_little(const std::byte* from) {
   return bits;
 }
 
-// How many values an enum has; those from outside must be below. Every enum that is stored has its line here or beside
-// its codec.
+// The number of values of an enum; values read must be below. Every stored enum has its line here or beside its
+// codec.
 template <class E>
-constexpr int kEnumCount = E::no_count_is_known_for_this_enum;
+constexpr int kEnumCount = E::missing_enum_count;
 
 // Turns bits back into a value. False for a bool or enum value that does not exist.
 template <class T>
@@ -73,7 +73,7 @@ class ByteWriter {
   void put_bytes(std::span<const std::byte> bytes) {
     if (!bytes.empty()) std::memcpy(grow(bytes.size()), bytes.data(), bytes.size());
   }
-  // A count and the values.
+  // Writes a count and the values.
   template <class T>
   void put_all(std::span<const T> values) {
     put(std::uint64_t(values.size()));
@@ -83,12 +83,12 @@ class ByteWriter {
       to += sizeof(BitsOf<T>);
     }
   }
-  // Overwrites what stands at `place`.
+  // Overwrites the bytes at `offset`.
   template <class T>
-  void patch(std::size_t place, T value) {
-    store_little(bytes_.data() + place, to_bits(value));
+  void patch(std::size_t offset, T value) {
+    store_little(bytes_.data() + offset, to_bits(value));
   }
-  // Makes room for `count` bytes and returns where to write them; valid until the next call.
+  // Makes room for `count` bytes and returns their address, which is valid until the next call.
   std::byte* grow(std::size_t count) {
     const std::size_t old = bytes_.size();
     bytes_.resize(old + count);
@@ -115,24 +115,24 @@ class ByteReader {
     if (from != nullptr && !from_bits(load_little<BitsOf<T>>(from), value)) fail();
     return value;
   }
-  // The next `count` bytes; empty, and failed, if there are not as many.
+  // The next `count` bytes. If fewer remain, the result is empty and the reader fails.
   std::span<const std::byte> get_bytes(std::uint64_t count) {
     if (count > left()) {
       fail();
       return {};
     }
-    const std::span<const std::byte> part = bytes_.subspan(place_, std::size_t(count));
-    place_ += std::size_t(count);
-    return part;
+    const std::span<const std::byte> bytes = bytes_.subspan(offset_, std::size_t(count));
+    offset_ += std::size_t(count);
+    return bytes;
   }
-  // A count of things that take at least `min_bytes` each; 0, and failed, if that many cannot follow.
+  // A count of items of at least `min_bytes` each. If fewer bytes remain, the result is 0 and the reader fails.
   std::size_t get_count(std::size_t min_bytes) {
     const std::uint64_t count = get<std::uint64_t>();
     if (count <= left() / min_bytes) return std::size_t(count);
     fail();
     return 0;
   }
-  // What put_all wrote.
+  // Reads the output of put_all.
   template <class T>
   std::vector<T> get_all() {
     constexpr std::size_t kSize = sizeof(BitsOf<T>);
@@ -147,22 +147,22 @@ class ByteReader {
 
   void fail() { failed_ = true; }
   bool failed() const { return failed_; }
-  // Nothing left and nothing wrong.
+  // True if all bytes were read without an error.
   bool finished() const { return !failed_ && left() == 0; }
-  std::size_t place() const { return place_; }
-  std::size_t left() const { return failed_ ? 0 : bytes_.size() - place_; }
+  std::size_t offset() const { return offset_; }
+  std::size_t left() const { return failed_ ? 0 : bytes_.size() - offset_; }
 
  private:
   const std::byte* take(std::size_t count) {
     if (count > left()) fail();
     if (failed_) return nullptr;
-    const std::byte* const from = bytes_.data() + place_;
-    place_ += count;
+    const std::byte* const from = bytes_.data() + offset_;
+    offset_ += count;
     return from;
   }
 
   std::span<const std::byte> bytes_;
-  std::size_t place_ = 0;
+  std::size_t offset_ = 0;
   bool failed_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Putting columns into a world. See columns.h.
+// Replaces the columns of a world. See columns.h.
 #include "io/codec/columns.h"
 
 namespace gyre {
@@ -25,20 +25,20 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
   state.time = columns.time;
   state.step_count = columns.step_count;
   state.queried_changes.store(kNothingQueried, std::memory_order_relaxed);
-  // Bytes from outside can break rules that the engine never would (boxes that hold no shape, say), and are stepped without
-  // harm. A walk that stops at them would blame the engine.
-  state.walks = false;
+  // Loaded columns may break rules that the engine never breaks, such as fat boxes that contain their shapes.
+  // Stepping them is harmless. State validation would blame the engine for them.
+  state.validates = false;
   clear_reports(state);
   if (state.log != nullptr) state.log->on_restored(state);
 }
 
 void clear_reports(WorldState& state) {
   note_change(state);
-  clear_events(state.shown);
+  clear_events(state.published_events);
   state.events = {};
   state.problems.clear();
   state.frozen.clear();
-  // What the solver had were constraints of the state that is replaced.
+  // The solver scratch still holds constraints of the replaced state.
   forget_batch(state.solve.together);
   for (const std::unique_ptr<WorkerContext>& worker : state.solve.workers) forget_batch(worker->scratch);
   state.solve.counts = {};

@@ -1,5 +1,5 @@
-// Commands field by field. Each struct is taken apart by a structured binding, which fails to compile when a field is
-// added that is not listed here; std::visit does the same for a new command.
+// Commands field by field. A structured binding takes each struct apart; it does not compile if a field was added
+// that is missing here. std::visit does the same for a new command.
 #include "io/codec/command_codec.h"
 
 #include "io/codec/enum_counts.h"
@@ -13,7 +13,7 @@ namespace {
 template <class T, class Of>
 concept Is = std::is_same_v<std::remove_const_t<T>, Of>;
 
-// Passes fields on to a ByteWriter or takes them from a ByteReader: the same list of fields serves both.
+// Passes fields to a ByteWriter or reads them from a ByteReader, so one list of fields serves both.
 class FieldWriter {
  public:
   explicit FieldWriter(ByteWriter& out) : out_(out) {}
@@ -53,8 +53,9 @@ class FieldReader {
   void shape(AnyShape& value) { value = read_shape(in_, geometry_); }
   template <class T>
   void count(std::vector<T>& list) {
-    constexpr std::size_t kLeast = std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
-    list.resize(in_.get_count(kLeast));
+    constexpr std::size_t kMinBytes =
+        std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
+    list.resize(in_.get_count(kMinBytes));
   }
   template <class T>
   bool has(std::optional<T>& value) {
@@ -209,8 +210,8 @@ requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>>) void fields(C
   c.count(list);
   for (auto& item : list) all(c, item);
 }
-// What only kinds beyond these five say: a recording of these stays as short as it was, and older ones open.
-constexpr bool says_more(JointKind kind) { return kind > JointKind::distance; }
+// Fields that only kinds beyond these five have. Recordings of the five stay short, and older ones can be read.
+constexpr bool has_extra_fields(JointKind kind) { return kind > JointKind::distance; }
 template <class C, Is<FlatJoint> T>
 void fields(C& c, T& v) {
   auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
@@ -220,7 +221,7 @@ void fields(C& c, T& v) {
   all(c, kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
       damping, frequency, damping_ratio, break_force, break_torque, collide_connected);
   all(c, friction, limit_frequency, limit_damping);
-  if (!says_more(kind)) return;
+  if (!has_extra_fields(kind)) return;
   all(c, axis_b, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y,
       angular_z, drive, path, path_closed, path_orientation);
 }
@@ -261,7 +262,7 @@ void all(C& c, Fields&... values) {
   (fields(c, values), ...);
 }
 
-// The n-th alternative of a variant, by its default value.
+// The n-th alternative of a variant, default-constructed.
 template <std::size_t n = 0>
 bool make_alternative(std::size_t index, Command& command) {
   if constexpr (n < std::variant_size_v<Command>) {

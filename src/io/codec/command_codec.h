@@ -1,5 +1,5 @@
-// Commands as bytes: the number of the alternative, then its fields. The world's number is left out of ids, since a replay
-// runs in another world; cooked geometry is named by its content hash.
+// Commands as bytes: the number of the alternative, then its fields. Ids are stored without the number of the world,
+// since a replay runs in another one. Cooked geometry is named by its content hash.
 #pragma once
 
 #include "base/function_ref.h"
@@ -8,15 +8,15 @@
 
 namespace gyre {
 
-// Counts the changes of what commands look like as bytes.
+// The version of the byte format of commands.
 constexpr std::uint64_t kCommandLayout = 1;
 
 void write_command(ByteWriter& out, const Command& command);
 
-// The next command, its ids those of the world with this number. Fails the reader if there is none.
+// Reads the next command; its ids get the given number of the world. The reader fails if there is none.
 Command read_command(ByteReader& in, const GeometryTable& geometry, std::uint16_t world_number);
 
-// Calls fn for each piece of geometry that the command brings along.
+// Calls fn for each shape in the command.
 void for_each_shape(const Command& command, FunctionRef<void(const AnyShape&)> fn);
 
 }  // namespace gyre

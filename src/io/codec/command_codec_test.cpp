@@ -17,7 +17,7 @@ std::vector<std::byte> bytes_of(const Command& command) {
   return out.take();
 }
 
-// One of each kind, every field set to something of its own.
+// One command of each kind, with a different value in every field.
 std::vector<Command> all_commands() {
   const BodyId body{3, 5, kWorld};
   const ShapeId shape{8, 1, kWorld};
@@ -85,7 +85,7 @@ std::vector<Command> all_commands() {
           SetSolver{SolverKind::lcp, {LcpMethod::lemke, 8, 30, 90}}};
 }
 
-// What only some kinds of joints have comes back as well.
+// Fields of certain kinds of joints are restored as well.
 TEST(CommandCodec, JointsOfEveryKindComeBack) {
   for (int kind = 0; kind < kJointKindCount; ++kind) {
     FlatJoint def{
@@ -123,7 +123,7 @@ TEST(CommandCodec, EveryCommandComesBack) {
   }
 }
 
-// What is written must depend on every field: a command that is read back and differs in one must give other bytes.
+// The bytes must depend on every field: a command with one changed field must give other bytes.
 TEST(CommandCodec, SpotChecksOfValues) {
   const std::vector<Command> commands = all_commands();
   const std::vector<std::byte> bytes = bytes_of(commands[0]);

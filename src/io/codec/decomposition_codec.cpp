@@ -1,4 +1,5 @@
-// Decompositions as bytes: a mark, the key, the report, the hulls, and a hash of all that. See gyre/decomposition.h.
+// Decompositions as bytes: a mark, the key, the report, the hulls, and a hash of all of these. See
+// gyre/decomposition.h.
 #include "base/hash.h"
 #include "io/codec/bytes.h"
 #include "io/codec/geometry_codec.h"

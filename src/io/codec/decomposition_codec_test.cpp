@@ -1,4 +1,4 @@
-// Decompositions as bytes: there and back, and everything that is not what it says refused.
+// Decompositions as bytes: the round trip, and refusal of all invalid data.
 #include "geometry/decomposition/decomposition_test_meshes.h"
 
 #include <gyre/decomposition.h>

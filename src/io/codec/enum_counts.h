@@ -1,4 +1,4 @@
-// How many values each stored enum has, so that none comes in from outside that does not exist.
+// The number of values of each stored enum, so that a reader can refuse values that do not exist.
 #pragma once
 
 #include "collision/broadphase/proxy.h"

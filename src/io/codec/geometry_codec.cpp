@@ -1,4 +1,4 @@
-// Writing and reading cooked geometry. See geometry_codec.h.
+// Writes and reads cooked geometry. See geometry_codec.h.
 #include "io/codec/geometry_codec.h"
 
 #include "base/float_mode.h"
@@ -60,7 +60,7 @@ void write_hull(ByteWriter& out, const Hull& hull) {
   out.put(hull.inner_radius);
 }
 
-// Loops of at least three different corners, all of which exist.
+// Checks that each loop has at least three different corners, all of which exist.
 bool faces_fit(const Hull& hull) {
   const std::size_t faces = hull.face_offsets.size() - 1;
   if (hull.face_offsets.front() != 0 || hull.face_offsets.back() != hull.face_vertices.size()) return false;
@@ -74,7 +74,8 @@ bool faces_fit(const Hull& hull) {
   return true;
 }
 
-// Every edge runs along its left face's loop and back along its right one's; together they are all half-edges, once.
+// Checks that every edge runs along the loop of its left face and back along that of its right face, and that the
+// edges are all half-edges, each once.
 bool edges_fit(const Hull& hull) {
   constexpr std::uint16_t kNone = 0xffff;
   std::vector<std::uint16_t> face_of(256 * 256, kNone);
@@ -91,10 +92,10 @@ bool edges_fit(const Hull& hull) {
   }
   if (2 * hull.edges.size() != hull.face_vertices.size()) return false;
   for (const HullEdge& edge : hull.edges) {
-    std::uint16_t& there = half_edge(edge.from, edge.to);
+    std::uint16_t& forward = half_edge(edge.from, edge.to);
     std::uint16_t& back = half_edge(edge.to, edge.from);
-    if (there != edge.left || back != edge.right || edge.left == edge.right) return false;
-    there = back = kNone;
+    if (forward != edge.left || back != edge.right || edge.left == edge.right) return false;
+    forward = back = kNone;
   }
   return true;
 }
@@ -143,7 +144,7 @@ Error read_hull(ByteReader& in, CookedGeometry& cooked) {
 constexpr std::uint8_t kDoubleSided = 1, kHasMaterials = 2;
 
 void write_mesh(ByteWriter& out, const Mesh& mesh) {
-  // The first byte was the double-sidedness alone once.
+  // Before the flags, this byte was only the double-sidedness.
   out.put(
       std::uint8_t((mesh.double_sided ? kDoubleSided : 0) | (mesh.materials.empty() ? 0 : kHasMaterials)));
   out.put_all(floats_of(mesh.vertices));
@@ -152,7 +153,7 @@ void write_mesh(ByteWriter& out, const Mesh& mesh) {
   if (!mesh.materials.empty()) out.put_all(std::span<const std::uint16_t>(mesh.materials));
 }
 
-// The triangles in the order in which they were given: ascending `source`. False if two have the same.
+// The triangles in the order of the cooked input: ascending `source`. False if two have the same.
 bool order_by_source(std::span<const std::uint32_t> source, std::vector<std::uint32_t>& order) {
   std::vector<std::uint64_t> keys(source.size()), scratch(source.size());
   for (std::size_t i = 0; i < source.size(); ++i) keys[i] = std::uint64_t(source[i]) << 32 | i;
@@ -165,7 +166,7 @@ bool order_by_source(std::span<const std::uint32_t> source, std::vector<std::uin
   return true;
 }
 
-// The tree over the triangles as they were given puts them into the very order in which they are stored.
+// The tree over the triangles in input order sorts them into their stored order.
 Error rebuild_tree(Mesh& mesh) {
   std::vector<std::uint32_t> order;
   if (!order_by_source(mesh.source, order)) return bad_geometry("a mesh with two triangles of one number");
@@ -246,8 +247,8 @@ Result<Geometry> read_field(ByteReader& in) {
 }  // namespace
 
 bool GeometryTable::add(const Geometry& geometry) {
-  if (!geometry || place_of_.contains(geometry.content_hash())) return false;
-  place_of_.insert(geometry.content_hash(), std::uint32_t(items_.size()));
+  if (!geometry || index_of_.contains(geometry.content_hash())) return false;
+  index_of_.insert(geometry.content_hash(), std::uint32_t(items_.size()));
   items_.push_back(geometry);
   return true;
 }
@@ -258,24 +259,24 @@ bool GeometryTable::add(const AnyShape& shape) {
 }
 
 const Geometry* GeometryTable::find(std::uint64_t content_hash) const {
-  const std::uint32_t* const place = place_of_.find(content_hash);
-  return place != nullptr ? &items_[*place] : nullptr;
+  const std::uint32_t* const index = index_of_.find(content_hash);
+  return index != nullptr ? &items_[*index] : nullptr;
 }
 
 void write_geometry(ByteWriter& out, const Geometry& geometry) {
   const CookedGeometry& data = *geometry.data();
   out.put(data.kind);
   out.put(data.content_hash);
-  const std::size_t length_place = out.size();
+  const std::size_t length_offset = out.size();
   out.put(std::uint64_t(0));
   if (data.kind == ShapeKind::hull) write_hull(out, *data.hull);
   if (data.kind == ShapeKind::mesh) write_mesh(out, *data.mesh);
   if (data.kind == ShapeKind::height_field) write_field(out, *data.field);
-  out.patch(length_place, std::uint64_t(out.size() - length_place - sizeof(std::uint64_t)));
+  out.patch(length_offset, std::uint64_t(out.size() - length_offset - sizeof(std::uint64_t)));
 }
 
 Result<Geometry> read_geometry(ByteReader& in, const GeometryTable& known) {
-  const FloatMode mode;  // what is not stored is found anew
+  const FloatMode mode;  // derived data is computed again
   const auto kind = in.get<ShapeKind>();
   const auto hash = in.get<std::uint64_t>();
   ByteReader body(in.get_bytes(in.get<std::uint64_t>()));

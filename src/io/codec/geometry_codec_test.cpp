@@ -20,7 +20,7 @@ Geometry random_hull(std::uint32_t seed, int points) {
   return *cook_hull(corners);
 }
 
-// Bumpy, with triangles that are left out and vertices that are welded.
+// A bumpy mesh with degenerate triangles and vertices to weld.
 Geometry rough_mesh(bool double_sided) {
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> indices;
@@ -141,7 +141,7 @@ TEST(GeometryCodec, EveryShapeComesBack) {
   EXPECT_TRUE(in.failed()) << "geometry that is not in the table";
 }
 
-// Every byte of each kind, changed to several values, and every length: refused or a geometry, never anything worse.
+// Each byte of each kind with several values, and each length: refused, or a valid geometry.
 TEST(GeometryCodec, DamageIsRefusedOrHarmless) {
   int refused = 0;
   for (const Geometry& geometry : {random_hull(3, 10), rough_mesh(false), holed_field()}) {

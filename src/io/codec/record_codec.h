@@ -1,5 +1,5 @@
-// The records of state_fields.h as bytes: field after field, without padding, and a hash of what the fields are, by which
-// a reader knows whether it means the same ones.
+// The records of state_fields.h as bytes: field after field, without padding. The layout hash of a record tells a
+// reader whether its fields are the same.
 #pragma once
 
 #include "base/hash.h"
@@ -44,7 +44,7 @@ RecordLayout layout_of() {
   return layout;
 }
 
-// Writes one record to `to`, which has room for it, and returns the place behind it.
+// Writes one record to `to`, which has room for it. Returns the address behind it.
 template <class Record>
 std::byte* write_record(std::byte* to, const Record& record) {
   for_each_field(record, [&]<class T>(const T& value) {
@@ -54,7 +54,7 @@ std::byte* write_record(std::byte* to, const Record& record) {
   return to;
 }
 
-// Reads one record. False if a bool or enum in it does not exist; all other fields are read all the same.
+// Reads one record. False if a bool or enum value in it does not exist; the other fields are read all the same.
 template <class Record>
 bool read_record(const std::byte* from, Record& record) {
   bool good = true;

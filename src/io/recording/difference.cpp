@@ -1,7 +1,7 @@
-// Stepping two worlds side by side. See difference.h.
+// Steps two worlds side by side. See difference.h.
 //
-// One world steps first and leaves a trace after each stage; the other is compared with it when it comes there. So neither
-// has to be stopped within a step, and a difference is caught even if a second run would not show it again.
+// The first world steps and records a trace after each stage. The second is compared with the traces as it steps. So
+// no world has to stop within a step, and a difference is found even if a second run would not show it again.
 #include "io/recording/difference.h"
 
 #include "base/hash.h"
@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kBeforeStep = "before the step";
 constexpr const char* kEndOfStep = "end of the step";
-// What a recording's difference names when this build's own two worlds agree with each other.
+// Column name of a difference if two worlds of this build agree with each other.
 constexpr const char* kOnlyRecorded = "none: only the recorded hash differs";
 
 template <class Record>
@@ -71,7 +71,7 @@ struct Tracer {
 
 void copy_name(char (&to)[48], const char* from) { std::snprintf(to, sizeof to, "%s", from); }
 
-// True if the traces differ: then the first place is set.
+// Finds the first row in which the traces differ. True if there is one.
 bool compare(const StateTrace& a, const StateTrace& b, Difference& out) {
   for (std::size_t c = 0; c < a.columns.size(); ++c) {
     const std::vector<std::uint64_t>& rows_a = a.columns[c].rows;
@@ -87,7 +87,7 @@ bool compare(const StateTrace& a, const StateTrace& b, Difference& out) {
   return false;
 }
 
-// Hangs on a world's stage hook and puts back what was there.
+// Installs a stage hook and restores the former one at the end.
 class HookGuard {
  public:
   HookGuard(WorldState& state, StageHook hook) : state_(state), before_(state.stage_hook) {
@@ -96,7 +96,7 @@ class HookGuard {
   ~HookGuard() { state_.stage_hook = before_; }
   HookGuard(const HookGuard&) = delete;
   HookGuard& operator=(const HookGuard&) = delete;
-  // What hung there before is called all the same.
+  // Calls the former hook.
   void pass_on(const char* stage) const {
     if (before_.call != nullptr) before_.call(before_.context, stage);
   }
@@ -152,8 +152,8 @@ Difference no_difference() {
   return none;
 }
 
-// The steps from `first` to `last`, whose hash differed, played beside the simplest world there is. The hashes of the others may have
-// been of what moves only, so what differed may have begun with any of them.
+// Plays the steps from `first` to `last`, whose hash differed, beside the simplest world. Hashes of earlier steps may
+// cover the motion only, so the difference may have begun in any of them.
 Difference explain_steps(const Recording& recording, std::uint64_t first, std::uint64_t last,
                          WorldState& suspect, WorldState& plain) {
   Difference found;
@@ -210,9 +210,9 @@ Result<Difference> first_difference(std::span<const std::byte> recording, const 
   if (!suspect) return suspect.error();
   Result<World> plain = make_recorded_world(*opened, plain_def);
   if (!plain) return plain.error();
-  StateCopy before;  // the last state that is known to be the recorded one
+  StateCopy before;  // the last state that is known to equal the recorded one
   std::uint64_t first = 0;
-  before.keep(state_of(*suspect));
+  before.save(state_of(*suspect));
   for (std::uint64_t i = 0; i < opened->steps.size(); ++i) {
     WorldState& state = state_of(*suspect);
     const RecordedStep& step = opened->steps[std::size_t(i)];
@@ -220,12 +220,12 @@ Result<Difference> first_difference(std::span<const std::byte> recording, const 
     submit(state, Step{seconds});
     if (has_recorded_hash(step, state)) {
       if (!step.is_whole) continue;
-      before.keep(state);
+      before.save(state);
       first = i + 1;
       continue;
     }
-    before.put_back(state);
-    before.put_back(state_of(*plain));
+    before.restore(state);
+    before.restore(state_of(*plain));
     return explain_steps(*opened, first, i, state, state_of(*plain));
   }
   return no_difference();

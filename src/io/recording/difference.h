@@ -1,4 +1,4 @@
-// Where two worlds that should be equal first differ: after which stage of a step, in which column, in which row.
+// Finds the first difference of two worlds that should be equal: stage of the step, column and row.
 #pragma once
 
 #include "world/world_state.h"
@@ -9,7 +9,7 @@
 
 namespace gyre {
 
-// The hash of every record of every column, as it was at one moment.
+// The hash of every record of every column at one moment.
 struct StateTrace {
   struct Column {
     const char* name = nullptr;
@@ -21,7 +21,7 @@ struct StateTrace {
 
 StateTrace trace_state(const WorldState& state, const char* stage);
 
-// Steps both worlds by `seconds` and compares them before the step, after each of its stages and at its end. True if they
+// Steps both worlds by `seconds`. Compares them before the step, after each stage and at the end. True if they
 // differ; then stage, column and row of `difference` are set.
 bool step_and_compare(WorldState& a, WorldState& b, float seconds, Difference& difference);
 

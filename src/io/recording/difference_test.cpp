@@ -47,7 +47,7 @@ TEST(Difference, OfAVelocityBitBetweenSteps) {
   EXPECT_EQ(found.row, 17u);
 }
 
-// The hook runs after each stage: what it changes after `collide` is first seen there.
+// The hook runs after each stage, so its change after `collide` is found there first.
 TEST(Difference, OfABitWithinAStep) {
   for (const char* const stage : {"find_pairs", "collide", "solve", "put_to_sleep"}) {
     Pair worlds(kScenes[1], 30);
@@ -71,13 +71,13 @@ TEST(Difference, OfABitWithinAStep) {
   }
 }
 
-// Derived data is in no column: its fault shows in the first stage that makes use of it.
+// Derived data is in no column. A fault in it shows in the first stage that uses it.
 TEST(Difference, OfDerivedDataShowsWhereItIsUsed) {
   Pair worlds(kScenes[1], 80);
   BodyStore& bodies = state_of(worlds.b).rigid.bodies;
   std::uint32_t touching = 0;
   for (std::uint32_t i = 0; i < bodies.flags.size(); ++i) {
-    if (bodies.flags[i].type == BodyType::dynamic && bodies.flags[i].touched != 0) touching = i;
+    if (bodies.flags[i].type == BodyType::dynamic && bodies.flags[i].constraint_use != 0) touching = i;
   }
   ASSERT_NE(touching, 0u);
   bodies.inertia[touching].inverse.xx *= 1.5f;
@@ -121,12 +121,12 @@ TEST(FirstDifference, OfARecordingMadeWithAFault) {
   recorder.finish();
   const Result<Difference> found = first_difference(sink.bytes, WorldDef{});
   ASSERT_TRUE(found) << found.error().message;
-  // This build's own worlds agree: the fault was the recording machine's.
+  // Two worlds of this build agree, so the fault was on the recording machine.
   EXPECT_EQ(found->step, 12u);
   EXPECT_STREQ(found->stage, "none: only the recorded hash differs");
 }
 
-// What moves does not show it: the next hash of the whole state does.
+// The motion hash misses this change; the next hash of the whole state finds it.
 TEST(FirstDifference, OfHiddenStateIsToldByTheNextWholeHash) {
   World world = *World::create();
   MemorySink sink;
@@ -139,7 +139,7 @@ TEST(FirstDifference, OfHiddenStateIsToldByTheNextWholeHash) {
   recorder.finish();
   const Result<Difference> found = first_difference(sink.bytes, WorldDef{});
   ASSERT_TRUE(found) << found.error().message;
-  // This build's own worlds agree: no more is known than that the hash after the sixteenth step is another.
+  // Two worlds of this build agree. Only the recorded hash after the sixteenth step differs.
   EXPECT_EQ(found->step, 15u);
   EXPECT_STREQ(found->stage, "none: only the recorded hash differs");
 }

@@ -1,4 +1,4 @@
-// The recorder: sees every command at the world's one door, and writes chunks (chunks.h).
+// The recorder: receives every command from the log of the world and writes chunks (chunks.h).
 #include "io/chunk/chunks.h"
 #include "io/codec/command_codec.h"
 #include "io/snapshot/motion_hash.h"
@@ -19,7 +19,7 @@ bool can_record(const RecordOptions& options) {
          options.hash_interval > 0 && options.pose_accuracy >= 1.0e-12f && options.pose_accuracy <= 1.0e5f;
 }
 
-// Whether bodies that exist may look different afterwards.
+// True if the command may change the look of existing bodies.
 bool changes_models(const Command& command) {
   return std::holds_alternative<AddShape>(command) || std::holds_alternative<RemoveShape>(command) ||
          std::holds_alternative<SetType>(command) || std::holds_alternative<SetMaterial>(command);
@@ -28,11 +28,11 @@ bool changes_models(const Command& command) {
 }  // namespace
 
 struct Recorder::Log final : CommandLog {
-  // Commands wait for the step that they belong to, unless they become this many bytes.
+  // Commands are buffered until their step, or up to this many bytes.
   static constexpr std::size_t kMaxPending = std::size_t(1) << 20;
 
-  Log(WorldState& recorded, ByteSink& to, const RecordOptions& wanted)
-      : state(&recorded), sink(to), options(wanted) {}
+  Log(WorldState& recorded, ByteSink& to, const RecordOptions& record_options)
+      : state(&recorded), sink(to), options(record_options) {}
 
   void on_command(const Command& command) override {
     whole_hash_due = false;
@@ -45,7 +45,7 @@ struct Recorder::Log final : CommandLog {
       emit(ChunkKind::geometry, payload.view());
     });
     write_command(pending, command);
-    // Before the step is done, so that the file holds what a step was given even if it never comes back.
+    // Written before the step runs, so that the file has its input even if the step crashes.
     if (std::holds_alternative<Step>(command) || pending.size() > kMaxPending) flush();
   }
 
@@ -80,7 +80,7 @@ struct Recorder::Log final : CommandLog {
     emit(kind, payload.view());
   }
 
-  // The state as a frame of the track.
+  // Writes the state as a frame of the track.
   void frame() {
     if (track && !failed)
       track->frame(*state,
@@ -96,7 +96,7 @@ struct Recorder::Log final : CommandLog {
     if (!options.poses) return;
     TrackStart start;
     start.frame_interval = options.frame_interval;
-    // The coarsest steps that are fine enough: a coordinate is off by half of one at most.
+    // The coarsest rounding with sufficient accuracy: a coordinate is off by half a rounding step at most.
     start.steps.position_bits = kMinPositionBits;
     for (double step = double(1 << -kMinPositionBits); 0.5 * step > double(options.pose_accuracy);
          step *= 0.5)
@@ -123,7 +123,7 @@ struct Recorder::Log final : CommandLog {
     write(chunk.view());
   }
 
-  // After the first write that fails nothing more is written: the file ends with its last whole chunk.
+  // After the first failed write nothing more is written, so the file ends with a complete chunk.
   void write(std::span<const std::byte> bytes) {
     if (!failed && !sink.write(bytes)) failed = true;
   }
@@ -132,19 +132,20 @@ struct Recorder::Log final : CommandLog {
   ByteSink& sink;
   RecordOptions options;
   std::optional<TrackWriter> track;
-  GeometryTable geometry;  // all that the file holds
+  GeometryTable geometry;  // all geometry in the file
   ByteWriter pending;
   std::uint32_t chunks = 0;
   std::uint64_t steps = 0;
   bool frame_due = false;  // a step was done since the last frame
-  bool whole_hash_due = false;  // the state is still that after a step of which only what moves was hashed
+  bool whole_hash_due =
+      false;  // only the motion of the last step was hashed, and no command has changed the state since
   bool failed = false;
 };
 
 Recorder::Recorder(World& world, ByteSink& sink, const RecordOptions& options)
     : log_(std::make_unique<Log>(state_of(world), sink, options)) {
   Log& log = *log_;
-  // A world is recorded once at a time.
+  // A world has one recorder at a time.
   if (log.state->log != nullptr || log.state->stepping || !can_record(options)) {
     log.failed = true;
     log.state = nullptr;

@@ -1,5 +1,5 @@
-// A recording opened for playing: its chunks checked and listed by step. Used by the replay player and by the search for
-// the first difference.
+// A recording opened for playing: its chunks, checked and listed by step. The player and the search for the first
+// difference use it.
 #pragma once
 
 #include "io/chunk/chunks.h"
@@ -10,17 +10,17 @@
 
 namespace gyre {
 
-// What stands in a recording for one step: geometry, snapshots and commands, of which the last is the step.
+// The chunks of one step: geometry, snapshots and commands, of which the last is the step.
 struct RecordedStep {
   std::size_t first_chunk = 0;  // into Recording::chunks
   std::size_t chunk_count = 0;
-  std::uint64_t hash = 0;  // of the state after it, or of what moves
-  bool is_whole = false;   // of the state
+  std::uint64_t hash = 0;  // of the state after the step, or of its motion
+  bool is_whole = false;   // the hash is of the state
 };
 
 struct Recording {
   Recording() = default;
-  Recording(Recording&&) = default;  // not to be copied: spans lead into `bytes`
+  Recording(Recording&&) = default;  // no copies: spans refer to `bytes`
   Recording& operator=(Recording&&) = default;
 
   std::vector<std::byte> bytes;
@@ -28,20 +28,19 @@ struct Recording {
   std::vector<RecordedStep> steps;
   GeometryTable geometry;
   std::span<const std::byte> first_snapshot;
-  bool closed = false;  // the end chunk was there
+  bool closed = false;  // the end chunk was found
 };
 
-// Lists what can be played: all whole steps up to the first thing that is damaged or cannot be. Refused if not even the
-// first snapshot is there.
+// Lists all complete steps up to the first damage. Refused if the first snapshot is missing or damaged.
 Result<Recording> open_recording(std::vector<std::byte> bytes);
 
-// A world in the recording's first state.
+// A world in the first state of the recording.
 Result<World> make_recorded_world(const Recording& recording, const WorldDef& def);
 
-// Whether the state right after a step is the recorded one, as far as the step's hash tells.
+// True if the hash of the state after a step equals the recorded one.
 bool has_recorded_hash(const RecordedStep& step, const WorldState& state);
 
-// Plays the commands of a step but not the step itself, whose length it returns.
+// Executes the commands of a step except the step itself. Returns its length, s.
 float play_commands(const Recording& recording, const RecordedStep& step, WorldState& state);
 
 }  // namespace gyre

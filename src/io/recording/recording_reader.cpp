@@ -1,4 +1,4 @@
-// Opening a recording. See recording.h.
+// Opens a recording. See recording.h.
 #include "io/recording/recording.h"
 
 #include "io/snapshot/motion_hash.h"
@@ -8,7 +8,7 @@ namespace gyre {
 
 namespace {
 
-// Walks all commands of a chunk; fn(command) for each. False if a command cannot be read.
+// Calls fn(command) for all commands of a chunk. False if one cannot be read.
 template <class Fn>
 bool for_each_command(const Chunk& chunk, const GeometryTable& geometry, std::uint16_t world_number,
                       Fn&& fn) {
@@ -21,25 +21,25 @@ bool for_each_command(const Chunk& chunk, const GeometryTable& geometry, std::ui
   return true;
 }
 
-// Takes chunks in until something is wrong.
-class Opener {
+// Collects chunks up to the first error.
+class RecordingOpener {
  public:
-  explicit Opener(Recording& recording) : recording_(recording) {}
+  explicit RecordingOpener(Recording& recording) : recording_(recording) {}
 
-  // False ends the reading: what came before can be played.
-  bool take(const Chunk& chunk) {
+  // False ends the reading. The chunks before can be played.
+  bool read_chunk(const Chunk& chunk) {
     if (recording_.closed) return false;
     switch (chunk.kind) {
       case ChunkKind::snapshot:
-        return take_snapshot(chunk);
+        return read_snapshot_chunk(chunk);
       case ChunkKind::geometry:
-        return take_geometry(chunk);
+        return read_geometry_chunk(chunk);
       case ChunkKind::commands:
-        return take_commands(chunk);
+        return read_commands_chunk(chunk);
       case ChunkKind::step_hash:
-        return take_hash(chunk, true);
+        return read_hash_chunk(chunk, true);
       case ChunkKind::motion_hash:
-        return take_hash(chunk, false);
+        return read_hash_chunk(chunk, false);
       case ChunkKind::end:
         recording_.closed = true;
         return true;
@@ -49,32 +49,32 @@ class Opener {
   }
 
  private:
-  bool take_snapshot(const Chunk& chunk) {
+  bool read_snapshot_chunk(const Chunk& chunk) {
     StateColumns columns;
     if (read_snapshot(chunk.payload, 1, recording_.geometry, columns)) return false;
     if (recording_.first_snapshot.empty()) {
       recording_.first_snapshot = chunk.payload;
       return true;
     }
-    return keep(chunk);
+    return append(chunk);
   }
-  bool take_geometry(const Chunk& chunk) {
+  bool read_geometry_chunk(const Chunk& chunk) {
     ByteReader in(chunk.payload);
     const Result<Geometry> geometry = read_geometry(in, recording_.geometry);
     if (!geometry || !in.finished()) return false;
     recording_.geometry.add(*geometry);
     return true;
   }
-  bool take_commands(const Chunk& chunk) {
+  bool read_commands_chunk(const Chunk& chunk) {
     // A step is the last command before the hash of its result.
     bool in_order = true;
     const bool whole = for_each_command(chunk, recording_.geometry, 1, [&](const Command& command) {
       in_order = in_order && !step_seen_;
       step_seen_ = std::holds_alternative<Step>(command);
     });
-    return whole && in_order && keep(chunk);
+    return whole && in_order && append(chunk);
   }
-  bool take_hash(const Chunk& chunk, bool is_whole) {
+  bool read_hash_chunk(const Chunk& chunk, bool is_whole) {
     ByteReader in(chunk.payload);
     in.get<std::uint64_t>();
     const auto hash = in.get<std::uint64_t>();
@@ -90,12 +90,12 @@ class Opener {
     step_seen_ = false;
     return true;
   }
-  // With nothing between: the last step of a recording has both.
+  // True if a state hash directly follows a motion hash, as in the last step of a recording.
   bool follows_motion_hash() const {
     return !recording_.steps.empty() && !recording_.steps.back().is_whole &&
            first_chunk_ == recording_.chunks.size();
   }
-  bool keep(const Chunk& chunk) {
+  bool append(const Chunk& chunk) {
     if (recording_.first_snapshot.empty()) return false;
     recording_.chunks.push_back(chunk);
     return true;
@@ -120,9 +120,9 @@ Result<Recording> open_recording(std::vector<std::byte> bytes) {
         "recording: it was made by a version whose worlds have another state, so it cannot be played; its "
         "poses can be looked at if it has any");
   }
-  Opener opener(recording);
+  RecordingOpener opener(recording);
   Chunk chunk;
-  while (reader.next(chunk) && opener.take(chunk)) {
+  while (reader.next(chunk) && opener.read_chunk(chunk)) {
   }
   if (recording.first_snapshot.empty()) {
     return make_error(

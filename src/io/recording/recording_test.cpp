@@ -16,7 +16,7 @@ using scenes::kScenes;
 using scenes::Scene;
 using scenes::step_scene;
 
-// The scene recorded from its first command on, with the hash before the first step and after each.
+// The scene recorded from its first command, with the hash before the first step and after each.
 struct Recorded {
   std::vector<std::byte> bytes;
   std::vector<std::uint64_t> hashes;
@@ -112,7 +112,7 @@ TEST(Recording, GoesOnWhenTheWorldIsPutBack) {
 
 // -------------------------------------------------------------------------------------------- when a replay differs
 
-// Steps that match, up to the first that does not; all of them if every one does.
+// The number of steps that match, up to the first that does not.
 std::uint64_t steps_that_match(std::vector<std::byte> bytes) {
   Result<Replay> replay = Replay::open(std::move(bytes));
   EXPECT_TRUE(replay) << replay.error().message;
@@ -123,7 +123,7 @@ std::uint64_t steps_that_match(std::vector<std::byte> bytes) {
   return replay->step_count();
 }
 
-// A pile of which `change` is made before step 20 behind the recorder's back.
+// A pile; `change` is applied before step 20 without the recorder's knowledge.
 template <class Change>
 std::vector<std::byte> record_with_fault(int steps, const RecordOptions& options, Change&& change) {
   World world = *World::create();
@@ -142,7 +142,7 @@ void change_velocity(World& world) {
   float& value = state_of(world).rigid.bodies.motion[state_of(world).rigid.bodies.awake.back()].linear_velocity.x;
   value = __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, value) ^ 1u);
 }
-// Nothing moves otherwise for it.
+// The change affects no motion.
 void change_hidden(World& world) { state_of(world).rigid.bodies.user_data[3] ^= 1; }
 
 TEST(Replay, TellsAnotherMotionInTheVeryStep) {
@@ -174,7 +174,7 @@ TEST(Replay, TellsAnAlteredCommandInTheStepItIsOf) {
 TEST(Replay, TellsAnotherHiddenStateAtTheNextWholeHash) {
   EXPECT_EQ(steps_that_match(record_with_fault(60, {.hash_interval = 1}, change_hidden)), 20u);
   EXPECT_EQ(steps_that_match(record_with_fault(60, {.hash_interval = 16}, change_hidden)), 31u);
-  // Of the last step there is one always.
+  // The last step always has a state hash.
   EXPECT_EQ(steps_that_match(record_with_fault(60, {.hash_interval = 1000}, change_hidden)), 59u);
 }
 
@@ -189,7 +189,7 @@ TEST(Recording, CommandsAfterTheLastStepLeaveItItsHash) {
   EXPECT_EQ(steps_that_match(sink.bytes), 5u);
 }
 
-// As all were before there was a choice.
+// The default of older versions.
 TEST(Recording, WithWholeHashesAloneIsOfTheFirstLayout) {
   const auto kinds = [](const RecordOptions& options, std::uint64_t layout) {
     const std::vector<std::byte> bytes = record_with_fault(30, options, [](World&) {});

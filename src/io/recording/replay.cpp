@@ -1,4 +1,5 @@
-// The player. Going back is restoring the nearest keyframe before, which were kept while playing, and playing on from it.
+// The player. To go back, it restores the nearest earlier keyframe, which it saved while playing, and plays on from
+// there.
 #include "io/recording/recording.h"
 #include "io/snapshot/state_copy.h"
 #include "world/world_access.h"
@@ -7,22 +8,22 @@ namespace gyre {
 
 namespace {
 
-// Keyframes of a recording, thinned out as they become many: then every second one goes and the next are twice as far apart.
+// Keyframes of a recording. If they become too many, every second one is removed and the interval doubles.
 class Keyframes {
  public:
   static constexpr std::uint64_t kFirstInterval = 16;  // steps
   static constexpr std::size_t kMaxFrames = 128;
   static constexpr std::size_t kMaxBytes = std::size_t(512) << 20;
 
-  // `position`: steps played. Kept if it is time for one.
+  // Saves a keyframe if one is due. `position`: steps played.
   void offer(std::uint64_t position, const WorldState& state) {
     if (position % interval_ != 0 || (!frames_.empty() && frames_.back().position >= position)) return;
     frames_.push_back({position, {}});
-    frames_.back().state.keep(state);
+    frames_.back().state.save(state);
     bytes_ += frames_.back().state.bytes();
     while (frames_.size() > 2 && (frames_.size() > kMaxFrames || bytes_ > kMaxBytes)) thin_out();
   }
-  // The last one at or before `position`; null if there is none.
+  // The last keyframe at or before `position`; null if there is none.
   const StateCopy* find(std::uint64_t position, std::uint64_t& found) const {
     const StateCopy* state = nullptr;
     for (const Frame& frame : frames_) {
@@ -41,14 +42,14 @@ class Keyframes {
 
   void thin_out() {
     interval_ *= 2;
-    std::vector<Frame> kept;
+    std::vector<Frame> remaining;
     bytes_ = 0;
     for (Frame& frame : frames_) {
       if (frame.position % interval_ != 0) continue;
       bytes_ += frame.state.bytes();
-      kept.push_back(std::move(frame));
+      remaining.push_back(std::move(frame));
     }
-    frames_ = std::move(kept);
+    frames_ = std::move(remaining);
   }
 
   std::vector<Frame> frames_;  // by position, ascending
@@ -104,7 +105,7 @@ Error Replay::seek(std::uint64_t step) {
   std::uint64_t found = 0;
   const StateCopy* const frame = player.keyframes.find(step, found);
   if (frame != nullptr && (step < player.position || found > player.position)) {
-    frame->put_back(state_of(player.world));
+    frame->restore(state_of(player.world));
     player.position = found;
   }
   while (player.position < step) player.step(nullptr);

@@ -12,7 +12,7 @@ namespace {
 
 std::uint64_t word_of(double value) { return __builtin_bit_cast(std::uint64_t, value); }
 
-// Two floats that lie side by side, by one load where that is the same.
+// Two adjacent floats, by one load where the byte order allows it.
 std::uint64_t word_of(const float* two) {
   std::uint64_t word = 0;
   if constexpr (std::endian::native == std::endian::little) {
@@ -23,12 +23,12 @@ std::uint64_t word_of(const float* two) {
   return word;
 }
 
-void hash_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPose& place) {
+void hash_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPose& pose) {
   static_assert(kMotionLinear == 0 && kMotionAngular == 3, "six floats in a row");
   const float* const velocities = reinterpret_cast<const float*>(&motion);
-  const float* const turn = reinterpret_cast<const float*>(&place.orientation);
-  lanes.update(word_of(velocities), word_of(velocities + 2), word_of(velocities + 4), word_of(place.center.x));
-  lanes.update(word_of(place.center.y), word_of(place.center.z), word_of(turn), word_of(turn + 2));
+  const float* const quaternion = reinterpret_cast<const float*>(&pose.orientation);
+  lanes.update(word_of(velocities), word_of(velocities + 2), word_of(velocities + 4), word_of(pose.center.x));
+  lanes.update(word_of(pose.center.y), word_of(pose.center.z), word_of(quaternion), word_of(quaternion + 2));
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ void hash_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPo
 std::uint64_t hash_motion(const WorldState& state) {
   const BodyStore& bodies = state.rigid.bodies;
   hash_detail::Lanes lanes(state.step_count);
-  for (const std::uint32_t i : bodies.awake) hash_body(lanes, bodies.motion[i], bodies.places[i]);
+  for (const std::uint32_t i : bodies.awake) hash_body(lanes, bodies.motion[i], bodies.poses[i]);
   const std::uint64_t counts = std::uint64_t(bodies.awake.size()) << 32 | state.rigid.contacts.live;
   return mix_bits(lanes.merge() ^ mix_bits(counts ^ mix_bits(word_of(state.time))));
 }

@@ -1,18 +1,19 @@
-// A hash of what moves: cheap enough for every step of a recording, where one of the whole state would cost as much as half a step.
+// A hash of the motion, cheap enough for every step of a recording; a hash of the whole state takes half as long as a
+// step.
 //
-// It covers the time, how many contacts there are, and of each body that was awake in the step its place, orientation
-// and velocities: whatever goes on to change how anything moves shows in it in that very step. What does so later (an impulse
-// that is kept, a timer) is found by the hash of the whole state, now and then.
+// It covers the time, the number of contacts, and pose and velocities of each body that was awake in the step. A
+// difference in other state (an accumulated impulse, a timer) shows once it changes a motion; until then only the
+// occasional hash of the whole state finds it.
 #pragma once
 
 #include "world/world_state.h"
 
 namespace gyre {
 
-// To be raised with what is hashed: recordings are played by builds that mean the same.
+// The version of the hashed data. Builds play a recording only if they agree on it.
 constexpr std::uint64_t kMotionHashLayout = 1;
 
-// Right after a step, before commands: which bodies were awake is known only then.
+// Must be called right after a step, before commands change which bodies are awake.
 std::uint64_t hash_motion(const WorldState& state);
 
 }  // namespace gyre

@@ -42,7 +42,7 @@ TEST(MotionHash, EveryBitOfWhatMovesMatters) {
   };
   const std::uint32_t last = state.rigid.bodies.awake.back();
   BodyMotion& motion = state.rigid.bodies.motion[last];
-  BodyPose& place = state.rigid.bodies.places[last];
+  BodyPose& place = state.rigid.bodies.poses[last];
   try_bits(motion.linear_velocity), try_bits(motion.angular_velocity);
   try_bits(place.center), try_bits(place.orientation);
   try_bits(state.time), try_bits(state.step_count), try_bits(state.rigid.contacts.live);
@@ -60,14 +60,14 @@ TEST(MotionHash, IsThatOfALoadedWorldAfterTheSameStep) {
   }
 }
 
-// What was awake as the step began is hashed even if it fell asleep in it: its place may have changed.
+// A body that fell asleep in the step is hashed, since its pose may have changed.
 TEST(MotionHash, IncludesWhatFellAsleepInTheStep) {
   World world = *World::create();
   scenes::add_fixed(world, {}, Plane{});
   const BodyId box = scenes::add_moving(world, {0, 0.5, 0}, Box{});
   while (world.is_awake(box)) world.step(scenes::kStepSeconds);
   const std::uint64_t hash = hash_motion(state_of(world));
-  state_of(world).rigid.bodies.places[box.index].center.x += 0.25;
+  state_of(world).rigid.bodies.poses[box.index].center.x += 0.25;
   EXPECT_NE(hash_motion(state_of(world)), hash);
 }
 

@@ -1,4 +1,4 @@
-// The ring of snapshots in memory.
+// A ring of state copies in memory.
 #include "io/snapshot/state_copy.h"
 #include "world/world_access.h"
 
@@ -24,23 +24,22 @@ Rollback::Rollback(Rollback&&) noexcept = default;
 void Rollback::save(const World& world) {
   const std::uint64_t step = world.step_count();
   std::vector<Ring::Slot>& slots = ring_->slots;
-  // What a rewound world steps through again replaces what was kept of that step, and all later steps are of a future
-  // that will not come.
-  std::size_t place = ring_->next;
+  // After a rewind, the new state of a step replaces the saved one, and saved states of later steps are dropped.
+  std::size_t index = ring_->next;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (!slots[i].used || slots[i].state.step_count() < step) continue;
-    if (slots[i].state.step_count() == step) place = i;
+    if (slots[i].state.step_count() == step) index = i;
     slots[i].used = false;
   }
-  slots[place].state.keep(state_of(world));
-  slots[place].used = true;
-  ring_->next = (place + 1) % slots.size();
+  slots[index].state.save(state_of(world));
+  slots[index].used = true;
+  ring_->next = (index + 1) % slots.size();
 }
 
 bool Rollback::restore(World& world, std::uint64_t step) const {
   for (const Ring::Slot& slot : ring_->slots) {
     if (!slot.used || slot.state.step_count() != step) continue;
-    slot.state.put_back(state_of(world));
+    slot.state.restore(state_of(world));
     return true;
   }
   return false;

@@ -27,7 +27,7 @@ TEST(Rollback, KeepsTheLastStates) {
   EXPECT_FALSE(ring.restore(world, 10));
   EXPECT_TRUE(ring.restore(world, 7));
   EXPECT_EQ(world.step_count(), 7u);
-  // What came after is of another future once something new is saved.
+  // A new save drops the states of later steps.
   ring.save(world);
   EXPECT_EQ(ring.newest(), 7u);
   EXPECT_EQ(ring.oldest(), 6u);
@@ -50,7 +50,7 @@ TEST(Rollback, EventsOfTheAbandonedFutureAreGone) {
   EXPECT_TRUE(world.events().ends.empty());
 }
 
-// B-22: every frame goes back eight steps and plays them again, first with other input, then with the real one.
+// B-22: every frame rewinds eight steps and plays them again, first with other input, then with the true one.
 void soak(const Scene& scene, int steps) {
   constexpr int kBack = 8;
   World straight = *World::create();

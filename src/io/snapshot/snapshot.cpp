@@ -1,4 +1,4 @@
-// Saving and loading snapshots. See snapshot.h for the format.
+// Saves and loads snapshots. See snapshot.h for the format.
 #include "io/snapshot/snapshot.h"
 
 #include "base/hash.h"
@@ -16,14 +16,14 @@ namespace {
 
 constexpr char kSnapshotMagic[9] = "GYRESNAP";
 constexpr std::size_t kSnapshotHeaderBytes = 8 + 4 + 4 + 8 + 8;
-constexpr std::size_t kBodyLengthPlace = 16;
-constexpr std::size_t kBodyChecksumPlace = 24;
+constexpr std::size_t kBodyLengthOffset = 16;
+constexpr std::size_t kBodyChecksumOffset = 24;
 
 Error bad_snapshot(const char* what) { return make_error(ErrorCode::invalid_data, "snapshot: %s", what); }
 
 // -------------------------------------------------------------------------------------------------------- the columns
 
-// The layout of each kind of column. Ids are their generations; shapes have a layout of their own.
+// The layout of each kind of column. Ids are stored as generations; shapes have a layout of their own.
 constexpr std::uint64_t kShapeLayout = hash_text("shape 1");
 
 template <class Column>
@@ -47,7 +47,7 @@ struct ColumnLayout<std::vector<AnyShape>> {
   static RecordLayout get() { return {1, kShapeLayout}; }
 };
 
-// A later column that is empty is not written, and one that is not there is empty: older snapshots open.
+// An empty later column is not written, and a missing one is read as empty, so older snapshots can be read.
 template <class Column>
 bool is_left_out(const Column& column) {
   if constexpr (is_later_column<Column>) return column.empty();
@@ -106,7 +106,7 @@ class ColumnWriter {
   ByteWriter& out_;
 };
 
-// One column as it stands in the bytes.
+// One column in the bytes.
 struct StoredColumn {
   std::string_view name;
   std::uint64_t layout = 0;
@@ -273,14 +273,14 @@ void write_snapshot(ByteWriter& out, const WorldState& state, GeometryTable& geo
   collect_geometry(state, own);
   for (const Geometry& item : own.items()) geometry.add(item);
   write_geometry_table(out, own);
-  const std::size_t count_place = out.size();
+  const std::size_t count_offset = out.size();
   out.put(std::uint32_t(0));
   ColumnWriter writer(out);
   for_each_column(state, writer);
-  out.patch(count_place, writer.count);
+  out.patch(count_offset, writer.count);
   const std::span<const std::byte> body = out.view().subspan(start + kSnapshotHeaderBytes);
-  out.patch(start + kBodyLengthPlace, std::uint64_t(body.size()));
-  out.patch(start + kBodyChecksumPlace, hash_bytes(body.data(), body.size()));
+  out.patch(start + kBodyLengthOffset, std::uint64_t(body.size()));
+  out.patch(start + kBodyChecksumOffset, hash_bytes(body.data(), body.size()));
 }
 
 Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number, GeometryTable& geometry,
@@ -289,9 +289,9 @@ Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number
   std::span<const std::byte> body;
   Error e = read_header(in, body);
   if (e) return e;
-  ByteReader parts(body);
-  e = read_geometry_table(parts, geometry);
-  if (e.ok()) e = read_columns(parts, geometry, columns);
+  ByteReader content(body);
+  e = read_geometry_table(content, geometry);
+  if (e.ok()) e = read_columns(content, geometry, columns);
   if (e) return e;
   columns.rigid.world_number = world_number;
   return rebuild_derived(columns.rigid);
@@ -310,8 +310,8 @@ std::uint64_t state_layout() {
 void reseal_snapshot(std::span<std::byte> bytes) {
   if (bytes.size() < kSnapshotHeaderBytes) return;
   const std::span<std::byte> body = bytes.subspan(kSnapshotHeaderBytes);
-  store_little(bytes.data() + kBodyLengthPlace, std::uint64_t(body.size()));
-  store_little(bytes.data() + kBodyChecksumPlace, hash_bytes(body.data(), body.size()));
+  store_little(bytes.data() + kBodyLengthOffset, std::uint64_t(body.size()));
+  store_little(bytes.data() + kBodyChecksumOffset, hash_bytes(body.data(), body.size()));
 }
 
 std::vector<std::byte> save_snapshot(const World& world) {

@@ -1,11 +1,11 @@
-// The bytes of a snapshot, for the other files of this folder. The public side is <gyre/replay.h>.
+// The bytes of a snapshot, for the other units of io. The public side is <gyre/replay.h>.
 //
 //   magic (8 bytes), format version (u32), spare (u32), length of the rest (u64), checksum of the rest (u64)
 //   cooked geometry, each once, by content hash
 //   number of columns (u32), then each: length of its name (u8), name, layout of a record (u64), records (u64),
 //   bytes (u64), payload
 //
-// Everything little-endian; records field by field, as state_fields.h lists them.
+// All numbers are little-endian; records are stored field by field, as state_fields.h lists them.
 #pragma once
 
 #include "io/codec/columns.h"
@@ -18,18 +18,18 @@ constexpr std::uint32_t kSnapshotVersion = 1;
 // Appends a snapshot of the state. Its cooked geometry is added to `geometry`.
 void write_snapshot(ByteWriter& out, const WorldState& state, GeometryTable& geometry);
 
-// Reads and checks a snapshot, and builds all that is derived, for a world of this number. Geometry that the table holds
-// is shared instead of built; what is new is added.
+// Reads and checks a snapshot and derives the rest of the state, for a world of this number. Geometry in the table is
+// shared; new geometry is added to it.
 Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number, GeometryTable& geometry,
                     StateColumns& columns);
 
-// All cooked geometry that a world's shapes use.
+// All cooked geometry of the shapes of a world.
 void collect_geometry(const WorldState& state, GeometryTable& geometry);
 
-// Hash of the names and layouts of all columns: two builds with the same one hold the same state.
+// A hash of names and layouts of all columns. Two builds with the same hash have the same state.
 std::uint64_t state_layout();
 
-// Makes the checksum of a snapshot that was changed right again. For tests that damage what lies behind it.
+// Restores the checksum of a snapshot that was changed. For tests that damage the data behind it.
 void reseal_snapshot(std::span<std::byte> bytes);
 
 }  // namespace gyre

@@ -32,7 +32,7 @@ World make_scene(const Scene& scene, int steps) {
 
 class SnapshotOfScene : public testing::TestWithParam<Scene> {};
 
-// At several moments, the first of them before any step: right after commands.
+// At several moments, the first before any step: right after commands.
 TEST_P(SnapshotOfScene, GoesOnBitForBit) {
   World straight = make_scene(GetParam(), 0);
   int step = 0;
@@ -79,7 +79,7 @@ TEST(Snapshot, SleepersStaySleepersAndWakeTogether) {
   }
 }
 
-// Commands between saving and stepping meet derived data that was built by loading.
+// Commands between loading and the first step use derived data of the loaded state.
 TEST(Snapshot, CommandsAfterLoadingHaveTheSameEffect) {
   const Scene& scene = scene_named("changes");
   World world = make_scene(scene, 100);
@@ -222,7 +222,7 @@ TEST_F(DamagedSnapshot, AnotherLayoutIsNamed) {
   EXPECT_NE(std::strstr(restore_snapshot(world_, bytes).message, "body_places"), nullptr);
 }
 
-// With the checksum made right, what lies behind must hold by itself: refused, or a state that can be stepped.
+// The checksum is valid, so the data must be checked itself: refused, or a state that can be stepped.
 TEST_F(DamagedSnapshot, SealedAgainIsRefusedOrRuns) {
   int refused = 0, ran = 0;
   scenes::Random random(5);
@@ -257,7 +257,7 @@ Error reload(int steps, const char* scene, Change&& change) {
 TEST(SnapshotCheck, RingsThatNeverCloseAreRefused) {
   EXPECT_EQ(reload(119, "pusher", [](RigidWorld&) {}).code, ErrorCode::none);
   const Error e = reload(119, "pusher", [](RigidWorld& w) {
-    // A member that leads back to itself: walking on from the first would never end.
+    // A ring that returns to its second member: a walk from the first would never end.
     for (std::uint32_t i = 0; i < w.bodies.sleep.size(); ++i) {
       if (w.bodies.sleep[i].group != kNoGroup && w.bodies.sleep[i].group != i)
         w.bodies.sleep[i].next_in_group = i;
@@ -280,7 +280,7 @@ TEST(SnapshotCheck, EveryLinkIsChecked) {
   EXPECT_FALSE(refused([](RigidWorld&) {}));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.settings.substeps = 0; }));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.settings.last_substep = __builtin_nanf(""); }));
-  EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.places[2].center.x = __builtin_nan(""); }));
+  EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.poses[2].center.x = __builtin_nan(""); }));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.motion[2].linear_velocity.y = __builtin_inff(); }));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.flags.pop_back(); }));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.bodies.flags[3].awake = 0; }));

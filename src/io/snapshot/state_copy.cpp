@@ -1,7 +1,8 @@
-// Packing a state and putting it back. See kept_state.h.
+// Packs a state and restores it. See state_copy.h.
 //
-// Manifolds are most of a state, and most of them are empty: a pair of boxes that only come near each other has one too. What a
-// contact does not use is always as in a new manifold (find_fault in collision/contact/contact_store sees to it), so it need not be kept.
+// Most of a state are manifolds, and most manifolds are empty: every pair of overlapping fat boxes has one. The
+// unused rest of a manifold equals that of a new one (find_fault in collision/contact/contact_store checks it), so it
+// is not stored.
 #include "io/snapshot/state_copy.h"
 
 #include <cstddef>
@@ -14,24 +15,24 @@ namespace {
 
 using Manifolds = decltype(ContactStore::manifolds);
 
-// Each count and each array begins where any record may.
+// Each count and each array begins at an address that suits any record.
 std::size_t padded(std::size_t bytes) { return (bytes + kMemoryAlign - 1) / kMemoryAlign * kMemoryAlign; }
 
-// A manifold with `count` points is kept as two runs of its bytes: up to its last point, and from behind the room for points to its
-// last anchor.
+// A manifold with `count` points is stored as two runs of its bytes: from the start to its last point, and from
+// behind the array of points to its last anchor.
 constexpr std::size_t kHeadBytes = offsetof(Manifold, points);
-constexpr std::size_t kTailPlace = offsetof(Manifold, load_age);
-static_assert(kTailPlace == kHeadBytes + kMaxManifoldPoints * sizeof(ContactPointState) &&
+constexpr std::size_t kTailOffset = offsetof(Manifold, load_age);
+static_assert(kTailOffset == kHeadBytes + kMaxManifoldPoints * sizeof(ContactPointState) &&
                   offsetof(Manifold, anchors) + kMaxManifoldPoints * sizeof(PointAnchor) == sizeof(Manifold),
               "points and anchors end the runs, with all there is in one of them");
 
 std::size_t point_bytes(int count) { return std::size_t(count) * sizeof(ContactPointState); }
 std::size_t tail_bytes(int count) {
-  return offsetof(Manifold, anchors) - kTailPlace + std::size_t(count) * sizeof(PointAnchor);
+  return offsetof(Manifold, anchors) - kTailOffset + std::size_t(count) * sizeof(PointAnchor);
 }
 std::size_t manifold_bytes(int count) { return kHeadBytes + point_bytes(count) + tail_bytes(count); }
 
-// Calls fn(manifold) for each that a contact uses. In the order of contacts, of which there is always the same for a state.
+// Calls fn(manifold) for each used manifold, in the order of contacts, which is part of the state.
 template <class Store, class Fn>
 void for_each_manifold(Store& store, Fn&& fn) {
   for (const Contact& contact : store.contacts) {
@@ -44,7 +45,7 @@ bool equal(const Proxy& a, const Proxy& b) {
          a.body == b.body && a.motion == b.motion && a.sensor == b.sensor && a.pushes == b.pushes;
 }
 
-// The proxies that differ, so that the broad phase need not be built anew. False if it must be.
+// Lists the proxies that differ, for an update of the broad phase. False if it must be rebuilt.
 bool list_differing(std::span<const Proxy> now, std::span<const Proxy> then, Array<std::uint32_t>& out) {
   if (now.size() != then.size()) return false;
   for (std::uint32_t i = 0; i < now.size(); ++i) {
@@ -53,7 +54,7 @@ bool list_differing(std::span<const Proxy> now, std::span<const Proxy> then, Arr
   return true;
 }
 
-// How many bytes the arrays take.
+// The size of the packed arrays.
 struct PackedSize {
   const ContactStore& store;
   std::size_t bytes = 0;
@@ -77,17 +78,17 @@ struct Packer {
   template <class T>
   void operator()(const char*, const Array<T>& column) {
     static_assert(std::is_trivially_copyable_v<T>, "records are packed as bytes");
-    put_count(column.size());
+    write_count(column.size());
     if (!column.empty()) std::memcpy(to, column.data(), column.size() * sizeof(T));
     to += padded(column.size() * sizeof(T));
   }
   void operator()(const char*, const Manifolds& column) {
-    put_count(column.size());
+    write_count(column.size());
     for_each_manifold(store, [&](const Manifold& manifold) {
       const auto* const from = reinterpret_cast<const std::byte*>(&manifold);
       const std::size_t head = kHeadBytes + point_bytes(manifold.count), tail = tail_bytes(manifold.count);
       std::memcpy(to, from, head);
-      std::memcpy(to + head, from + kTailPlace, tail);
+      std::memcpy(to + head, from + kTailOffset, tail);
       to += head + tail;
     });
   }
@@ -95,35 +96,35 @@ struct Packer {
   void operator()(const char*, const Column&) {}
 
  private:
-  void put_count(std::size_t count) {
+  void write_count(std::size_t count) {
     std::memcpy(to, &count, sizeof count);
     to += padded(sizeof count);
   }
 };
 
-// Into columns in which no manifold is in use.
+// Requires columns in which no manifold is in use.
 struct Unpacker {
   ContactStore& store;
   const std::byte* from;
-  // Takes the proxies that differ from what is there already. `same_count` is false if that says nothing.
+  // Gets the proxies that differ from the present ones. If `same_count` is false, the list is incomplete.
   Array<std::uint32_t>& differing;
   bool same_count = false;
 
   template <class T>
   void operator()(const char*, Array<T>& column) {
-    const std::span<const T> kept = next<T>();
-    if constexpr (std::is_same_v<T, Proxy>) same_count = list_differing(column.view(), kept, differing);
-    column.assign(kept);
+    const std::span<const T> saved = next<T>();
+    if constexpr (std::is_same_v<T, Proxy>) same_count = list_differing(column.view(), saved, differing);
+    column.assign(saved);
   }
   void operator()(const char*, Manifolds& column) {
     column.resize(get_count());
-    // The contacts are those of these manifolds: their column comes before.
+    // The column of contacts comes before, so the contacts are those of these manifolds.
     for_each_manifold(store, [&](Manifold& manifold) {
       auto* const to = reinterpret_cast<std::byte*>(&manifold);
       std::memcpy(to, from, kHeadBytes);
       const std::size_t points = point_bytes(manifold.count), tail = tail_bytes(manifold.count);
       std::memcpy(to + kHeadBytes, from + kHeadBytes, points);
-      std::memcpy(to + kTailPlace, from + kHeadBytes + points, tail);
+      std::memcpy(to + kTailOffset, from + kHeadBytes + points, tail);
       from += kHeadBytes + points + tail;
     });
   }
@@ -140,22 +141,22 @@ struct Unpacker {
   template <class T>
   std::span<const T> next() {
     const std::size_t count = get_count();
-    const std::byte* const place = from;
+    const std::byte* const data = from;
     from += padded(count * sizeof(T));
-    return {reinterpret_cast<const T*>(place), count};
+    return {reinterpret_cast<const T*>(data), count};
   }
 };
 
-// The columns that are not packed: from a list of where they are, in the order of for_each_column.
+// The addresses of the columns that are not packed, in the order of for_each_column.
 struct OtherColumns {
-  static constexpr std::size_t kMost = 64;
-  const void* places[kMost];
+  static constexpr std::size_t kMaxColumns = 64;
+  const void* columns[kMaxColumns];
   std::size_t count = 0;
 
   template <class Column>
   void operator()(const char*, const Column& column) {
-    GYRE_ASSERT(count < kMost, "the list has room for every column");
-    places[count++] = &column;
+    GYRE_ASSERT(count < kMaxColumns, "the list has room for every column");
+    columns[count++] = &column;
   }
 };
 
@@ -170,8 +171,8 @@ struct OtherCopier {
   void operator()(const char*, Manifolds&) { ++next; }
   template <class Column>
   void operator()(const char*, Column& column) {
-    // Both walks are of for_each_column, so the n-th columns are of one type.
-    column = *static_cast<const Column*>(from.places[next++]);
+    // Both loops visit the columns in the same order, so the n-th columns have the same type.
+    column = *static_cast<const Column*>(from.columns[next++]);
   }
 };
 
@@ -201,11 +202,11 @@ struct OtherSize {
 
 }  // namespace
 
-void StateCopy::keep(const WorldState& state) {
+void StateCopy::save(const WorldState& state) {
   const ContactStore& store = state.rigid.contacts;
   PackedSize size{store};
   for_each_column(state, size);
-  packed_.clear();  // nothing of it is worth a copy where the block grows
+  packed_.clear();  // growth would copy the old contents
   packed_.resize_uninitialized(size.bytes);
   for_each_column(state, Packer{store, packed_.data()});
   copy_others(state, others_);
@@ -213,18 +214,19 @@ void StateCopy::keep(const WorldState& state) {
   changed_ = state.rigid.shapes.changed;
 }
 
-void StateCopy::put_back(WorldState& state) const {
+void StateCopy::restore(WorldState& state) const {
   RigidWorld& w = state.rigid;
   Array<std::uint32_t> changed = std::move(w.shapes.changed);
   for_each_manifold(w.contacts, [](Manifold& manifold) { manifold = Manifold{}; });
   Unpacker unpacker{w.contacts, packed_.data(), changed};
   for_each_column(state, unpacker);
   copy_others(others_, state);
-  const bool knows_boxes = !w.broadphase_stale && unpacker.same_count;
+  const bool can_keep_broadphase = !w.broadphase_stale && unpacker.same_count;
   derive_state(w);
   state.queried_changes.store(kNothingQueried, std::memory_order_relaxed);
-  if (knows_boxes) {
-    // What the broad phase has not seen of the present state, of the kept one, and what differs between the two.
+  if (can_keep_broadphase) {
+    // The broad phase has not seen the changed boxes of the present state, those of the saved one, and the
+    // differences of the two.
     changed.append(changed_);
     w.shapes.changed = std::move(changed);
     w.broadphase_stale = false;

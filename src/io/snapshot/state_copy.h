@@ -1,25 +1,25 @@
-// A copy of a world's state in memory: what the rollback ring and the replay's keyframes keep.
+// A copy of the state of a world in memory, for the rollback ring and the keyframes of the replay.
 #pragma once
 
 #include "io/codec/columns.h"
 
 namespace gyre {
 
-// Arrays lie in one block, packed; of manifolds only what is in use. Keeping a state into another reuses its memory. Cooked
-// geometry is shared, not copied.
+// Arrays are packed in one block, without unused manifolds. Saving again reuses the memory. Cooked geometry is
+// shared, not copied.
 class StateCopy {
  public:
-  void keep(const WorldState& state);
-  // Puts a world back to exactly what keep() saw. The world must be the one that was kept, or one whose columns came from
-  // it: nothing is checked.
-  void put_back(WorldState& state) const;
+  void save(const WorldState& state);
+  // Restores exactly the saved state. `state` must be of the world that was saved, or of one whose columns came from
+  // it; nothing is checked.
+  void restore(WorldState& state) const;
   std::uint64_t step_count() const { return others_.step_count; }
   std::size_t bytes() const;
 
  private:
-  StateColumns others_;            // the columns that are no arrays, and the events that wait for the next step
+  StateColumns others_;            // the columns that are not arrays, and the events of the next step
   Array<std::byte> packed_;        // the arrays, in the order of for_each_column
-  Array<std::uint32_t> changed_;  // boxes that the broad phase had not seen yet
+  Array<std::uint32_t> changed_;   // boxes that the broad phase had not seen
 };
 
 }  // namespace gyre

@@ -28,7 +28,7 @@ ManifoldCount count_manifolds(const WorldState& state) {
   return count;
 }
 
-// What all of a state takes, each array as long as it is.
+// The size of a state with each array at full length.
 struct ColumnBytes {
   std::size_t bytes = 0;
 
@@ -50,47 +50,47 @@ struct ColumnBytes {
 
 class KeptStates : public testing::TestWithParam<Scene> {};
 
-// From a state to itself, to what went on from there, and to a world that never was there.
+// Restores a state to itself, to a later state of the same world, and to a world that never had it.
 TEST_P(KeptStates, ArePutBackToTheLastBit) {
   const Scene& scene = GetParam();
   World world = *World::create();
   scene.build(world);
   for (int i = 0; i < 60; ++i) step_scene(scene, world, i);
   const std::uint64_t hash = world.hash();
-  StateCopy kept;
-  kept.keep(state_of(world));
-  EXPECT_EQ(kept.step_count(), world.step_count());
-  kept.put_back(state_of(world));
+  StateCopy copy;
+  copy.save(state_of(world));
+  EXPECT_EQ(copy.step_count(), world.step_count());
+  copy.restore(state_of(world));
   EXPECT_EQ(world.hash(), hash);
   for (int i = 60; i < 120; ++i) step_scene(scene, world, i);
   const std::uint64_t later = world.hash();
-  kept.put_back(state_of(world));
+  copy.restore(state_of(world));
   EXPECT_EQ(world.hash(), hash);
   EXPECT_EQ(find_fault(state_of(world).rigid.contacts), nullptr);
   for (int i = 60; i < 120; ++i) step_scene(scene, world, i);
   EXPECT_EQ(world.hash(), later);
 
   World other = *World::create();
-  kept.put_back(state_of(other));
+  copy.restore(state_of(other));
   EXPECT_EQ(other.hash(), hash);
   EXPECT_EQ(find_fault(state_of(other).rigid.contacts), nullptr);
 }
 
-// Keeping one state into another leaves nothing of that.
+// A second save leaves nothing of the first.
 TEST_P(KeptStates, ReplaceEachOther) {
   const Scene& scene = GetParam();
   World world = *World::create();
   scene.build(world);
-  StateCopy kept;
+  StateCopy copy;
   std::uint64_t hash = 0;
   for (int i = 0; i < 90; ++i) {
     if (i % 30 == 0) {
       hash = world.hash();
-      kept.keep(state_of(world));
+      copy.save(state_of(world));
     }
     step_scene(scene, world, i);
   }
-  kept.put_back(state_of(world));
+  copy.restore(state_of(world));
   EXPECT_EQ(world.hash(), hash);
   EXPECT_EQ(world.step_count(), 60u);
 }
@@ -98,7 +98,7 @@ TEST_P(KeptStates, ReplaceEachOther) {
 INSTANTIATE_TEST_SUITE_P(Scenes, KeptStates, testing::ValuesIn(kScenes),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
-// What waits for the next step: events of what was removed, and boxes that the broad phase has not seen.
+// Data for the next step: events of removed objects, and boxes that the broad phase has not seen.
 TEST(StateCopy, KeepsWhatWaitsForTheNextStep) {
   World world = *World::create({.gravity = {}, .sleeping = false});
   const BodyId wall = scenes::add_fixed(world, {5, 0, 0}, Box{});
@@ -108,8 +108,8 @@ TEST(StateCopy, KeepsWhatWaitsForTheNextStep) {
   ASSERT_EQ(world.stats().touching, 1);
   world.remove_body(low);
   world.set_pose(wall, {{0.99, 0, 0}, {}});
-  StateCopy kept;
-  kept.keep(state_of(world));
+  StateCopy copy;
+  copy.save(state_of(world));
   std::uint64_t hash = 0;
   for (int run = 0; run < 2; ++run) {
     world.step(scenes::kStepSeconds);
@@ -117,7 +117,7 @@ TEST(StateCopy, KeepsWhatWaitsForTheNextStep) {
     EXPECT_EQ(world.events().begins.size(), 1u) << run;
     if (run == 0) hash = world.hash();
     EXPECT_EQ(world.hash(), hash);
-    kept.put_back(state_of(world));
+    copy.restore(state_of(world));
   }
 }
 
@@ -131,10 +131,10 @@ TEST(StateCopy, HoldsNothingOfManifoldsThatAreNotInUse) {
   ASSERT_LT(count.used, 10u) << count.room;
   ColumnBytes all;
   for_each_column(state_of(world), all);
-  StateCopy kept;
-  kept.keep(state_of(world));
+  StateCopy copy;
+  copy.save(state_of(world));
   // Arrays begin on cache lines of their own and grow by an eighth.
-  EXPECT_LT(kept.bytes(), (all.bytes - count.room * sizeof(Manifold)) * 9 / 8 + 32 * 128);
+  EXPECT_LT(copy.bytes(), (all.bytes - count.room * sizeof(Manifold)) * 9 / 8 + 32 * 128);
 }
 
 }  // namespace

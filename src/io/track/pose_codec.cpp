@@ -1,4 +1,4 @@
-// Rounding and predicting poses. See pose_codec.h.
+// Rounds and predicts poses. See pose_codec.h.
 #include "io/track/pose_codec.h"
 
 #include <cmath>
@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// The floor of value + 0.5. Not by std::floor, which is a call where processors need not have it.
+// The floor of value + 0.5. std::floor would be a function call on processors without an instruction for it.
 std::int64_t nearest(double value) {
   const double above = value + 0.5;
   const auto whole = std::int64_t(above);
@@ -28,7 +28,7 @@ std::int64_t dot(const std::int64_t (&a)[4], const std::int64_t (&b)[4]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }
 
-// The square of the largest part, from the others; in steps.
+// The square of the largest component from the others, in rounding steps.
 std::int64_t left_for_largest(const RoundedPose& pose, PoseSteps steps) {
   std::int64_t left = std::int64_t(1) << 2 * steps.orientation_bits;
   for (int i = 0; i < 4; ++i) {
@@ -56,14 +56,14 @@ RoundedPose round_pose(const Pose& pose, PoseSteps steps) {
     rounded.position[i] = scaled >= limit ? kMaxPosition : scaled <= -limit ? -kMaxPosition : nearest(scaled);
   }
   const Quat q = pose.orientation == Quat{0, 0, 0, 0} ? Quat{} : pose.orientation;
-  const double parts[4] = {double(q.x), double(q.y), double(q.z), double(q.w)};
+  const double components[4] = {double(q.x), double(q.y), double(q.z), double(q.w)};
   double square = 0.0;
-  for (const double part : parts) square += part * part;
+  for (const double component : components) square += component * component;
   const double scale = power_of_two(steps.orientation_bits) / std::sqrt(square);
-  for (int i = 0; i < 4; ++i) rounded.orientation[i] = nearest(parts[i] * scale);
+  for (int i = 0; i < 4; ++i) rounded.orientation[i] = nearest(components[i] * scale);
   rounded.largest = largest_of(rounded.orientation);
   if (rounded.orientation[rounded.largest] < 0) {
-    for (std::int64_t& part : rounded.orientation) part = -part;
+    for (std::int64_t& component : rounded.orientation) component = -component;
   }
   complete_orientation(rounded, steps);
   return rounded;
@@ -72,20 +72,20 @@ RoundedPose round_pose(const Pose& pose, PoseSteps steps) {
 Pose unrounded(const RoundedPose& pose, PoseSteps steps) {
   const double metre = power_of_two(-steps.position_bits);
   const double unit = power_of_two(-steps.orientation_bits);
-  float parts[4];
+  float components[4];
   for (int i = 0; i < 4; ++i) {
-    const double part =
+    const double component =
         i == pose.largest ? std::sqrt(double(left_for_largest(pose, steps))) : double(pose.orientation[i]);
-    parts[i] = float(part * unit);
+    components[i] = float(component * unit);
   }
   return {
       {double(pose.position[0]) * metre, double(pose.position[1]) * metre, double(pose.position[2]) * metre},
-      {parts[0], parts[1], parts[2], parts[3]}};
+      {components[0], components[1], components[2], components[3]}};
 }
 
-// Three parts of the quaternion are off by half a step each, and the largest, which is at least 1/2 but for
-// the rounding, by what makes up for them: together at most twice as far. An angle is twice the way of the quaternion.
-// Floats add their last bits.
+// Three components of the quaternion are off by half a rounding step each. The largest component, at least 1/2 but
+// for rounding, is off by the change that keeps the length 1. The whole error is at most twice that of the three. An
+// angle is twice the displacement of the quaternion. Floats add their last bits.
 TrackAccuracy accuracy_of(PoseSteps steps) {
   constexpr double kFloatBits = 4.0e-7;
   const double unit = power_of_two(-steps.orientation_bits);
@@ -104,8 +104,8 @@ RoundedPose predict(const PoseHistory& history, PoseSteps steps) {
   for (int i = 0; i < 3; ++i) {
     expected.position[i] = 2 * history.now.position[i] - history.before.position[i];
   }
-  // The same rotation again: now * before^-1 * now, which for unit quaternions is 2 (now . before) now - before. It is
-  // the same for before and -before but for its sign, which the coding chooses.
+  // Applies the last rotation again: now * before^-1 * now, which for unit quaternions is 2 (now . before) now -
+  // before. For -before the result has the other sign; the code of a pose chooses its sign.
   const std::int64_t twice_dot = 2 * dot(history.now.orientation, history.before.orientation);
   const int shift = 2 * steps.orientation_bits;
   const std::int64_t half = std::int64_t(1) << (shift - 1);

@@ -1,13 +1,13 @@
-// Poses as whole numbers, and what is new in a pose after the two before it, as few bits. Integers only beyond the rounding
-// itself, so bits and poses are the same on every platform. docs/recording.md has it in words, docs/decisions/track-coding.md
-// why it is done so.
+// Poses as whole numbers, and the change of a pose since the two frames before it in few bits. All arithmetic after
+// the rounding is in integers, so bits and poses are the same on every platform. docs/recording.md describes the
+// format, docs/decisions/track-coding.md gives the reasons.
 //
-// - A coordinate is rounded to a multiple of 2^-position_bits m. An orientation is a quaternion of which the largest part is
-//   positive and left out, and the others are rounded to multiples of 2^-orientation_bits.
-// - A pose is predicted to go on as it went between the last two frames: the position by the same way, the orientation by
-//   the same rotation. What is stored is the difference, so no error is carried on.
-// - A difference is stored in a Rice code whose parameter follows the sizes of the last differences of the same body and
-//   component. R. F. Rice, "Some practical universal noiseless coding techniques", 1979.
+// - A coordinate is rounded to a multiple of 2^-position_bits m. The largest component of the quaternion is positive
+//   and omitted; the others are rounded to multiples of 2^-orientation_bits.
+// - A pose is predicted from the last two frames: the position by the same displacement, the orientation by the same
+//   rotation. The difference from the prediction is stored, so errors do not accumulate.
+// - A difference is stored in a Rice code whose parameter follows the sizes of the last differences of the same body
+//   and component. R. F. Rice, "Some practical universal noiseless coding techniques", 1979.
 #pragma once
 
 #include "io/codec/bits.h"
@@ -23,18 +23,17 @@ struct PoseSteps {
 };
 // 2^bits, exactly.
 inline double power_of_two(int bits) { return __builtin_bit_cast(double, std::uint64_t(1023 + bits) << 52); }
-// What a file may say.
+// The ranges that a reader accepts.
 constexpr int kMaxPositionBits = 40;
 constexpr int kMinPositionBits = -20;
 constexpr int kMaxOrientationBits = 20;
 constexpr int kMinOrientationBits = 8;
-constexpr std::int64_t kMaxPosition = std::int64_t(1)
-                                      << 51;  // steps from the origin; poses farther off are put there
+constexpr std::int64_t kMaxPosition =
+    std::int64_t(1) << 51;  // rounding steps from the origin; poses farther out are moved there
 
 struct RoundedPose {
   std::int64_t position[3] = {0, 0, 0};
-  std::int64_t orientation[4] = {
-      0, 0, 0, 0};  // x, y, z, w; the largest is the integer nearest to what the others leave
+  std::int64_t orientation[4] = {0, 0, 0, 0};  // x, y, z, w; the largest follows from the others
   int largest = 3;
 
   bool operator==(const RoundedPose&) const = default;
@@ -43,12 +42,12 @@ struct RoundedPose {
 // The nearest pose that can be stored. The pose must be finite.
 RoundedPose round_pose(const Pose& pose, PoseSteps steps);
 Pose unrounded(const RoundedPose& pose, PoseSteps steps);
-// How far a stored pose may be from the one that was rounded.
+// The largest error of a stored pose.
 TrackAccuracy accuracy_of(PoseSteps steps);
-// Fills in the largest part. False if the others leave nothing for it.
+// Computes the largest component from the others. False if those are too large.
 bool complete_orientation(RoundedPose& pose, PoseSteps steps);
 
-// What is known of a body's poses up to the last frame: all that a prediction needs.
+// The state of the prediction of one body.
 struct PoseHistory {
   RoundedPose now, before;
   std::int64_t sizes[6] = {-1, -1, -1,
@@ -56,18 +55,18 @@ struct PoseHistory {
 };
 // A history that begins with this pose, at rest.
 PoseHistory begin_history(const RoundedPose& pose);
-// The pose that follows from the history, without `largest`.
+// The predicted pose, without `largest`.
 RoundedPose predict(const PoseHistory& history, PoseSteps steps);
 
-// A difference, given the size of those before it.
+// Codes one difference; `size` is the running mean of those before it.
 template <class Bits>
 void code_difference(Bits& bits, std::int64_t& difference, std::int64_t& size) {
-  constexpr int kFirstLowBits = 8;          // of the first difference after the beginning
-  constexpr std::int64_t kSecondSize = 64;  // the first says nothing about those to come
-  constexpr std::uint64_t kMaxHigh = 24;    // more are written as a count of bits
+  constexpr int kFirstLowBits = 8;          // of the first difference of a history
+  constexpr std::int64_t kSecondSize = 64;  // the first difference says nothing about later ones
+  constexpr std::uint64_t kMaxHigh = 24;    // larger high parts are stored as a number of bits
   constexpr int kMaxBits = 57;
   const bool first = size < 0;
-  // The fewest low bits k with 1.5 * 2^k >= size / 16.
+  // The smallest number of low bits k with 1.5 * 2^k >= size / 16.
   const int low_bits = first ? kFirstLowBits : int(std::bit_width(std::uint64_t((size - 1) / 12)));
   if constexpr (Bits::kReads) {
     std::uint64_t folded = 0, high = 0, more = 1;
@@ -90,10 +89,10 @@ void code_difference(Bits& bits, std::int64_t& difference, std::int64_t& size) {
   } else {
     const std::uint64_t folded = fold_sign(difference), high = folded >> low_bits;
     if (high < kMaxHigh) {
-      constexpr int kMaxAtOnce = 64 - int(kMaxHigh);
+      constexpr int kMaxLowBitsWithUnary = 64 - int(kMaxHigh);
       const std::uint64_t ones = (std::uint64_t(1) << high) - 1, low = folded & ((std::uint64_t(1) << low_bits) - 1);
       const int unary = int(high) + 1;
-      if (low_bits <= kMaxAtOnce) {
+      if (low_bits <= kMaxLowBitsWithUnary) {
         bits.code_bits(low << unary | ones, unary + low_bits);
       } else {
         bits.code_bits(ones, unary);
@@ -109,7 +108,7 @@ void code_difference(Bits& bits, std::int64_t& difference, std::int64_t& size) {
   size = first ? kSecondSize : size + ((newest - size + 1) >> 1);
 }
 
-// A pose by itself.
+// Codes a pose without a history.
 template <class Bits>
 void code_pose(Bits& bits, RoundedPose& pose, PoseSteps steps) {
   constexpr int kPositionOrder = 16;
@@ -130,7 +129,7 @@ void code_pose(Bits& bits, RoundedPose& pose, PoseSteps steps) {
   }
 }
 
-// A pose after others.
+// Codes the difference of a pose from its prediction.
 template <class Bits>
 void code_next_pose(Bits& bits, RoundedPose& pose, PoseHistory& history, PoseSteps steps) {
   RoundedPose expected = predict(history, steps);
@@ -154,7 +153,7 @@ void code_next_pose(Bits& bits, RoundedPose& pose, PoseHistory& history, PoseSte
   }
 }
 
-// Moves the history on by the pose that was coded. False if it is none, which only a reader meets.
+// Appends the coded pose to the history. False if it is invalid, which only a reader meets.
 bool advance(PoseHistory& history, RoundedPose& pose, PoseSteps steps);
 
 }  // namespace gyre

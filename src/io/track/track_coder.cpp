@@ -1,4 +1,4 @@
-// Decoding frames. See track_coder.h.
+// Decodes frames. See track_coder.h.
 #include "io/track/track_coder.h"
 
 namespace gyre {
@@ -13,7 +13,7 @@ bool FrameDecoder::read_put(BitReader& bits, TrackedBody& body) const {
   return true;
 }
 
-// Old bodies and changes both come by ascending index.
+// Old bodies and changes are both in order of index.
 bool FrameDecoder::apply_changes(BitReader& bits, std::uint64_t count, std::vector<TrackedBody>& bodies) {
   next_.clear();
   std::size_t old = 0;
@@ -25,19 +25,19 @@ bool FrameDecoder::apply_changes(BitReader& bits, std::uint64_t count, std::vect
     index += gap + (i > 0 ? 1 : 0);
     if (bits.failed() || index > 0xffffffffu || change > BodyChange::flags) return false;
     while (old < bodies.size() && bodies[old].index < index) next_.push_back(bodies[old++]);
-    const bool known = old < bodies.size() && bodies[old].index == index;
+    const bool exists = old < bodies.size() && bodies[old].index == index;
     if (change == BodyChange::put) {
       TrackedBody body;
       body.index = std::uint32_t(index);
       if (!read_put(bits, body)) return false;
       next_.push_back(body);
-    } else if (!known) {
+    } else if (!exists) {
       return false;
     } else if (change == BodyChange::flags) {
       code_flags(bits, bodies[old]);
       next_.push_back(bodies[old]);
     }
-    if (known) ++old;
+    if (exists) ++old;
   }
   next_.insert(next_.end(), bodies.begin() + std::ptrdiff_t(old), bodies.end());
   bodies.swap(next_);

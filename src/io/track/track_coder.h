@@ -1,13 +1,13 @@
-// The bits of a frame, for writer and reader alike:
+// The bits of a frame, shared by writer and reader:
 //
-//   how many bodies changed, then each by ascending index: how far its index is from the last, what changed
+//   number of changed bodies, then for each, by ascending index: the gap from the last index, the kind of change
 //     removed
-//     put: generation, model, flags, pose by itself
+//     put: generation, model, flags, pose without history
 //     flags
-//   then the next pose of each body that is active and was not put, by ascending index
+//   then the next pose of each active body that was not put, by ascending index
 //
-// A body is active in the frames in which its pose is written: while it is awake, or was put elsewhere asleep. In a
-// keyframe every body is put.
+// A body is active in frames that store its pose: while it is awake, or when it was moved in its sleep. A keyframe
+// puts every body.
 #pragma once
 
 #include "io/track/pose_codec.h"
@@ -33,7 +33,7 @@ void code_change_count(Bits& bits, std::uint64_t& count) {
   code_count(bits, count, 0);
 }
 
-// `gap`: indices between this body's and that of the change before.
+// `gap`: indices between this body and the last changed one.
 template <class Bits>
 void code_change(Bits& bits, std::uint64_t& gap, BodyChange& change) {
   code_count(bits, gap, 4);
@@ -62,8 +62,8 @@ void code_put(Bits& bits, TrackedBody& body, RoundedPose& pose, PoseSteps steps)
   code_pose(bits, pose, steps);
 }
 
-// Takes the bits of a frame into `bodies`, which are those of the frame before (none for a keyframe). False if they
-// cannot be; what `bodies` hold is then of no use.
+// Decodes the bits of a frame into `bodies`, which must be those of the frame before (none for a keyframe). False if
+// the bits are invalid; `bodies` is then unusable.
 class FrameDecoder {
  public:
   FrameDecoder(std::uint32_t model_count, PoseSteps steps) : model_count_(model_count), steps_(steps) {}

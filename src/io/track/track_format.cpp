@@ -1,4 +1,4 @@
-// Writing and reading the chunks of a track. See track_format.h.
+// Writes and reads the chunks of a track. See track_format.h.
 #include "io/track/track_format.h"
 
 #include "io/codec/enum_counts.h"
@@ -10,7 +10,7 @@ namespace {
 
 Error bad_recording(const char* what) { return make_error(ErrorCode::invalid_data, "recording: %s", what); }
 
-// Fails the reader on what no shape can have.
+// The reader fails on values that no shape can have.
 float get_finite(ByteReader& in) {
   const auto value = in.get<float>();
   if (!is_finite(value)) in.fail();

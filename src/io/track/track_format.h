@@ -1,4 +1,4 @@
-// What the chunks of a track hold, byte by byte in docs/recording.md:
+// The payloads of the chunks of a track; docs/recording.md describes every byte:
 //
 //   track_start: version (u32), position bits (i8), orientation bits (u8), spare (u16), steps between frames (u32)
 //   track_geometry: a hull's points, a mesh's triangles or a height field's heights; numbered from 0 in the order of the file
@@ -7,7 +7,7 @@
 //   track_label: of a body: index (u32), generation (u16), name, colours
 //   track_note: key and text
 //
-// Geometry is stored as what it was cooked from, not as cooked: that may change from version to version.
+// Geometry is stored as its input, not cooked: cooked data may change from version to version.
 #pragma once
 
 #include "io/codec/bytes.h"
@@ -28,18 +28,18 @@ struct TrackStart {
   std::uint32_t frame_interval = 1;
 };
 void write_track_start(ByteWriter& out, const TrackStart& start);
-// Code none if the reader can go on with it.
+// Code none if the reader can read the track.
 Error read_track_start(std::span<const std::byte> payload, TrackStart& start);
 
 void write_track_geometry(ByteWriter& out, const Geometry& geometry);
 Result<Geometry> read_track_geometry(std::span<const std::byte> payload);
 
-// `geometry_number` is that of the shape's cooked geometry, if it has any.
+// `geometry_number` is that of the cooked geometry of the shape, if it has any.
 void write_track_shape(ByteWriter& out, const TrackShape& shape, std::uint32_t geometry_number);
-// A type and the shapes as bytes.
+// Writes a body type and encoded shapes.
 void write_track_model(ByteWriter& out, BodyType type, std::uint32_t shape_count,
                        std::span<const std::byte> shapes);
-// False if it cannot be.
+// False if the payload is invalid.
 bool read_track_model(std::span<const std::byte> payload, std::span<const Geometry> geometry,
                       TrackModel& model);
 

@@ -1,5 +1,5 @@
-// The player of tracks: lists the frames of a recording when it is opened, decodes them on demand. Only chunks of the track
-// are looked at, so that recordings of other versions can be, whose state this one does not know.
+// The player of pose tracks: lists the frames of a recording when it opens it, and decodes them on demand. It reads
+// track chunks only, so it opens recordings of other versions whose state it cannot read.
 #include "base/container/flat_map.h"
 #include "io/chunk/chunks.h"
 #include "io/track/track_coder.h"
@@ -13,12 +13,12 @@ namespace {
 
 struct ListedFrame {
   std::span<const std::byte> payload;
-  std::size_t keyframe = 0;  // the last one, this frame included
+  std::size_t keyframe = 0;  // the last one up to this frame
 };
 
-// Adds what `read` fills in, if it can.
+// Appends an item that `read` fills in. False if that fails.
 template <class Item, class Read>
-bool keep(std::vector<Item>& items, Read&& read) {
+bool append(std::vector<Item>& items, Read&& read) {
   Item item;
   const bool good = read(item);
   if (good) items.push_back(std::move(item));
@@ -35,13 +35,13 @@ struct PoseTrack::Reader {
   std::vector<Geometry> geometry;
   std::vector<TrackModel> models;
   std::vector<StoredLabel> labels;
-  FlatMap<std::uint32_t> label_of;  // by body: the last one it was given
+  FlatMap<std::uint32_t> label_of;  // by body: its last label
   std::vector<StoredNote> notes;
   std::vector<ListedFrame> frames;
   bool started = false;
   bool closed = false;
 
-  // What was decoded last: the bodies of frame `decoded`, if it is one.
+  // The bodies of frame `decoded`, or of none.
   static constexpr std::size_t kNone = SIZE_MAX;
   std::vector<TrackedBody> bodies;
   std::size_t decoded = kNone;
@@ -54,21 +54,21 @@ struct PoseTrack::Reader {
   std::vector<std::uint8_t> awake;
   std::vector<std::uint32_t> model_of;
 
-  bool take(const Chunk& chunk, Error& why);
-  bool take_start(const Chunk& chunk, Error& why);
-  bool take_frame(const Chunk& chunk);
+  bool read_chunk(const Chunk& chunk, Error& why);
+  bool read_start(const Chunk& chunk, Error& why);
+  bool read_frame_chunk(const Chunk& chunk);
   bool decode(std::size_t frame);
-  void show(std::size_t frame);
+  void publish(std::size_t frame);
 };
 
-bool PoseTrack::Reader::take_start(const Chunk& chunk, Error& why) {
+bool PoseTrack::Reader::read_start(const Chunk& chunk, Error& why) {
   if (started) return false;
   why = read_track_start(chunk.payload, start);
   started = why.ok();
   return started;
 }
 
-bool PoseTrack::Reader::take_frame(const Chunk& chunk) {
+bool PoseTrack::Reader::read_frame_chunk(const Chunk& chunk) {
   if (!started || chunk.payload.size() < kFrameHeadBytes) return false;
   const std::size_t number = frames.size();
   if (chunk.kind == ChunkKind::track_keyframe) {
@@ -80,30 +80,30 @@ bool PoseTrack::Reader::take_frame(const Chunk& chunk) {
   return true;
 }
 
-// False ends the reading: what came before can be looked at.
-bool PoseTrack::Reader::take(const Chunk& chunk, Error& why) {
+// False ends the reading. The frames before can be viewed.
+bool PoseTrack::Reader::read_chunk(const Chunk& chunk, Error& why) {
   if (closed) return false;
   switch (chunk.kind) {
     case ChunkKind::track_start:
-      return take_start(chunk, why);
+      return read_start(chunk, why);
     case ChunkKind::track_keyframe:
     case ChunkKind::track_frame:
-      return take_frame(chunk);
+      return read_frame_chunk(chunk);
     case ChunkKind::track_geometry: {
       const Result<Geometry> read = read_track_geometry(chunk.payload);
       if (read) geometry.push_back(*read);
       return read.has_value();
     }
     case ChunkKind::track_model:
-      return keep(models,
-                  [&](TrackModel& model) { return read_track_model(chunk.payload, geometry, model); });
+      return append(models,
+                    [&](TrackModel& model) { return read_track_model(chunk.payload, geometry, model); });
     case ChunkKind::track_label:
-      if (!keep(labels, [&](StoredLabel& label) { return read_track_label(chunk.payload, label); }))
+      if (!append(labels, [&](StoredLabel& label) { return read_track_label(chunk.payload, label); }))
         return false;
       label_of.insert(label_key(labels.back().body), std::uint32_t(labels.size() - 1));
       return true;
     case ChunkKind::track_note:
-      return keep(notes, [&](StoredNote& note) { return read_track_note(chunk.payload, note); });
+      return append(notes, [&](StoredNote& note) { return read_track_note(chunk.payload, note); });
     case ChunkKind::end:
       closed = true;
       return true;
@@ -112,7 +112,7 @@ bool PoseTrack::Reader::take(const Chunk& chunk, Error& why) {
   }
 }
 
-// Brings `bodies` to the frame, from where they are or from the keyframe before it.
+// Decodes `bodies` up to the frame, from the present frame or from a keyframe.
 bool PoseTrack::Reader::decode(std::size_t frame) {
   const std::size_t keyframe = frames[frame].keyframe;
   std::size_t next = decoded != kNone && decoded >= keyframe && decoded <= frame ? decoded + 1 : keyframe;
@@ -126,7 +126,7 @@ bool PoseTrack::Reader::decode(std::size_t frame) {
   return true;
 }
 
-void PoseTrack::Reader::show(std::size_t frame) {
+void PoseTrack::Reader::publish(std::size_t frame) {
   position = frame;
   head = read_frame_head(frames[frame].payload);
   ids.clear();
@@ -153,7 +153,7 @@ Result<PoseTrack> PoseTrack::open(std::vector<std::byte> bytes) {
   Error why = chunks.read_header();
   if (why) return why;
   Chunk chunk;
-  while (chunks.next(chunk) && reader->take(chunk, why)) {
+  while (chunks.next(chunk) && reader->read_chunk(chunk, why)) {
   }
   if (why) return why;
   if (reader->frames.empty()) {
@@ -166,7 +166,7 @@ Result<PoseTrack> PoseTrack::open(std::vector<std::byte> bytes) {
   if (!reader->decode(0)) {
     return make_error(ErrorCode::invalid_data, "recording: its first frame holds what it cannot");
   }
-  reader->show(0);
+  reader->publish(0);
   return PoseTrack(std::move(reader));
 }
 
@@ -207,7 +207,7 @@ Error PoseTrack::seek(std::size_t frame) {
                       "seek: frame %llu, or one that it follows from, holds what it cannot",
                       static_cast<unsigned long long>(frame));
   }
-  reader_->show(frame);
+  reader_->publish(frame);
   return {};
 }
 

@@ -20,43 +20,43 @@ using scenes::step_scene;
 
 constexpr RecordOptions kPosesOnly{.commands = false};
 
-// What a world looked like in one frame.
-struct Look {
+// A copy of the state that one frame shows.
+struct FrameCopy {
   std::uint64_t step = 0;
   double time = 0;
   std::vector<BodyId> ids;
   std::vector<Pose> poses;
   std::vector<std::uint8_t> awake;
 };
-Look look_at(const World& world) {
-  Look look{world.step_count(), world.time(), {}, {}, {}};
+FrameCopy copy_frame(const World& world) {
+  FrameCopy expected{world.step_count(), world.time(), {}, {}, {}};
   const BodyColumns bodies = world.bodies();
-  look.ids.assign(bodies.ids.begin(), bodies.ids.end());
-  look.poses.assign(bodies.poses.begin(), bodies.poses.end());
-  for (const BodyId id : look.ids) look.awake.push_back(world.is_awake(id));
-  return look;
+  expected.ids.assign(bodies.ids.begin(), bodies.ids.end());
+  expected.poses.assign(bodies.poses.begin(), bodies.poses.end());
+  for (const BodyId id : expected.ids) expected.awake.push_back(world.is_awake(id));
+  return expected;
 }
 
 double angle_between(Quat a, Quat b) {
   return double(length(to_rotation_vector(normalized(conjugate(a) * b))));
 }
 
-void expect_same(const TrackFrame& frame, const Look& look, const TrackAccuracy& accuracy) {
-  ASSERT_EQ(frame.step, look.step);
-  ASSERT_EQ(frame.time, look.time);
-  ASSERT_EQ(frame.ids.size(), look.ids.size());
-  ASSERT_EQ(frame.poses.size(), look.ids.size());
-  ASSERT_EQ(frame.awake.size(), look.ids.size());
-  ASSERT_EQ(frame.models.size(), look.ids.size());
-  for (std::size_t i = 0; i < look.ids.size(); ++i) {
-    ASSERT_EQ(frame.ids[i].index, look.ids[i].index);
-    ASSERT_EQ(frame.ids[i].generation, look.ids[i].generation);
-    ASSERT_EQ(frame.awake[i], look.awake[i]) << i;
+void expect_same(const TrackFrame& frame, const FrameCopy& expected, const TrackAccuracy& accuracy) {
+  ASSERT_EQ(frame.step, expected.step);
+  ASSERT_EQ(frame.time, expected.time);
+  ASSERT_EQ(frame.ids.size(), expected.ids.size());
+  ASSERT_EQ(frame.poses.size(), expected.ids.size());
+  ASSERT_EQ(frame.awake.size(), expected.ids.size());
+  ASSERT_EQ(frame.models.size(), expected.ids.size());
+  for (std::size_t i = 0; i < expected.ids.size(); ++i) {
+    ASSERT_EQ(frame.ids[i].index, expected.ids[i].index);
+    ASSERT_EQ(frame.ids[i].generation, expected.ids[i].generation);
+    ASSERT_EQ(frame.awake[i], expected.awake[i]) << i;
     for (int axis = 0; axis < 3; ++axis)
-      ASSERT_LE(std::abs(frame.poses[i].position[axis] - look.poses[i].position[axis]), accuracy.position)
+      ASSERT_LE(std::abs(frame.poses[i].position[axis] - expected.poses[i].position[axis]), accuracy.position)
           << i;
-    // The angle itself is found in floats here.
-    ASSERT_LE(angle_between(frame.poses[i].orientation, look.poses[i].orientation),
+    // This angle itself has the precision of float.
+    ASSERT_LE(angle_between(frame.poses[i].orientation, expected.poses[i].orientation),
               accuracy.orientation + 1e-6)
         << i;
   }
@@ -64,13 +64,13 @@ void expect_same(const TrackFrame& frame, const Look& look, const TrackAccuracy&
 
 struct Recorded {
   std::vector<std::byte> bytes;
-  std::vector<Look> looks;
+  std::vector<FrameCopy> frames;
 };
 Recorded record(const Scene& scene, int steps, const RecordOptions& options = {}, const WorldDef& def = {}) {
   Recorded recorded;
   recorded.bytes =
       scenes::record_scene(scene, steps, {.options = options, .world = def},
-                           [&](const World& world) { recorded.looks.push_back(look_at(world)); });
+                           [&](const World& world) { recorded.frames.push_back(copy_frame(world)); });
   EXPECT_FALSE(recorded.bytes.empty());
   return recorded;
 }
@@ -87,9 +87,9 @@ TEST_P(TrackOfScene, ShowsEveryFrameForwardBackAndAnywhere) {
   const auto expect_frame = [&](std::size_t frame) {
     ASSERT_EQ(track->seek(frame).code, ErrorCode::none);
     ASSERT_EQ(track->position(), frame);
-    ASSERT_EQ(track->step(frame), recorded.looks[frame].step);
-    ASSERT_EQ(track->time(frame), recorded.looks[frame].time);
-    expect_same(track->frame(), recorded.looks[frame], track->accuracy());
+    ASSERT_EQ(track->step(frame), recorded.frames[frame].step);
+    ASSERT_EQ(track->time(frame), recorded.frames[frame].time);
+    expect_same(track->frame(), recorded.frames[frame], track->accuracy());
   };
   for (std::size_t i = 0; i <= 200; ++i) ASSERT_NO_FATAL_FAILURE(expect_frame(i)) << i;
   for (std::size_t i = 201; i-- > 0;) ASSERT_NO_FATAL_FAILURE(expect_frame(i)) << i;
@@ -105,16 +105,17 @@ TEST_P(TrackOfScene, HasTheSameBytesForAnyThreadsAndWidth) {
 INSTANTIATE_TEST_SUITE_P(Scenes, TrackOfScene, testing::ValuesIn(kScenes),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
-// What only trembles is not rounded anew in each frame, and its bits are those of before; nobody may see that.
+// Trembling poses are not rounded in each frame, and their bits are reused. The poses read must be the same.
 TEST(Track, ShowsEachPoseRoundedByItselfWhileAPileComesToRest) {
   const Recorded recorded = record(kScenes[1], 500, kPosesOnly, {.sleeping = false});
   Result<PoseTrack> track = PoseTrack::open(recorded.bytes);
   ASSERT_TRUE(track);
-  ASSERT_EQ(track->frame_count(), recorded.looks.size());
-  for (std::size_t f = 0; f < recorded.looks.size(); ++f) {
+  ASSERT_EQ(track->frame_count(), recorded.frames.size());
+  for (std::size_t f = 0; f < recorded.frames.size(); ++f) {
     ASSERT_EQ(track->seek(f).code, ErrorCode::none);
-    for (std::size_t i = 0; i < recorded.looks[f].poses.size(); ++i)
-      ASSERT_EQ(track->frame().poses[i], unrounded(round_pose(recorded.looks[f].poses[i], {}), {})) << f << ' ' << i;
+    for (std::size_t i = 0; i < recorded.frames[f].poses.size(); ++i)
+      ASSERT_EQ(track->frame().poses[i], unrounded(round_pose(recorded.frames[f].poses[i], {}), {}))
+          << f << ' ' << i;
   }
 }
 
@@ -179,10 +180,10 @@ TEST(Track, ShowsBodiesThatComeGoChangeAndArePutElsewhere) {
   ASSERT_FALSE(world.is_awake(sleeper));
   MemorySink sink;
   Recorder recorder(world, sink, kPosesOnly);
-  std::vector<Look> looks = {look_at(world)};
+  std::vector<FrameCopy> frames = {copy_frame(world)};
   const auto step = [&] {
     world.step(1.0f / 60);
-    looks.push_back(look_at(world));
+    frames.push_back(copy_frame(world));
   };
   step();
   const BodyId ball = scenes::add_moving(world, {-3, 4, 0}, Sphere{0.25f});
@@ -209,17 +210,17 @@ TEST(Track, ShowsBodiesThatComeGoChangeAndArePutElsewhere) {
   Result<PoseTrack> opened = PoseTrack::open(sink.bytes);
   ASSERT_TRUE(opened) << opened.error().message;
   PoseTrack& track = *opened;
-  ASSERT_EQ(track.frame_count(), looks.size());
-  for (std::size_t i = 0; i < 2 * looks.size(); ++i) {
-    const std::size_t frame = i < looks.size() ? i : 2 * looks.size() - 1 - i;
+  ASSERT_EQ(track.frame_count(), frames.size());
+  for (std::size_t i = 0; i < 2 * frames.size(); ++i) {
+    const std::size_t frame = i < frames.size() ? i : 2 * frames.size() - 1 - i;
     ASSERT_EQ(track.seek(frame).code, ErrorCode::none);
-    ASSERT_NO_FATAL_FAILURE(expect_same(track.frame(), looks[frame], track.accuracy())) << frame;
+    ASSERT_NO_FATAL_FAILURE(expect_same(track.frame(), frames[frame], track.accuracy())) << frame;
   }
   const auto model = [&](std::size_t frame, BodyId body) -> const TrackModel& {
     EXPECT_EQ(track.seek(frame).code, ErrorCode::none);
-    const TrackFrame shown = track.frame();
-    for (std::size_t i = 0; i < shown.ids.size(); ++i) {
-      if (shown.ids[i].index == body.index) return track.models()[shown.models[i]];
+    const TrackFrame view = track.frame();
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      if (view.ids[i].index == body.index) return track.models()[view.models[i]];
     }
     ADD_FAILURE() << "no such body in frame " << frame;
     return track.models()[0];
@@ -237,7 +238,7 @@ TEST(Track, ShowsBodiesThatComeGoChangeAndArePutElsewhere) {
   EXPECT_EQ(model(8, other).type, BodyType::kinematic);
   EXPECT_EQ(model(9, other).type, BodyType::fixed);
   EXPECT_TRUE(model(9, other).shapes.empty());
-  // The number of a set changes when, and only when, the set does.
+  // The version of the set changes if and only if the set changes.
   const auto version = [&](std::size_t frame) {
     EXPECT_EQ(track.seek(frame).code, ErrorCode::none);
     return track.frame().set_version;
@@ -264,7 +265,7 @@ TEST(Track, HoldsEveryKindOfShape) {
   ASSERT_TRUE(track) << track.error().message;
   const TrackFrame frame = track->frame();
   ASSERT_EQ(frame.ids.size(), 17u);
-  for (std::size_t i = 0; i < frame.ids.size(); ++i) {
+  for (std::size_t i = 0; i < view.ids.size(); ++i) {
     const BodyId id = world.bodies().ids[i];
     const TrackModel& model = track->models()[frame.models[i]];
     EXPECT_EQ(model.type, world.type(id));
@@ -303,7 +304,7 @@ TEST(Track, TellsNamesColoursAndNotes) {
   Result<PoseTrack> opened = PoseTrack::open(sink.bytes);
   ASSERT_TRUE(opened);
   const PoseTrack track = *std::move(opened);
-  const TrackFrame frame = track.frame();
+  const TrackFrame view = track.frame();
   EXPECT_EQ(track.label(frame.ids[0]).name, "a wooden box");
   ASSERT_EQ(track.label(frame.ids[0]).colors.size(), 2u);
   EXPECT_EQ(track.label(frame.ids[0]).colors[1], (TrackColor{1, 2, 3}));
@@ -347,7 +348,7 @@ TEST(Track, GoesOnWhenTheWorldIsPutBack) {
   MemorySink sink;
   Recorder recorder(world, sink);
   Rollback ring(4);
-  std::vector<Look> looks = {look_at(world)};
+  std::vector<FrameCopy> frames = {copy_frame(world)};
   for (int i = 0; i < 30; ++i) {
     if (i == 10) ring.save(world);
     if (i == 12) scenes::add_moving(world, {0, 30, 0}, Sphere{});
@@ -355,15 +356,15 @@ TEST(Track, GoesOnWhenTheWorldIsPutBack) {
       ASSERT_TRUE(ring.restore(world, 10));
     }
     step_scene(kScenes[0], world, i);
-    looks.push_back(look_at(world));
+    frames.push_back(copy_frame(world));
   }
   ASSERT_TRUE(recorder.finish());
   Result<PoseTrack> track = PoseTrack::open(sink.bytes);
   ASSERT_TRUE(track);
-  ASSERT_EQ(track->frame_count(), looks.size());
-  for (std::size_t i = 0; i < looks.size(); ++i) {
+  ASSERT_EQ(track->frame_count(), frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
     ASSERT_EQ(track->seek(i).code, ErrorCode::none);
-    ASSERT_NO_FATAL_FAILURE(expect_same(track->frame(), looks[i], track->accuracy())) << i;
+    ASSERT_NO_FATAL_FAILURE(expect_same(track->frame(), frames[i], track->accuracy())) << i;
   }
   EXPECT_LT(track->step(21), track->step(20));
 }
@@ -386,7 +387,7 @@ TEST(Track, IsReadUpToTheLastWholeFrameWhereverItIsCut) {
     ASSERT_GE(cut->frame_count(), frames_before);
     frames_before = cut->frame_count();
     ASSERT_EQ(cut->seek(frames_before - 1).code, ErrorCode::none);
-    expect_same(cut->frame(), recorded.looks[frames_before - 1], whole.accuracy());
+    expect_same(cut->frame(), recorded.frames[frames_before - 1], whole.accuracy());
   }
   EXPECT_GT(refused, 10u);
   EXPECT_GT(frames_before, 60u);

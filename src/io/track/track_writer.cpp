@@ -1,4 +1,4 @@
-// From a world to frames. See track_writer.h and track_coder.h.
+// Encodes frames of a world. See track_writer.h and track_coder.h.
 #include "io/track/track_writer.h"
 
 #include "base/hash.h"
@@ -32,7 +32,7 @@ std::uint32_t TrackWriter::model_of(const RigidWorld& w, std::uint32_t body, Emi
   for (const ShapeId id : w.bodies.shapes[body]) {
     TrackShape shape;
     shape.geometry = w.shapes.geometry[id.index];
-    shape.local = w.shapes.places[id.index];
+    shape.local = w.shapes.body_from_shape[id.index];
     shape.material_id = w.shapes.materials[id.index].id;
     shape.sensor = w.shapes.proxies[id.index].sensor != 0;
     write_track_shape(shapes, shape, geometry_number(shape.geometry, emit));
@@ -47,40 +47,43 @@ std::uint32_t TrackWriter::model_of(const RigidWorld& w, std::uint32_t body, Emi
   return number;
 }
 
-void TrackWriter::round_again(const BodyPose& place, const BodyMass& mass, WrittenBody& written) {
-  constexpr int kSameToStay = 8;  // frames; what is still on its way, slowly, would have to be rounded soon all the same
-  const Pose pose = origin_pose(place, mass);
+void TrackWriter::update_rounded_pose(const BodyPose& body_pose, const BodyMass& mass, WrittenBody& written) {
+  constexpr int kMinUnchangedFrames =
+      8;  // frames; a slowly moving body would need a new rounding soon anyway
+  const Pose pose = origin_pose(body_pose, mass);
   if (is_finite(pose)) {
     const RoundedPose next = round_pose(pose, start_.steps);
     if (!(next == written.next)) {
       written.next = next;
-      written.same = 0;
+      written.unchanged_frames = 0;
       written.settled = false;
     }
   }
-  written.slack =
-      written.same < kSameToStay ? RoundingTolerance{} : find_rounding_tolerance(place, mass, start_.steps);
-  written.seen = place;
-  written.seen_mass_center = mass.center;
+  written.tolerance = written.unchanged_frames < kMinUnchangedFrames
+                          ? RoundingTolerance{}
+                          : find_rounding_tolerance(body_pose, mass, start_.steps);
+  written.reference = body_pose;
+  written.reference_mass_center = mass.center;
 }
 
-void TrackWriter::look_at_known(const WorldState& state, WrittenBody& written) {
+void TrackWriter::update_known_body(const WorldState& state, WrittenBody& written) {
   const BodyStore& bodies = state.rigid.bodies;
   const std::uint32_t index = written.body.index;
-  const BodyPose& place = bodies.places[index];
+  const BodyPose& body_pose = bodies.poses[index];
   const BodyMass& mass = bodies.masses[index];
   const bool awake = is_simulated(bodies.flags[index]);
-  ++written.same;
-  if (!is_within(place, written.seen, written.slack) || !(mass.center == written.seen_mass_center))
-    round_again(place, mass, written);
-  written.moved = awake || written.same == 0;
+  ++written.unchanged_frames;
+  if (!is_within(body_pose, written.reference, written.tolerance) ||
+      !(mass.center == written.reference_mass_center))
+    update_rounded_pose(body_pose, mass, written);
+  written.moved = awake || written.unchanged_frames == 0;
   if (awake == written.body.awake && written.moved == written.body.active) return;
   written.body.awake = awake;
   written.body.active = written.moved;
   changes_.push_back({index, BodyChange::flags});
 }
 
-void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit) {
+void TrackWriter::update_body(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit) {
   const BodyStore& bodies = state.rigid.bodies;
   WrittenBody& written = bodies_[index];
   written.moved = false;
@@ -92,25 +95,25 @@ void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key
     return;
   }
   const auto generation = std::uint16_t(bodies.ids.generation(index));
-  const bool known = written.present && written.body.generation == generation;
+  const bool was_written = written.present && written.body.generation == generation;
   const std::uint32_t model =
-      known && !models_stale_ ? written.body.model : model_of(state.rigid, index, emit);
-  const bool same = known && model == written.body.model;
+      was_written && !models_stale_ ? written.body.model : model_of(state.rigid, index, emit);
+  const bool same = was_written && model == written.body.model;
   if (!same) ++set_version_;
   if (same && !key) {
-    look_at_known(state, written);
+    update_known_body(state, written);
     return;
   }
   written.present = true;
-  written.same = 0;
+  written.unchanged_frames = 0;
   written.settled = false;
-  written.slack = {};
-  written.seen = bodies.places[index];
-  written.seen_mass_center = bodies.masses[index].center;
+  written.tolerance = {};
+  written.reference = bodies.poses[index];
+  written.reference_mass_center = bodies.masses[index].center;
   const Pose pose = origin_pose(bodies, index);
   if (is_finite(pose)) {
     written.next = round_pose(pose, start_.steps);
-  } else if (!known) {
+  } else if (!was_written) {
     written.next = round_pose({}, start_.steps);
   }
   written.body.index = index;
@@ -121,31 +124,31 @@ void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key
   changes_.push_back({index, BodyChange::put});
 }
 
-// Where neither the pose nor what is known of it changes any more, the bits will be the same as long as the pose is.
+// If neither the pose nor its history changes any more, the bits stay the same as long as the pose does.
 void TrackWriter::settle(WrittenBody& written) const {
   BitWriter bits;
   PoseHistory history = written.body.pose;
   code_next_pose(bits, written.next, history, start_.steps);
-  written.rest_size = int(bits.size());
-  if (written.rest_size > 64) return;
-  std::byte room[8] = {};
+  written.settled_size = int(bits.size());
+  if (written.settled_size > 64) return;
+  std::byte buffer[8] = {};
   const std::vector<std::byte> bytes = bits.take();
-  std::copy(bytes.begin(), bytes.end(), room);
-  written.rest = load_little<std::uint64_t>(room);
+  std::copy(bytes.begin(), bytes.end(), buffer);
+  written.settled_bits = load_little<std::uint64_t>(buffer);
   written.settled = true;
 }
 
 void TrackWriter::write_next(BitWriter& bits, WrittenBody& written) {
   if (written.settled) {
-    bits.code_bits(written.rest, written.rest_size);
+    bits.code_bits(written.settled_bits, written.settled_size);
     return;
   }
   PoseHistory& history = written.body.pose;
-  const bool rests = written.same > 0 && history.before == history.now;
+  const bool is_at_rest = written.unchanged_frames > 0 && history.before == history.now;
   const std::array sizes = std::to_array(history.sizes);
   code_next_pose(bits, written.next, history, start_.steps);
   advance(history, written.next, start_.steps);
-  if (rests && sizes == std::to_array(history.sizes)) settle(written);
+  if (is_at_rest && sizes == std::to_array(history.sizes)) settle(written);
 }
 
 std::vector<std::byte> TrackWriter::frame_bits() {
@@ -171,10 +174,10 @@ void TrackWriter::frame(const WorldState& state, EmitChunk emit) {
   const bool key = frames_since_key_ >= kKeyframeInterval;
   frames_since_key_ = key ? 1 : frames_since_key_ + 1;
   changes_.clear();
-  // Slots are never given back, but a world may be put back to when it had fewer.
+  // The number of slots never falls within a world, but a restored state may have fewer.
   const std::size_t slots = state.rigid.bodies.ids.capacity();
   if (bodies_.size() < slots) bodies_.resize(slots);
-  for (std::uint32_t i = 0; i < bodies_.size(); ++i) look_at(state, i, key, emit);
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) update_body(state, i, key, emit);
   models_stale_ = false;
   ByteWriter payload;
   write_frame_head(payload, {state.step_count, state.time, set_version_});

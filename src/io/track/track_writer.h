@@ -1,5 +1,5 @@
-// Writes the track of a world's recording: looks at the world after a step and puts out the chunks of a frame. It never
-// changes the world. The reading side is track_reader.cpp, the public one <gyre/track.h>.
+// Writes the track of a recording: reads the world after a step and emits the chunks of a frame. It never changes the
+// world. The reader is track_reader.cpp, the public side <gyre/track.h>.
 #pragma once
 
 #include "base/container/flat_map.h"
@@ -20,34 +20,34 @@ class TrackWriter {
 
   void begin(EmitChunk emit) const;
   void frame(const WorldState& state, EmitChunk emit);
-  // Shapes or types of bodies that exist may have changed.
+  // Shapes or types of existing bodies may have changed.
   void models_changed() { models_stale_ = true; }
-  // The next frame does not follow from the one before.
+  // The next frame does not continue from the last one.
   void jumped() { frames_since_key_ = kKeyframeInterval, models_stale_ = true; }
 
  private:
   struct WrittenBody {
     TrackedBody body;
     bool present = false;
-    bool moved = false;    // `next` is to be written
-    int same = 0;          // frames since `next` was another
-    bool settled = false;  // and so are its bits, `rest`, until it is not
-    int rest_size = 0;
-    std::uint64_t rest = 0;
+    bool moved = false;        // `next` must be written
+    int unchanged_frames = 0;  // frames since `next` changed
+    bool settled = false;      // the bits of `next` are `settled_bits` until it changes
+    int settled_size = 0;
+    std::uint64_t settled_bits = 0;
     RoundedPose next;
-    // `next` is the rounded pose wherever the body is so near to where it was seen.
-    RoundingTolerance slack;
-    BodyPose seen{};
-    Vec3 seen_mass_center{};
+    // `next` is the rounded pose as long as the body is within `tolerance` of the reference pose.
+    RoundingTolerance tolerance;
+    BodyPose reference{};
+    Vec3 reference_mass_center{};
   };
   struct Change {
     std::uint32_t index;
     BodyChange kind;
   };
 
-  void look_at(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit);
-  void look_at_known(const WorldState& state, WrittenBody& written);
-  void round_again(const BodyPose& place, const BodyMass& mass, WrittenBody& written);
+  void update_body(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit);
+  void update_known_body(const WorldState& state, WrittenBody& written);
+  void update_rounded_pose(const BodyPose& body_pose, const BodyMass& mass, WrittenBody& written);
   void write_next(BitWriter& bits, WrittenBody& written);
   void settle(WrittenBody& written) const;
   std::vector<std::byte> frame_bits();
@@ -58,7 +58,7 @@ class TrackWriter {
   std::vector<WrittenBody> bodies_;          // by index
   std::vector<Change> changes_;              // of the present frame, by index
   FlatMap<std::uint32_t> geometry_numbers_;  // by content hash
-  FlatMap<std::uint32_t> model_numbers_;     // by hash of what was written
+  FlatMap<std::uint32_t> model_numbers_;     // by hash of the written model
   bool models_stale_ = false;
   std::uint64_t frames_since_key_ = kKeyframeInterval;
   std::uint64_t set_version_ = 0;

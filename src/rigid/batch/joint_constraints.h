@@ -31,7 +31,7 @@ JointOffsets joint_offsets(const RigidWorld& w, std::uint32_t slot);
 // Where a body's end of a joint hangs: its centre of mass, or a point of the world.
 inline const DVec3& joint_end_position(const BodyStore& bodies, std::int32_t body,
                                        const DVec3& world_anchor) {
-  return body == kNoBody ? world_anchor : bodies.places[std::size_t(body)].center;
+  return body == kNoBody ? world_anchor : bodies.poses[std::size_t(body)].center;
 }
 // JointOffsets::offset alone.
 inline Vec3 joint_offset(const RigidWorld& w, const JointRecord& joint) {

@@ -24,7 +24,7 @@ const SurfaceRule* find_rule(const RigidWorld& w, std::uint16_t id) {
 }
 
 Pose pose_of_shape(const RigidWorld& w, std::uint32_t shape) {
-  return origin_pose(w.bodies, w.shapes.bodies[shape]) * w.shapes.places[shape];
+  return origin_pose(w.bodies, w.shapes.bodies[shape]) * w.shapes.body_from_shape[shape];
 }
 
 // The triangle of a mesh or height field nearest to a place, as the user numbers it.
@@ -44,7 +44,7 @@ DVec3 deepest_place(const RigidWorld& w, const Contact& contact, const Manifold&
   for (int k = 1; k < manifold.count; ++k) {
     if (manifold.points[k].separation < manifold.points[deepest].separation) deepest = k;
   }
-  return w.bodies.places[contact.body_a].center + manifold.points[deepest].from_a;
+  return w.bodies.poses[contact.body_a].center + manifold.points[deepest].from_a;
 }
 
 // One side of a contact.
@@ -70,7 +70,7 @@ Side side_of(const RigidWorld& w, std::uint32_t shape, const Contact& contact, c
 }
 
 Vec3 turn_to_world(const RigidWorld& w, std::uint32_t body, Vec3 v) {
-  return rotate(w.bodies.places[body].orientation, v);
+  return rotate(w.bodies.poses[body].orientation, v);
 }
 
 float size_of(const RigidWorld& w, std::uint32_t shape, const Contact& contact) {

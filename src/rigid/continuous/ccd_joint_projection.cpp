@@ -32,10 +32,10 @@ void store_poses(RigidWorld& w, const ProjectionGroup& group, const ProjectionBo
     const Quat orientation = bodies.orientations[body];
     const Vec3 displacement = bodies.motion[body].delta_position - motion.delta_position;
     const Vec3 rotation = to_rotation_vector(orientation * conjugate(w.bodies.orientations[body]));
-    if (is_fast(displacement, rotation, mass.reach, mass.size)) moved.push_back(body);
+    if (is_fast(displacement, rotation, mass.bounding_radius, mass.size)) moved.push_back(body);
     motion.delta_position = bodies.motion[body].delta_position + Vec3{};
     motion.delta_rotation =
-        to_rotation_vector(orientation * conjugate(w.bodies.places[body].orientation)) + Vec3{};
+        to_rotation_vector(orientation * conjugate(w.bodies.poses[body].orientation)) + Vec3{};
     w.bodies.orientations[body] = orientation;
     w.bodies.inertia[body] = world_inertia(mass, w.bodies.flags[body], orientation);
   }

@@ -45,7 +45,7 @@ class ChainsAfterImpact : public ::testing::Test {
       ASSERT_TRUE(gyre::project_by_rows(world_, group, bodies_, false, arena_));
   }
   DVec3 place(std::size_t body) const {
-    return world_.bodies.places[body].center + DVec3(bodies_.motion[body].delta_position);
+    return world_.bodies.poses[body].center + DVec3(bodies_.motion[body].delta_position);
   }
   // The gap of the joint, and the swing of the cone.
   double gap(const JointRecord& joint) const {
@@ -85,9 +85,9 @@ class ChainsAfterImpact : public ::testing::Test {
     mass.mass = 1.0f, mass.inverse_mass = 1.0f;
     mass.inertia = {.xx = 0.005f, .yy = 0.015f, .zz = 0.015f, .xy = 0, .xz = 0, .yz = 0};
     mass.inverse_inertia = inverse(mass.inertia);
-    mass.reach = kHalf, mass.size = 0.05f;
+    mass.bounding_radius = kHalf, mass.size = 0.05f;
     store.masses.set(body, mass);
-    store.places[body] = {at, {}};
+    store.poses[body] = {at, {}};
     const float share = 1.0f + spread_ * float(body / kLinks);
     store.motion[body].delta_position = share * Vec3{0, 0.1f + 0.002f * float(body % kLinks), 0.01f};
     store.motion[body].delta_rotation = share * Vec3{0.05f, 0, 0};

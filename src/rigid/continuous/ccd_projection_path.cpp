@@ -49,7 +49,7 @@ void ProjectionPath::find_displacements() const {
     const Quat end = w_->bodies.orientations[member.body];
     member.start_displacement = first * delta_position;
     member.start_orientation =
-        normalized(from_rotation_vector(first * delta_rotation) * w_->bodies.places[member.body].orientation);
+        normalized(from_rotation_vector(first * delta_rotation) * w_->bodies.poses[member.body].orientation);
     member.is_in_motion = member.moves || delta_position != Vec3{} || delta_rotation != Vec3{};
     member.fixed = false;
     member.remaining_displacement = member.remaining_rotation = {};
@@ -184,7 +184,7 @@ bool ProjectionPath::fix_displaced_bodies() const {
     const Quat planned = from_rotation_vector(share * member.remaining_rotation) * member.start_orientation;
     const Vec3 rotation = to_rotation_vector(bodies_.orientations[member.body] * conjugate(planned));
     const BodyMass& mass = w_->bodies.masses[member.body];
-    member.fixed = length(displacement) + length(rotation) * mass.reach > kMaxHaltedDisplacement * mass.size;
+    member.fixed = length(displacement) + length(rotation) * mass.bounding_radius > kMaxHaltedDisplacement * mass.size;
     any = any || member.fixed;
   }
   return any;

@@ -34,7 +34,7 @@ void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
 
 // The centre of mass after the step.
 DVec3 center_of_mass_of(const RigidWorld& w, std::uint32_t body) {
-  return w.bodies.places[body].center + DVec3(w.bodies.motion[body].delta_position);
+  return w.bodies.poses[body].center + DVec3(w.bodies.motion[body].delta_position);
 }
 
 // Removes the closing speed of a halted body against its blocker: first by an impulse without restitution at
@@ -92,10 +92,10 @@ class BodyImpulse {
 float relative_displacement_bound(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame,
                                   std::uint32_t body) {
   const Sweep own = sweep_of_body(w.bodies, body);
-  const Vec3 apart = difference(w.bodies.places[body].center, w.bodies.places[seen_from].center);
+  const Vec3 apart = difference(w.bodies.poses[body].center, w.bodies.poses[seen_from].center);
   return length(own.translation - frame.translation - cross(frame.rotation, apart)) +
          0.5f * length_squared(frame.rotation) * length(apart) +
-         length(own.rotation - frame.rotation) * w.bodies.masses[body].reach;
+         length(own.rotation - frame.rotation) * w.bodies.masses[body].bounding_radius;
 }
 
 // Kinematic bodies run over bodies in their path, however slowly: such bodies are fast relative to them,
@@ -159,7 +159,7 @@ class Overrun {
 std::size_t count_halted_with_joints(const RigidWorld& w, const ContinuousScratch& scratch) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < scratch.fast.size(); ++k)
-    count += scratch.kept[k].fraction < 1.0f && !joints_of(w.bodies, scratch.fast[k].body).empty() ? 1 : 0;
+    count += scratch.saved[k].fraction < 1.0f && !joints_of(w.bodies, scratch.fast[k].body).empty() ? 1 : 0;
   return count;
 }
 
@@ -198,14 +198,14 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
     const std::uint32_t i = w.bodies.awake[n];
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
-    return is_fast(motion.delta_position, motion.delta_rotation, mass.reach, mass.size) &&
+    return is_fast(motion.delta_position, motion.delta_rotation, mass.bounding_radius, mass.size) &&
            is_movable(w.bodies.flags[i]) && !w.bodies.shapes[i].empty();
   };
   for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), is_moving_fast).list) {
     const std::uint32_t i = w.bodies.awake[n];
     // A body with contacts must not be halted in the air: it keeps a part of its displacement, and the
     // contacts respond.
-    const float min_fraction = w.bodies.flags[i].touched != 0 ? kMinProgress : 0.0f;
+    const float min_fraction = w.bodies.flags[i].constraint_use != 0 ? kMinProgress : 0.0f;
     scratch.fast.push_back(
         {i, w.bodies.flags[i].continuous != 0, min_fraction, joints_of(w.bodies, i).empty(), false});
   }
@@ -233,7 +233,7 @@ void remove_unblocked(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
   for (std::size_t k = 0; k < fast.size(); ++k) bodies[k] = fast[k].body;
   for_blocks(tasks, int(fast.size()), kBodiesPerBlock, [&](int begin, int end, int) {
     const std::size_t first = std::size_t(begin), count = std::size_t(end - begin);
-    find_staying(w, bodies.subspan(first, count), stay.subspan(first, count));
+    find_within_fat_boxes(w, bodies.subspan(first, count), stay.subspan(first, count));
   });
   const auto is_free = [&](std::size_t k) {
     if (!stay[k] || fast[k].continuous || fast[k].only_crosses) return false;
@@ -281,8 +281,8 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
                               w.surface_rules.empty() ? nullptr : &one_way,
                               scratch.gates,
                               &contacts};
-  scratch.kept.resize(scratch.fast.size());
-  scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
+  scratch.saved.resize(scratch.fast.size());
+  scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.saved);
 }
 
 // The angular velocity of a body that was moved back, from its angular momentum at the earlier orientation;

@@ -8,16 +8,15 @@ namespace gyre {
 
 namespace {
 
-BodyStance stance_of(const RigidWorld& w, std::uint32_t body) {
+BodyState state_of(const RigidWorld& w, std::uint32_t body) {
   const BodyMotion& motion = w.bodies.motion[body];
-  return {w.bodies.places[body].center + motion.delta_position,
-          normalized(to_double(w.bodies.orientations[body])), DVec3(motion.linear_velocity),
-          DVec3(motion.angular_velocity)};
+  return {w.bodies.poses[body].center + motion.delta_position, normalized(to_double(w.bodies.orientations[body])),
+          DVec3(motion.linear_velocity), DVec3(motion.angular_velocity)};
 }
 
-// Mass and world inertia.
-Mat6 mass_matrix(const BodyMass& mass, const BodyStance& stance) {
-  const Sym3 inertia = rotate_inertia(to_float(stance.turn), mass.inertia);
+// Mass and world inertia as a matrix.
+Mat6 mass_matrix(const BodyMass& mass, const BodyState& state) {
+  const Sym3 inertia = rotate_inertia(to_float(state.orientation), mass.inertia);
   Mat6 out;
   for (int i = 0; i < 3; ++i) out.m[i][i] = double(mass.mass);
   out.m[3][3] = double(inertia.xx), out.m[4][4] = double(inertia.yy), out.m[5][5] = double(inertia.zz);
@@ -27,7 +26,7 @@ Mat6 mass_matrix(const BodyMass& mass, const BodyStance& stance) {
   return out;
 }
 
-// Along locked axes nothing changes.
+// Removes the locked axes from the system.
 void lock(const BodyFlags& flags, Mat6& matrix, Vec6& right) {
   const std::uint32_t locked = std::uint32_t(flags.locked_linear) | std::uint32_t(flags.locked_angular) << 3;
   if (locked == 0) return;
@@ -39,55 +38,55 @@ void lock(const BodyFlags& flags, Mat6& matrix, Vec6& right) {
   }
 }
 
-void add_pulls(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Vec6& force,
-               Mat6& stiffness) {
+void add_radial_forces(const RigidWorld& w, const FieldBody& from, const BodyState& state, Vec6& force,
+                       Mat6& stiffness) {
   const double mass = double(w.bodies.masses[from.body].mass);
-  for (const std::uint32_t slot : from.acting) {
+  for (const std::uint32_t slot : from.fields) {
     const FieldRecord& field = w.fields[slot];
     if (field.kind != FieldKind::radial) continue;
-    const Pull geometric_stiffness = pull_at(field, stance.center);
-    add(force, make_six(mass * geometric_stiffness.acceleration, {}));
-    for (int i = 0; i < 3; ++i) stiffness.m[i][i] += mass * geometric_stiffness.stiffness;
+    const RadialForce radial = radial_force_at(field, state.center);
+    add(force, make_vec6(mass * radial.acceleration, {}));
+    for (int i = 0; i < 3; ++i) stiffness.m[i][i] += mass * radial.stiffness;
   }
 }
 
-// Gravity against the surface of a buoyant field; not above 0: it does not lift.
+// The component of gravity into a buoyant medium; 0 or less: no buoyancy.
 double weight_along(const RigidWorld& w, const FieldRecord& field) {
   return field.kind == FieldKind::buoyancy ? -double(dot(w.settings.gravity, field.normal)) : 0.0;
 }
 
-void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Vec6& force,
-               Mat6& stiffness) {
-  for (const std::uint32_t slot : from.acting) {
+void add_buoyancy_forces(const RigidWorld& w, const FieldBody& from, const BodyState& state, Vec6& force,
+                         Mat6& stiffness) {
+  for (const std::uint32_t slot : from.fields) {
     const double gravity = weight_along(w, w.fields[slot]);
-    if (gravity > 0.0) add_lift(w, w.fields[slot], from.body, stance, gravity, force, stiffness);
+    if (gravity > 0.0) add_buoyancy(w, w.fields[slot], from.body, state, gravity, force, stiffness);
   }
 }
 
-// Lift and torque of a light body where the sub-step will lead it: v = v* + h / m F(x + h v) along the gravity, whose right side
-// falls with v, so there is one root. Found by regula falsi (the Illinois variant: M. Dowell, P. Jarratt, 1971).
-void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double h,
-                        Vec6& force, Mat6& stiffness) {
+// Buoyancy and its torque at the end of the sub-step: v = v* + h / m F(x + h v) along gravity. The right side falls with v,
+// so there is one root. It is found by regula falsi (the Illinois variant: M. Dowell, P. Jarratt, 1971).
+void add_implicit_buoyancy(const RigidWorld& w, const FieldBody& from, const BodyState& state, double h,
+                           Vec6& force, Mat6& stiffness) {
   const DVec3 gravity(w.settings.gravity);
   const DVec3 up = gravity / -length(gravity);
-  const double give = h / double(w.bodies.masses[from.body].mass), start = dot(stance.velocity, up);
-  const auto lift_at = [&](double speed, Vec6& lift, Mat6& stiff) {
-    BodyStance moved = stance;
-    moved.center += h * stance.velocity + (h * (speed - start)) * up;
-    add_lifts(w, from, moved, lift, stiff);
-    return speed - start - give * dot(lift.linear(), up);
+  const double compliance = h / double(w.bodies.masses[from.body].mass), start = dot(state.velocity, up);
+  const auto buoyancy_at = [&](double speed, Vec6& buoyancy, Mat6& stiff) {
+    BodyState predicted = state;
+    predicted.center += h * state.velocity + (h * (speed - start)) * up;
+    add_buoyancy_forces(w, from, predicted, buoyancy, stiff);
+    return speed - start - compliance * dot(buoyancy.linear(), up);
   };
   double low = start;
-  Vec6 lift;
+  Vec6 buoyancy;
   Mat6 stiff;
-  double low_value = lift_at(low, lift, stiff);
-  double high = low - low_value, speed = low;  // the lift is largest where the body rises least
+  double low_value = buoyancy_at(low, buoyancy, stiff);
+  double high = low - low_value, speed = low;  // the buoyancy is largest where the body rises least
   if (low_value < 0.0) {
-    double high_value = lift_at(high, lift = {}, stiff = {});
+    double high_value = buoyancy_at(high, buoyancy = {}, stiff = {});
     speed = high;
     for (int i = 0; i < 40 && high - low > 1.0e-9 * (absolute(high) + absolute(low)); ++i) {
       speed = low - low_value * (high - low) / (high_value - low_value);
-      const double value = lift_at(speed, lift = {}, stiff = {});
+      const double value = buoyancy_at(speed, buoyancy = {}, stiff = {});
       if (value > 0.0) {
         high = speed, high_value = value;
         low_value *= 0.5;
@@ -97,104 +96,104 @@ void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodySt
       }
     }
   }
-  add(force, lift);
-  // Along the lift nothing more needs to give way.
+  add(force, buoyancy);
+  // The buoyancy is implicit along gravity, so only the rotational stiffness remains.
   for (int i = 3; i < 6; ++i) {
     for (int j = 3; j < 6; ++j) stiffness.m[i][j] += stiff.m[i][j];
   }
 }
 
-// How much of h^2 K is added to the mass: more where the stiffest motion has (w h)^2 above 1.
+// The share of h^2 K that is added to the mass. It grows if (w h)^2 of the stiffest motion exceeds 1.
 double filter_of(const Mat6& mass, const Mat6& stiffness, double h) {
-  double most = 0.0;
+  double max_ratio = 0.0;
   for (int i = 0; i < 6; ++i) {
-    if (mass.m[i][i] > 0.0) most = max(most, h * h * stiffness.m[i][i] / mass.m[i][i]);
+    if (mass.m[i][i] > 0.0) max_ratio = max(max_ratio, h * h * stiffness.m[i][i] / mass.m[i][i]);
   }
-  return 0.25 + 4.0 * most / (1.0 + most);
+  return 0.25 + 4.0 * max_ratio / (1.0 + max_ratio);
 }
 
-// What the streams would give a body at rest.
-Vec6 find_drive(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double time) {
+// The drag on the body if it were at rest.
+Vec6 stream_drive(const RigidWorld& w, const FieldBody& from, const BodyState& state, double time) {
   Vec6 sum;
-  for (std::size_t i = 0; i < from.acting.size(); ++i) {
-    const FieldRecord& field = w.fields[from.acting[i]];
-    if (field.is_medium()) add(sum, from.drags[i] * stream_at(field, stance.center, time));
+  for (std::size_t i = 0; i < from.fields.size(); ++i) {
+    const FieldRecord& field = w.fields[from.fields[i]];
+    if (field.is_medium()) add(sum, from.drags[i] * stream_at(field, state.center, time));
   }
   return sum;
 }
 
 void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
   BodyMotion& motion = w.bodies.motion[from.body];
-  const BodyStance stance = stance_of(w, from.body);
+  const BodyState state = state_of(w, from.body);
   Vec6 force;
   Mat6 stiffness;
-  add_pulls(w, from, stance, force, stiffness);
-  if (from.has_extreme_mass_ratio) {
-    add_implicit_lifts(w, from, stance, h, force, stiffness);
+  add_radial_forces(w, from, state, force, stiffness);
+  if (from.has_implicit_buoyancy) {
+    add_implicit_buoyancy(w, from, state, h, force, stiffness);
   } else {
-    add_lifts(w, from, stance, force, stiffness);
+    add_buoyancy_forces(w, from, state, force, stiffness);
   }
-  Mat6 matrix = mass_matrix(w.bodies.masses[from.body], stance);
+  Mat6 matrix = mass_matrix(w.bodies.masses[from.body], state);
   const double filter = filter_of(matrix, stiffness, h) * h * h;
   add_scaled(matrix, filter, stiffness);
-  const Vec6 energy_gain =
-      make_six(stance.velocity - DVec3(from.linear_before), stance.spin - DVec3(from.angular_before));
-  const Vec6 held = stiffness * energy_gain;
+  const Vec6 velocity_change =
+      make_vec6(state.velocity - DVec3(from.linear_before), state.spin - DVec3(from.angular_before));
+  const Vec6 stiffness_force = stiffness * velocity_change;
   Vec6 right;
-  for (int i = 0; i < 6; ++i) right.v[i] = h * force.v[i] - filter * held.v[i];
-  if (from.dragged) {
+  for (int i = 0; i < 6; ++i) right.v[i] = h * force.v[i] - filter * stiffness_force.v[i];
+  if (from.has_drag) {
     add_scaled(matrix, h, from.drag);
-    const Vec6 lost = from.drag * make_six(stance.velocity, stance.spin);
-    const Vec6 drive = find_drive(w, from, stance, w.now + 0.5 * double(w.settings.last_step));
-    for (int i = 0; i < 6; ++i) right.v[i] += h * (drive.v[i] - lost.v[i]);
+    const Vec6 drag_force = from.drag * make_vec6(state.velocity, state.spin);
+    const Vec6 drive = stream_drive(w, from, state, w.now + 0.5 * double(w.settings.last_step));
+    for (int i = 0; i < 6; ++i) right.v[i] += h * (drive.v[i] - drag_force.v[i]);
   }
   lock(w.bodies.flags[from.body], matrix, right);
-  // Masses and moments may differ by many orders: pivots are judged against their own row only.
+  // Masses and moments may differ by many orders, so a pivot is compared with its own row only.
   solve_ldlt(factor_ldlt(matrix.m, 1.0e-300), right.v);
-  // Pulls may grow with the distance: speeds end where they do everywhere.
-  const Vec3 v = to_float(clamp_length(stance.velocity + right.linear(), double(kMaxSpeed)));
-  const Vec3 a = to_float(clamp_length(stance.spin + right.angular(), double(kMaxSpin)));
+  // Radial forces may grow with distance. The speed limits hold for their results, too.
+  const Vec3 v = to_float(clamp_length(state.velocity + right.linear(), double(kMaxSpeed)));
+  const Vec3 a = to_float(clamp_length(state.spin + right.angular(), double(kMaxSpin)));
   if (!is_finite(v) || !is_finite(a)) return;
   motion.linear_velocity = v + Vec3{};
   motion.angular_velocity = a + Vec3{};
 }
 
-// Whether a body of all whose volume would swing with w h > 0.3 on a cut across its thinnest part.
-bool is_light(const RigidWorld& w, const FieldBody& from, double h) {
+// True if the fully submerged body would oscillate with w h > 0.3 about a cut across its thinnest part.
+bool needs_implicit_buoyancy(const RigidWorld& w, const FieldBody& from, double h) {
   constexpr double kStiff = 0.1;
-  double lift = 0.0;
-  for (const std::uint32_t slot : from.acting) {
+  double buoyancy = 0.0;
+  for (const std::uint32_t slot : from.fields) {
     const FieldRecord& field = w.fields[slot];
     const double gravity = weight_along(w, field);
     if (!(gravity > 0.0)) continue;
     for (const ShapeId id : w.bodies.shapes[from.body]) {
-      if (is_seen(w, field, id.index))
-        lift += double(field.density) * gravity * volume_of(w.shapes.colliders[id.index].shape);
+      if (acts_on_shape(w, field, id.index))
+        buoyancy += double(field.density) * gravity * volume_of(w.shapes.colliders[id.index].shape);
     }
   }
   const BodyMass& mass = w.bodies.masses[from.body];
-  return h * h * lift > kStiff * double(mass.mass) * 2.0 * double(mass.size);
+  return h * h * buoyancy > kStiff * double(mass.mass) * 2.0 * double(mass.size);
 }
 
 void prepare_fields(RigidWorld& w, FieldBody& from, double h) {
-  from.has_extreme_mass_ratio = is_light(w, from, h);
-  const BodyStance stance = stance_of(w, from.body);
+  from.has_implicit_buoyancy = needs_implicit_buoyancy(w, from, h);
+  const BodyState state = state_of(w, from.body);
   FieldRest& rest = w.field_rest[from.body];
   rest = {w.bodies.motion[from.body].linear_velocity, w.bodies.motion[from.body].angular_velocity,
-          from.alone ? kFieldsAlone : kFieldsToo, 0};
+          from.unconstrained ? kFieldsOnly : kFieldsAndConstraints, 0};
   const double time = w.now + 0.5 * double(w.settings.last_step);
-  for (std::size_t i = 0; i < from.acting.size(); ++i) {
-    const FieldRecord& field = w.fields[from.acting[i]];
+  for (std::size_t i = 0; i < from.fields.size(); ++i) {
+    const FieldRecord& field = w.fields[from.fields[i]];
     from.drags[i] = {};
     if (!field.is_medium()) continue;
     if (field.turbulence != 0.0f) rest.is_unsteady = 1;
-    add_drag(w, field, from.body, stance, stream_at(field, stance.center, time), from.drags[i]);
+    add_drag(w, field, from.body, state, stream_at(field, state.center, time), from.drags[i]);
     add_scaled(from.drag, 1.0, from.drags[i]);
-    from.dragged = true;
+    from.has_drag = true;
   }
 }
 
-// Calls fn(body) for the bodies of some blocks.
+// Calls fn(world, body, h) for the bodies of some blocks.
 template <class Fn>
 void for_bodies(const FieldSolve& solve, int begin, int end, Fn&& fn) {
   const std::size_t last = min(std::size_t(end) * kFieldBodiesPerBlock, solve.bodies.size());
@@ -205,23 +204,24 @@ void for_bodies(const FieldSolve& solve, int begin, int end, Fn&& fn) {
 }  // namespace
 
 Vec6 force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
-                     const BodyStance& stance, double time) {
+                     const BodyState& state, double time) {
   Vec6 force;
   Mat6 stiffness;
   for (const std::uint32_t slot : fields) {
     const FieldRecord& field = w.fields[slot];
     if (field.kind == FieldKind::radial)
       add(force,
-          make_six(double(w.bodies.masses[body].mass) * pull_at(field, stance.center).acceleration, {}));
+          make_vec6(double(w.bodies.masses[body].mass) * radial_force_at(field, state.center).acceleration,
+                    {}));
     if (const double gravity = weight_along(w, field); gravity > 0.0)
-      add_lift(w, field, body, stance, gravity, force, stiffness);
+      add_buoyancy(w, field, body, state, gravity, force, stiffness);
     if (!field.is_medium()) continue;
-    const Vec6 stream = stream_at(field, stance.center, time);
+    const Vec6 stream = stream_at(field, state.center, time);
     Vec6 slip = stream;
-    const Vec6 velocity = make_six(stance.velocity, stance.spin);
+    const Vec6 velocity = make_vec6(state.velocity, state.spin);
     for (int i = 0; i < 6; ++i) slip.v[i] -= velocity.v[i];
     Mat6 drag;
-    add_drag(w, field, body, stance, stream, drag);
+    add_drag(w, field, body, state, stream, drag);
     add(force, drag * slip);
   }
   return force;
@@ -232,16 +232,17 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
   FieldSolve solve{&w, {}, h};
   if (w.field_rest.empty()) return solve;
   const auto acts = [&](std::uint32_t slot, std::uint32_t body) {
-    return w.fields[slot].is_live() && acts_on(w, w.fields[slot], body, w.bodies.places[body].center);
+    return w.fields[slot].is_live() && acts_on(w, w.fields[slot], body, w.bodies.poses[body].center);
   };
-  const auto may_act = [&](std::uint32_t body) {
-    return is_movable(w.bodies.flags[body]) && (free || w.bodies.flags[body].touched != kNotConstrained);
+  const auto is_candidate = [&](std::uint32_t body) {
+    return is_movable(w.bodies.flags[body]) &&
+           (free || w.bodies.flags[body].constraint_use != kNotConstrained);
   };
   const std::uint32_t slots = std::uint32_t(w.fields.size());
   std::size_t count = 0, links = 0;
   for (const std::uint32_t body : bodies) {
     std::size_t acting = 0;
-    if (may_act(body)) {
+    if (is_candidate(body)) {
       for (std::uint32_t slot = 0; slot < slots; ++slot) acting += acts(slot, body) ? 1 : 0;
     }
     links += acting;
@@ -252,7 +253,7 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
   const std::span<Mat6> drags = arena.make<Mat6>(links);
   count = links = 0;
   for (const std::uint32_t body : bodies) {
-    if (!may_act(body)) continue;
+    if (!is_candidate(body)) continue;
     const std::size_t first = links;
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
       if (acts(slot, body)) list[links++] = slot;
@@ -260,13 +261,13 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
     if (links == first) continue;
     out[count] = {};
     out[count].body = body;
-    out[count].alone = w.bodies.flags[body].touched == 0;
+    out[count].unconstrained = w.bodies.flags[body].constraint_use == 0;
     out[count].drags = drags.subspan(first, links - first);
-    out[count++].acting = list.subspan(first, links - first);
+    out[count++].fields = list.subspan(first, links - first);
   }
   for (const FieldBody& made : out) {
-    w.bodies.flags[made.body].touched = kPoseRead;
-    w.field_rest[made.body].acts = made.alone ? kFieldsAlone : kFieldsToo;
+    w.bodies.flags[made.body].constraint_use = kPoseRead;
+    w.field_rest[made.body].acts = made.unconstrained ? kFieldsOnly : kFieldsAndConstraints;
   }
   solve.bodies = out;
   return solve;

@@ -10,7 +10,7 @@ namespace {
 
 // -------------------------------------------------------------------------------------------------------------- streams
 
-// Waves of gusts: where they run, how the air moves in them (at a right angle, so that none piles up), and where they begin.
+// A wave of gusts. Its velocity is at a right angle to its direction, so the flow is free of divergence.
 struct Gust {
   DVec3 wave;  // direction
   DVec3 sway;
@@ -29,34 +29,34 @@ constexpr Gust kGusts[6] = {
     {{-0.28, 0.96, 0.00}, {0.00, 0.00, 1.00}, 3.3, 4.0, kSmallWave},
 };
 
-DVec3 gusts_at(const FieldRecord& field, DVec3 place, double time) {
+DVec3 gusts_at(const FieldRecord& field, DVec3 position, double time) {
   const DVec3 mean(field.velocity);
   const double speed = length(mean);
   if (field.turbulence == 0.0f || speed == 0.0) return {};
-  const DVec3 carried = place - time * mean;
+  const DVec3 drifting = position - time * mean;
   const double number = 2.0 * kPiDouble / double(field.turbulence_length);
   DVec3 sum;
   for (const Gust& gust : kGusts) {
-    const double s = sin_cos(number * gust.share * dot(gust.wave, carried) + gust.phase).sin;
+    const double s = sin_cos(number * gust.share * dot(gust.wave, drifting) + gust.phase).sin;
     // A wave's mean square is half its amplitude's square.
     sum += std::sqrt(2.0 * gust.weight) * s * gust.sway;
   }
   return double(field.turbulence) * speed * sum;
 }
 
-Vec6 vortex_at(const FieldRecord& field, DVec3 place) {
-  const DVec3 axis(field.axis), from = place - field.center;
+Vec6 vortex_at(const FieldRecord& field, DVec3 position) {
+  const DVec3 axis(field.axis), from = position - field.center;
   const DVec3 out = from - dot(axis, from) * axis;
   const double radius = double(field.radius), rate = double(field.strength) / radius;
-  const double far = length_squared(out) / (radius * radius);
-  if (far <= 1.0) return make_six(rate * cross(axis, out), rate * axis);
-  return make_six((rate / far) * cross(axis, out), {});
+  const double square_ratio = length_squared(out) / (radius * radius);
+  if (square_ratio <= 1.0) return make_vec6(rate * cross(axis, out), rate * axis);
+  return make_vec6((rate / square_ratio) * cross(axis, out), {});
 }
 
 // ----------------------------------------------------------------------------------------------------------------- drag
 
-// Sums of c, c r and c r r' over elements of the surface, with force = c w.
-struct PushSum {
+// Sums of c, c r and c r r' over elements of the surface, whose force is c w.
+struct DragSum {
   double whole = 0.0;
   DVec3 first;
   SecondMoments second;
@@ -66,7 +66,7 @@ struct PushSum {
     first += c * r;
     add_product(second, c, r);
   }
-  void add_scaled(double scale, const PushSum& more) {
+  void add_scaled(double scale, const DragSum& more) {
     whole += scale * more.whole;
     first += scale * more.first;
     second.xx += scale * more.second.xx, second.yy += scale * more.second.yy,
@@ -76,8 +76,8 @@ struct PushSum {
   }
 };
 
-// sum of c J'J with J (v, a) = v + a x r.
-void add_push(Mat6& to, const PushSum& s) {
+// Adds the sum of c J'J with J (v, a) = v + a x r.
+void add_drag_matrix(Mat6& to, const DragSum& s) {
   for (int i = 0; i < 3; ++i) to.m[i][i] += s.whole;
   // The cross product r x as a matrix, below the diagonal block; its transpose above.
   const DVec3 r = s.first;
@@ -100,70 +100,68 @@ bool is_round(ShapeKind kind) {
          kind == ShapeKind::cone;
 }
 
-// A shape's frame within the world, about the body's centre of mass.
-struct ShapeStance {
-  DQuat turn;    // world_from_shape
+// The frame of a shape in world axes, about the centre of mass of its body.
+struct ShapeState {
+  DQuat orientation;  // world_from_shape
   DVec3 offset;  // of the shape's origin from the centre of mass, world axes
 };
-ShapeStance stance_of(const RigidWorld& w, std::uint32_t body, std::uint32_t shape,
-                      const BodyStance& stance) {
-  const Transform& place = w.shapes.places[shape];
-  return {stance.turn * to_double(place.orientation),
-          rotate(stance.turn, DVec3(place.position) - DVec3(w.bodies.masses[body].center))};
+ShapeState state_of(const RigidWorld& w, std::uint32_t body, std::uint32_t shape, const BodyState& state) {
+  const Transform& local = w.shapes.body_from_shape[shape];
+  return {state.orientation * to_double(local.orientation),
+          rotate(state.orientation, DVec3(local.position) - DVec3(w.bodies.masses[body].center))};
 }
 
-// The plane of a field as a shape sees it.
+// The surface plane of a field in the frame of a shape.
 struct ShapePlane {
   DVec3 normal;
   double level;
 };
-ShapePlane plane_of(const FieldRecord& field, const BodyStance& body, const ShapeStance& shape) {
+ShapePlane plane_of(const FieldRecord& field, const BodyState& body, const ShapeState& shape) {
   if (field.kind != FieldKind::buoyancy) return {{0, 1, 0}, double(kUnbounded)};
   const DVec3 normal(field.normal);
-  return {rotate_inverse(shape.turn, normal),
+  return {rotate_inverse(shape.orientation, normal),
           field.offset - dot(normal, body.center) - dot(normal, shape.offset)};
 }
 
-// The drag by one shape's surface, for the velocity at which the medium now streams against it.
-PushSum shape_push(const Shape& shape, const ShapeStance& at, const ShapePlane& plane, const Vec6& against) {
-  PushSum sum;
-  double facing = 0.0;  // of the whole surface, for round shapes
-  const DVec3 wind = rotate_inverse(at.turn, against.linear() + cross(against.angular(), at.offset));
+// The drag on the surface of one shape, for the present velocity of the medium relative to it.
+DragSum shape_drag(const Shape& shape, const ShapeState& at, const ShapePlane& plane, const Vec6& against) {
+  DragSum sum;
+  double facing_area = 0.0;  // of the whole surface, for round shapes
+  const DVec3 wind = rotate_inverse(at.orientation, against.linear() + cross(against.angular(), at.offset));
   const double speed = length(wind);
   for_each_patch(shape, plane.normal, plane.level, [&](const SurfacePatch& patch) {
-    const DVec3 r = at.offset + rotate(at.turn, patch.position);
+    const DVec3 r = at.offset + rotate(at.orientation, patch.position);
     const DVec3 flow = against.linear() + cross(against.angular(), r);
-    const double c = max(-dot(flow, rotate(at.turn, patch.normal)), 0.0) * patch.area;
+    const double c = max(-dot(flow, rotate(at.orientation, patch.normal)), 0.0) * patch.area;
     if (c > 0.0) sum.add(c, r);
   });
   if (!is_round(shape.kind) || speed == 0.0) return sum;
   for_each_patch(shape, {0, 1, 0}, double(kUnbounded), [&](const SurfacePatch& patch) {
-    facing += max(-dot(wind, patch.normal), 0.0) * patch.area;
+    facing_area += max(-dot(wind, patch.normal), 0.0) * patch.area;
   });
-  if (!(facing > 0.0)) return sum;
-  PushSum exact;
-  exact.add_scaled(projected_area(shape, wind / speed) * speed / facing, sum);
+  if (!(facing_area > 0.0)) return sum;
+  DragSum exact;
+  exact.add_scaled(projected_area(shape, wind / speed) * speed / facing_area, sum);
   return exact;
 }
 
-// The share of the body's volume that is below the field's plane.
+// The share of the volume of the body below the surface of the field.
 double submerged_share(const RigidWorld& w, const FieldRecord& field, std::uint32_t body,
-                       const BodyStance& stance) {
+                       const BodyState& state) {
   double below = 0.0, whole = 0.0;
   for (const ShapeId id : w.bodies.shapes[body]) {
-    if (!is_seen(w, field, id.index)) continue;
+    if (!acts_on_shape(w, field, id.index)) continue;
     const Shape& shape = w.shapes.colliders[id.index].shape;
-    const ShapePlane plane = plane_of(field, stance, stance_of(w, body, id.index, stance));
+    const ShapePlane plane = plane_of(field, state, state_of(w, body, id.index, state));
     below += submerged_part(shape, plane.normal, plane.level).volume;
     whole += volume_of(shape);
   }
   return whole > 0.0 ? below / whole : 0.0;
 }
 
-void add_linear_drag(const RigidWorld& w, std::uint32_t body, const BodyStance& stance, double rate,
-                     Mat6& to) {
+void add_linear_drag(const RigidWorld& w, std::uint32_t body, const BodyState& state, double rate, Mat6& to) {
   const BodyMass& mass = w.bodies.masses[body];
-  const Sym3 inertia = rotate_inertia(to_float(stance.turn), mass.inertia);
+  const Sym3 inertia = rotate_inertia(to_float(state.orientation), mass.inertia);
   for (int i = 0; i < 3; ++i) to.m[i][i] += rate * double(mass.mass);
   const double rows[3][3] = {{double(inertia.xx), double(inertia.xy), double(inertia.xz)},
                              {double(inertia.xy), double(inertia.yy), double(inertia.yz)},
@@ -196,7 +194,7 @@ void add_row(Mat6& to, double weight, const Vec6& row) {
   }
 }
 
-bool is_seen(const RigidWorld& w, const FieldRecord& field, std::uint32_t shape) {
+bool acts_on_shape(const RigidWorld& w, const FieldRecord& field, std::uint32_t shape) {
   const Proxy& proxy = w.shapes.proxies[shape];
   return !proxy.sensor && (proxy.filter.layer & field.layers) != 0;
 }
@@ -212,54 +210,54 @@ bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, 
   const auto& shapes = w.bodies.shapes[body];
   if (shapes.empty()) return true;
   if (field.kind == FieldKind::buoyancy) {
-    // Nothing of the body can come below the surface in this step.
+    // The body certainly stays above the surface in this step.
     const double height = dot(DVec3(field.normal), center) - field.offset,
                  step = double(w.settings.last_step);
-    const double way = step * (double(length(w.bodies.motion[body].linear_velocity)) +
-                               step * double(length(w.settings.gravity)));
-    if (height > double(w.bodies.masses[body].reach) + way) return false;
+    const double max_displacement = step * (double(length(w.bodies.motion[body].linear_velocity)) +
+                                            step * double(length(w.settings.gravity)));
+    if (height > double(w.bodies.masses[body].bounding_radius) + max_displacement) return false;
   }
   for (const ShapeId id : shapes) {
-    if (is_seen(w, field, id.index)) return true;
+    if (acts_on_shape(w, field, id.index)) return true;
   }
   return false;
 }
 
-Vec6 stream_at(const FieldRecord& field, DVec3 place, double time) {
-  Vec6 out = make_six(DVec3(field.velocity), {});
-  if (field.kind == FieldKind::wind) add(out, make_six(gusts_at(field, place, time), {}));
-  if (field.kind == FieldKind::vortex) add(out, vortex_at(field, place));
+Vec6 stream_at(const FieldRecord& field, DVec3 position, double time) {
+  Vec6 out = make_vec6(DVec3(field.velocity), {});
+  if (field.kind == FieldKind::wind) add(out, make_vec6(gusts_at(field, position, time), {}));
+  if (field.kind == FieldKind::vortex) add(out, vortex_at(field, position));
   return out;
 }
 
-void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
+void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyState& state,
               const Vec6& stream, Mat6& matrix) {
   Vec6 against = stream;
-  add(against, make_six(-stance.velocity, -stance.spin));
+  add(against, make_vec6(-state.velocity, -state.spin));
   const double half = 0.5 * double(field.density) * double(field.drag_coefficient);
   if (half > 0.0) {
-    PushSum sum;
+    DragSum sum;
     for (const ShapeId id : w.bodies.shapes[body]) {
-      if (!is_seen(w, field, id.index)) continue;
-      const ShapeStance at = stance_of(w, body, id.index, stance);
-      sum.add_scaled(
-          half, shape_push(w.shapes.colliders[id.index].shape, at, plane_of(field, stance, at), against));
+      if (!acts_on_shape(w, field, id.index)) continue;
+      const ShapeState at = state_of(w, body, id.index, state);
+      sum.add_scaled(half,
+                     shape_drag(w.shapes.colliders[id.index].shape, at, plane_of(field, state, at), against));
     }
-    add_push(matrix, sum);
+    add_drag_matrix(matrix, sum);
   }
   if (!(field.linear_drag > 0.0f)) return;
-  const double share = field.kind == FieldKind::buoyancy ? submerged_share(w, field, body, stance) : 1.0;
-  if (share > 0.0) add_linear_drag(w, body, stance, share * double(field.linear_drag), matrix);
+  const double share = field.kind == FieldKind::buoyancy ? submerged_share(w, field, body, state) : 1.0;
+  if (share > 0.0) add_linear_drag(w, body, state, share * double(field.linear_drag), matrix);
 }
 
-Pull pull_at(const FieldRecord& field, DVec3 place) {
-  const DVec3 from = place - field.center;
+RadialForce radial_force_at(const FieldRecord& field, DVec3 position) {
+  const DVec3 from = position - field.center;
   const double square = length_squared(from) + double(field.core) * double(field.core);
-  Pull out;
+  RadialForce out;
   if (!(square > 0.0)) return out;
   const double radius = double(field.radius), n = double(field.falloff);
   const double ratio = square / (radius * radius);
-  // strength (radius / distance)^n / distance; whole powers without logarithms, so that they are as exact as they can be.
+  // strength (radius / distance)^n / distance. Integer powers need no logarithms, so they are as exact as possible.
   const double distance = std::sqrt(square);
   const double power = n == 2.0    ? 1.0 / ratio
                        : n == 0.0  ? 1.0
@@ -272,31 +270,32 @@ Pull pull_at(const FieldRecord& field, DVec3 place) {
   return out;
 }
 
-void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
-              double gravity, Vec6& force, Mat6& stiffness) {
+void add_buoyancy(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyState& state,
+                  double gravity, Vec6& force, Mat6& stiffness) {
   const DVec3 up(field.normal);
   const double weight = double(field.density) * gravity;
   for (const ShapeId id : w.bodies.shapes[body]) {
-    if (!is_seen(w, field, id.index)) continue;
-    const ShapeStance at = stance_of(w, body, id.index, stance);
-    const ShapePlane plane = plane_of(field, stance, at);
+    if (!acts_on_shape(w, field, id.index)) continue;
+    const ShapeState at = state_of(w, body, id.index, state);
+    const ShapePlane plane = plane_of(field, state, at);
     const SubmergedPart part = submerged_part(w.shapes.colliders[id.index].shape, plane.normal, plane.level);
     if (!(part.volume > 0.0)) continue;
-    const DVec3 arm = at.offset + rotate(at.turn, part.center);
-    const double lift = weight * part.volume;
-    add(force, make_six(lift * up, cross(arm, lift * up)));
-    // A body that hangs below its lift swings back like a pendulum.
-    const double swing = max(lift * dot(arm, up), 0.0);
+    const DVec3 arm = at.offset + rotate(at.orientation, part.center);
+    const double buoyancy = weight * part.volume;
+    add(force, make_vec6(buoyancy * up, cross(arm, buoyancy * up)));
+    // A body that hangs below its centre of buoyancy swings back like a pendulum.
+    const double swing = max(buoyancy * dot(arm, up), 0.0);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) stiffness.m[3 + i][3 + j] += swing * ((i == j ? 1.0 : 0.0) - up[i] * up[j]);
     }
     if (!(part.area > 0.0)) continue;
-    // The cut at r resists with weight (up, r x up) (up, r x up)' dA: its middle as a point, and its spread about that.
-    const DVec3 middle = at.offset + rotate(at.turn, part.area_center);
-    add_row(stiffness, weight * part.area, make_six(up, cross(middle, up)));
+    // The water plane at r resists with weight (up, r x up) (up, r x up)' dA: its centroid as a point, and its second
+    // moments about that.
+    const DVec3 middle = at.offset + rotate(at.orientation, part.area_center);
+    add_row(stiffness, weight * part.area, make_vec6(up, cross(middle, up)));
     const SecondMoments& s = part.spread;
-    const DVec3 axes[3] = {rotate(at.turn, {1, 0, 0}), rotate(at.turn, {0, 1, 0}),
-                           rotate(at.turn, {0, 0, 1})};
+    const DVec3 axes[3] = {rotate(at.orientation, {1, 0, 0}), rotate(at.orientation, {0, 1, 0}),
+                           rotate(at.orientation, {0, 0, 1})};
     const double spread[3][3] = {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {

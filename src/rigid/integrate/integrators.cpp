@@ -46,7 +46,7 @@ struct Damping {
 void refresh_world_inertia(BodyStore& bodies, std::uint32_t i) {
   const BodyMass& mass = bodies.masses[i];
   const BodyFlags& flags = bodies.flags[i];
-  if (!inertia_turns(mass, flags)) return;
+  if (!inertia_rotates(mass, flags)) return;
   bodies.inertia[i] = world_inertia(mass, flags, bodies.orientations[i]);
 }
 
@@ -288,7 +288,7 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
   moved.linear_loss = linear.loss;
   moved.torque = angular.gain * forces.torque;
   moved.angular_loss = angular.loss;
-  moved.bounding_radius = mass.reach;
+  moved.bounding_radius = mass.bounding_radius;
   moved.inertia = mass.inertia;
   moved.inverse_inertia = mass.inverse_inertia;
   moved.locked = flags.locked_linear;

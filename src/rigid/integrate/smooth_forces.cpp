@@ -68,7 +68,7 @@ void find_rates(const SmoothSystem& system, std::span<const SmoothState> states,
     const SmoothState& s = states[i];
     rates[i] = {body.acceleration, body.torque};
     if (body.fields.empty()) continue;
-    const BodyStance stance{s.x, s.q, s.v, spin_of(body, s)};
+    const BodyState stance{s.x, s.q, s.v, spin_of(body, s)};
     const Vec6 force = force_of_fields(w, body.body, body.fields, stance, system.begin + time);
     rates[i].acceleration += force.linear() / body.mass;
     rates[i].torque += force.angular();

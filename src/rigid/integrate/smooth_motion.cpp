@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxSubsteps = 8192;
 
 bool is_unconstrained(const RigidWorld& w, std::uint32_t body) {
-  return is_active(w, body) && w.bodies.flags[body].touched == kNotConstrained;
+  return is_active(w, body) && w.bodies.flags[body].constraint_use == kNotConstrained;
 }
 
 SmoothBody describe(const RigidWorld& w, std::uint32_t i, Arena& arena) {
@@ -29,19 +29,19 @@ SmoothBody describe(const RigidWorld& w, std::uint32_t i, Arena& arena) {
   body.torque = DVec3(forces.torque);
   body.linear_damping = double(forces.linear_damping);
   body.angular_damping = double(forces.angular_damping);
-  body.bounding_radius = double(mass.reach);
+  body.bounding_radius = double(mass.bounding_radius);
   body.locked_linear = flags.locked_linear;
   body.locked_angular = flags.locked_angular;
   if (!w.fields.empty()) {
     const std::span<std::uint32_t> list = arena.make<std::uint32_t>(w.fields.size());
     std::size_t count = 0;
     for (std::uint32_t slot = 0; slot < w.fields.size(); ++slot) {
-      if (w.fields[slot].is_live() && acts_on(w, w.fields[slot], i, w.bodies.places[i].center))
+      if (w.fields[slot].is_live() && acts_on(w, w.fields[slot], i, w.bodies.poses[i].center))
         list[count++] = slot;
     }
     body.fields = list.first(count);
   }
-  body.start.x = w.bodies.places[i].center;
+  body.start.x = w.bodies.poses[i].center;
   body.start.q = normalized(to_double(w.bodies.orientations[i]));
   body.start.v = without_axes(DVec3(motion.linear_velocity), body.locked_linear);
   body.start.l = momentum_of(body, body.start, DVec3(motion.angular_velocity));
@@ -109,7 +109,7 @@ void update_end(const RigidWorld& w, SpringEnd& end) {
   const std::size_t i = std::size_t(end.body);
   const BodyMotion& motion = w.bodies.motion[i];
   const DVec3 lever = rotate(normalized(to_double(w.bodies.orientations[i])), end.arm);
-  end.point = w.bodies.places[i].center + motion.delta_position + lever;
+  end.point = w.bodies.poses[i].center + motion.delta_position + lever;
   end.velocity = DVec3(motion.linear_velocity) + cross(DVec3(motion.angular_velocity), lever);
 }
 
@@ -117,7 +117,7 @@ void apply_impulse_to_end(RigidWorld& w, const SpringEnd& end, DVec3 impulse) {
   if (end.index >= 0 || end.body == kNoBody || !is_active(w, std::uint32_t(end.body))) return;
   const std::size_t i = std::size_t(end.body);
   BodyMotion& motion = w.bodies.motion[i];
-  const DVec3 lever = end.point - (w.bodies.places[i].center + motion.delta_position);
+  const DVec3 lever = end.point - (w.bodies.poses[i].center + motion.delta_position);
   motion.linear_velocity += motion.inverse_mass * to_float(impulse) + Vec3{};
   motion.angular_velocity += w.bodies.inertia[i].inverse * to_float(cross(lever, impulse)) + Vec3{};
 }
@@ -125,7 +125,7 @@ void apply_impulse_to_end(RigidWorld& w, const SpringEnd& end, DVec3 impulse) {
 bool moves(const RigidWorld& w, const SpringEnd& end) {
   if (end.index >= 0 || end.body == kNoBody) return false;
   const BodyFlags& flags = w.bodies.flags[std::size_t(end.body)];
-  return flags.type != BodyType::fixed && flags.awake != 0 && flags.touched != kNotConstrained;
+  return flags.type != BodyType::fixed && flags.awake != 0 && flags.constraint_use != kNotConstrained;
 }
 
 // Sub-steps [0, substeps) of the whole step.
@@ -265,7 +265,7 @@ void make_systems(SmoothMotion& motion, const SolveBatch& batch, const Members& 
     system.damped = system.damped || feels_velocity(w, made);
     if (w.field_rest.empty() || made.fields.empty()) continue;
     FieldRest& rest = w.field_rest[body];
-    rest = {w.bodies.motion[body].linear_velocity, w.bodies.motion[body].angular_velocity, kFieldsAlone, 0};
+    rest = {w.bodies.motion[body].linear_velocity, w.bodies.motion[body].angular_velocity, kFieldsOnly, 0};
     for (const std::uint32_t slot : made.fields) {
       if (w.fields[slot].is_medium() && w.fields[slot].turbulence != 0.0f) rest.is_unsteady = 1;
     }
@@ -347,7 +347,8 @@ SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch,
     for (const std::int32_t body : {joint.body_a, joint.body_b}) {
       if (body == kNoBody) continue;
       BodyFlags& flags = w.bodies.flags[std::size_t(body)];
-      if (flags.type == BodyType::kinematic || flags.touched != kNotConstrained) flags.touched = kPoseRead;
+      if (flags.type == BodyType::kinematic || flags.constraint_use != kNotConstrained)
+        flags.constraint_use = kPoseRead;
     }
   }
   const Members members = group_bodies(w, batch, body_indices, springs.first(count), arena);

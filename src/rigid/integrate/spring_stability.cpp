@@ -67,7 +67,7 @@ SpringRow make_row(const RigidWorld& w, std::uint32_t slot) {
     if (bodies[k] == kNoBody) continue;
     const std::size_t i = std::size_t(bodies[k]);
     row.lever[k] = DVec3(rotate(w.bodies.orientations[i], anchors[k]));
-    point[k] = w.bodies.places[i].center + row.lever[k];
+    point[k] = w.bodies.poses[i].center + row.lever[k];
     if (is_active(w, std::uint32_t(i))) row.body[k] = bodies[k];
   }
   const DVec3 offset = point[1] - point[0];

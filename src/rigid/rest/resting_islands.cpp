@@ -7,26 +7,26 @@ namespace gyre {
 
 namespace {
 
-// What may be part of a resting island is no faster than a share of what it falls through its own size with,
+// Speed of a body against the speed that it gains by falling through its own bounding radius.
 struct RestSpeed {
   float speed, scale;
 
-  RestSpeed(const RigidWorld& w, std::uint32_t body, float geometric_stiffness) {
+  RestSpeed(const RigidWorld& w, std::uint32_t body, float gravity) {
     const BodyMotion& motion = w.bodies.motion[body];
-    const float reach = w.bodies.masses[body].reach;
-    speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
-    scale = std::sqrt(geometric_stiffness * reach);
+    const float radius = w.bodies.masses[body].bounding_radius;
+    speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
+    scale = std::sqrt(gravity * radius);
   }
   bool is_below(float share) const { return speed <= share * scale; }
 };
-// and bound to no axes.
-bool is_unbound(const RigidWorld& w, std::uint32_t body) {
+// True if the body has no locked axes and needs no exact rotation. A resting island needs both.
+bool is_unlocked(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   return !needs_exact_rotation(w.bodies, body, w.settings.last_substep) && flags.locked_linear == 0 &&
          flags.locked_angular == 0;
 }
 
-// The other end of a constraint may be the fixed world or a kinematic body that stands still.
+// True if the body does not move: kNoBody, or a body without velocity (a kinematic one may move).
 bool is_still(const RigidWorld& w, std::int32_t body) {
   if (body == kNoBody) return true;
   const BodyMotion& motion = w.bodies.motion[body];
@@ -37,47 +37,49 @@ bool is_still(const RigidWorld& w, std::int32_t body) {
 
 RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
                                std::span<const ColoringPair> pairs, std::span<const JointEdge> joints,
-                               const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena)
+                               const SolveBatch& batch, std::span<const std::uint32_t> local_index,
+                               Arena& arena)
     : w_(w),
       batch_(batch),
-      places_(places),
+      local_index_(local_index),
       sets_(arena.make<std::uint32_t>(batch.bodies.size())),
       counts_(arena.make<IslandCount>(batch.bodies.size())) {
   for (IslandCount& count : counts_) count = {};
-  unite_all(pairs, joints);
+  unite_constrained(pairs, joints);
   refuse_jointed(joints);
   count_bodies();
   count_contacts(constraints, pairs);
 }
 
-void RestingIslands::unite_all(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints) {
+void RestingIslands::unite_constrained(std::span<const ColoringPair> pairs,
+                                       std::span<const JointEdge> joints) {
   for (const ColoringPair& pair : pairs) {
     if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) sets_.unite(pair.a, pair.b);
   }
   for (const JointEdge& joint : joints) {
     if (joint.body_a != kNoBody && joint.body_b != kNoBody)
-      sets_.unite(places_[std::size_t(joint.body_a)], places_[std::size_t(joint.body_b)]);
+      sets_.unite(local_index_[std::size_t(joint.body_a)], local_index_[std::size_t(joint.body_b)]);
   }
   sets_.flatten();
 }
 
 void RestingIslands::count_bodies() {
-  const float geometric_stiffness = length(w_.settings.gravity);
-  for (std::uint32_t place = 0; place < batch_.bodies.size(); ++place) {
-    const std::uint32_t body = batch_.bodies[place];
+  const float gravity = length(w_.settings.gravity);
+  for (std::uint32_t index = 0; index < batch_.bodies.size(); ++index) {
+    const std::uint32_t body = batch_.bodies[index];
     if (!is_movable(w_.bodies.flags[body])) continue;
-    IslandCount& count = counts_[sets_.parents[place]];
+    IslandCount& count = counts_[sets_.parents[index]];
     if (count.refused) continue;
-    const RestSpeed slowness(w_, body, geometric_stiffness);
-    const float reach = w_.bodies.masses[body].reach;
-    count.smallest = count.bodies == 0 ? reach : min(count.smallest, reach);
+    const RestSpeed rest_speed(w_, body, gravity);
+    const float radius = w_.bodies.masses[body].bounding_radius;
+    count.smallest = count.bodies == 0 ? radius : min(count.smallest, radius);
     ++count.bodies;
-    if (!is_unbound(w_, body) || !slowness.is_below(kSlowSpeedShare)) {
+    if (!is_unlocked(w_, body) || !rest_speed.is_below(kSlowSpeedShare)) {
       count.refused = true;
-    } else if (!slowness.is_below(kCalmSpeedShare)) {
+    } else if (!rest_speed.is_below(kCalmSpeedShare)) {
       count.not_calm = true;
-    } else if (!slowness.is_below(kSettledShare)) {
-      count.settling = true;
+    } else if (!rest_speed.is_below(kSettledSpeedShare)) {
+      count.not_settled = true;
     }
   }
 }
@@ -91,26 +93,26 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
     const ContactConstraint& c = constraints[i];
     ++count.contacts;
     if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
-    if (c.point_count < 3) count.balances = true;
-    if (c.point_count == 1) ++count.corners;
-    if (c.stiffness == ContactStiffness::rigid) count.held = true;
-    if (c.stiffness == ContactStiffness::soft) count.springs = true;
+    if (c.point_count < 3) count.has_narrow_contact = true;
+    if (c.point_count == 1) ++count.single_point_contacts;
+    if (c.stiffness == ContactStiffness::rigid) count.has_rigid_contact = true;
+    if (c.stiffness == ContactStiffness::soft) count.has_soft_contact = true;
     if (active_a && active_b) continue;
-    ++count.grounded;
-    count.first = i;
+    ++count.ground_contacts;
+    count.ground_contact = i;
     if (!is_still(w_, active_a ? c.body_b : c.body_a)) count.refused = true;
   }
 }
 
 void RestingIslands::refuse_jointed(std::span<const JointEdge> joints) {
   for (const JointEdge& joint : joints)
-    for_moving(joint, [&](std::uint32_t body) { counts_[sets_.parents[places_[body]]].refused = true; });
+    for_moving(joint, [&](std::uint32_t body) { counts_[sets_.parents[local_index_[body]]].refused = true; });
 }
 
 IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std::size_t bodies,
                                         Arena& arena) {
   IncidentContacts links{arena.make<std::uint32_t>(bodies), arena.make<std::uint32_t>(2 * pairs.size())};
-  for (std::uint32_t& f : links.first) f = kNoPlace;
+  for (std::uint32_t& f : links.first) f = kNoIndex;
   for (std::uint32_t i = std::uint32_t(pairs.size()); i-- > 0;) {
     const std::uint32_t ends[2] = {pairs[i].a, pairs[i].b};
     for (std::uint32_t side = 0; side < 2; ++side) {
@@ -123,13 +125,13 @@ IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std
   return links;
 }
 
-std::span<std::uint32_t> find_kernel_places(std::span<const std::uint32_t> order, std::size_t constraints,
-                                            Arena& arena) {
-  const std::span<std::uint32_t> places = arena.make<std::uint32_t>(constraints);
+std::span<std::uint32_t> find_kernel_positions(std::span<const std::uint32_t> order, std::size_t constraints,
+                                               Arena& arena) {
+  const std::span<std::uint32_t> positions = arena.make<std::uint32_t>(constraints);
   for (std::uint32_t i = 0; i < order.size(); ++i) {
-    if (order[i] != kNoPlace) places[order[i]] = i;
+    if (order[i] != kNoIndex) positions[order[i]] = i;
   }
-  return places;
+  return positions;
 }
 
 }  // namespace gyre

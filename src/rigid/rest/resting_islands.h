@@ -1,5 +1,7 @@
-// The islands of a batch that may be at rest, counted for the solvers that take such islands whole: trees of contacts
-// (contact_forest.h) and structures (contact_structures.h).
+// Finds and counts the islands of a batch that may be at rest. Resting trees (resting_trees.h) and resting structures
+// (resting_structures.h) solve such islands as a whole.
+//
+// The speeds below are shares of sqrt(gravity * bounding radius).
 #pragma once
 
 #include "base/arena/arena.h"
@@ -12,71 +14,71 @@
 
 namespace gyre {
 
-constexpr std::uint32_t kNoPlace = 0xffffffffu;
-
-// Slower than this share of sqrt(gravity * reach) counts as at rest.
+// A slower body is slow: it may belong to a resting island.
 constexpr float kSlowSpeedShare = 0.1f;
-// and slower than this one as all but at rest: what has loops is looked at only then.
+// A slower body is calm. Islands with loops are only solved directly if all their bodies are calm.
 constexpr float kCalmSpeedShare = 0.02f;
-// Slower than this share of it a sweep has left nothing to solve.
+// A slower body has no velocity left to solve for in a resting tree.
 constexpr float kStillSpeedShare = 1.0e-7f;
-// The same of an island with loops, whose loads have more rounding.
-constexpr float kStructureStillShare = 1.0e-6f;
-// An island with loops that is slower than this as a step begins has nothing to lose but what the step's forces give it.
-constexpr float kSettledShare = 1.0e-4f;
+// The same in an island with loops, whose loads have larger rounding errors.
+constexpr float kStructureStillSpeedShare = 1.0e-6f;
+// A slower body is settled: only the forces of the step give it velocity.
+constexpr float kSettledSpeedShare = 1.0e-4f;
 
-// What is counted about an island, as long as it is not refused.
+// Counts of one island. They are incomplete if it is refused.
 struct IslandCount {
-  std::uint32_t bodies = 0, contacts = 0, grounded = 0;
-  std::uint32_t corners = 0;       // contacts of a single point
-  std::uint32_t first = kNoPlace;  // its last contact with the fixed world
-  float smallest = 0.0f;           // m: the least reach of its bodies
-  bool refused = false;   // cannot be at rest: fast or bound bodies, joints, moving ground, no friction
-  bool not_calm = false;  // a body at rest is not calm
-  bool settling = false;  // one is not settled
-  bool balances = false;  // a contact has one or two points
-  bool springs = false;   // a contact bore load in the last step and was not solved directly
-  bool held = false;      // and one was
+  std::uint32_t bodies = 0, contacts = 0, ground_contacts = 0;
+  std::uint32_t single_point_contacts = 0;
+  std::uint32_t ground_contact = kNoIndex;  // the last contact with the fixed world
+  float smallest = 0.0f;                    // m, the smallest bounding radius of its bodies
+  bool refused = false;      // cannot be at rest: a fast or locked body, a joint, moving ground, no friction
+  bool not_calm = false;     // a body is slow but not calm
+  bool not_settled = false;  // a body is calm but not settled
+  bool has_narrow_contact = false;  // a contact has one or two points
+  bool has_soft_contact = false;    // a contact carried load in the last step and was solved iteratively
+  bool has_rigid_contact = false;   // a contact carried load in the last step and was solved directly
 };
 
 class RestingIslands {
  public:
-  // `pairs`: places of the constraints' bodies in the batch, as far as these move. `joints`: those of the batch. `places`: of all
-  // bodies: by body its index in its batch.
+  // `pairs`: indices in the batch of the moving bodies of the constraints. `joints`: those of the batch.
+  // `local_index`: by body its index in its batch.
   RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
                  std::span<const ColoringPair> pairs, std::span<const JointEdge> joints,
-                 const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena);
+                 const SolveBatch& batch, std::span<const std::uint32_t> local_index, Arena& arena);
 
-  // By place of a body in the batch. Only roots have counts.
-  bool is_root(std::uint32_t place) const {
-    return sets_.parents[place] == place && is_movable(w_.bodies.flags[batch_.bodies[place]]);
+  // The index is that of a body in the batch. Only roots have counts.
+  bool is_root(std::uint32_t index) const {
+    return sets_.parents[index] == index && is_movable(w_.bodies.flags[batch_.bodies[index]]);
   }
-  const IslandCount& at_root(std::uint32_t place) const { return counts_[place]; }
-  std::uint32_t root_of(std::uint32_t place) const { return sets_.parents[place]; }
+  const IslandCount& at_root(std::uint32_t index) const { return counts_[index]; }
+  std::uint32_t root_of(std::uint32_t index) const { return sets_.parents[index]; }
 
  private:
-  void unite_all(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints);
+  void unite_constrained(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints);
   void refuse_jointed(std::span<const JointEdge> joints);
   void count_bodies();
   void count_contacts(std::span<const ContactConstraint> constraints, std::span<const ColoringPair> pairs);
 
   const RigidWorld& w_;
   const SolveBatch& batch_;
-  std::span<const std::uint32_t> places_;
+  std::span<const std::uint32_t> local_index_;
   DisjointSets sets_;
   std::span<IslandCount> counts_;
 };
 
-// For each body that moves the constraints it is in, as linked lists: link 2 * constraint + side (0: it is their a).
+// The contact constraints of each moving body as linked lists. A link is 2 * constraint + side; side 0 means that the
+// body is body a of the constraint.
 struct IncidentContacts {
-  std::span<std::uint32_t> first;  // by the body's place
+  std::span<std::uint32_t> first;  // by index of the body in the batch
   std::span<std::uint32_t> next;   // by link
 };
 IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std::size_t bodies,
                                         Arena& arena);
 
-// Where the kernels keep each constraint: `order` has `width` constraint indices a block. By constraint: its place in `order`.
-std::span<std::uint32_t> find_kernel_places(std::span<const std::uint32_t> order, std::size_t constraints,
-                                            Arena& arena);
+// The position of each constraint in the memory of the kernels: `order` has `width` constraint indices for each
+// block. Out: by constraint its index in `order`.
+std::span<std::uint32_t> find_kernel_positions(std::span<const std::uint32_t> order, std::size_t constraints,
+                                               Arena& arena);
 
 }  // namespace gyre

@@ -1,6 +1,6 @@
-// Finds the islands at rest that are no trees of contacts (solver/rest/static_equilibrium.h): they stand on the fixed world, nobody is
-// joined to anything, everything is all but still and has friction, and few enough bodies lean on each other
-// that solving them directly is cheap.
+// Finds the resting islands with loops of contacts (solver/rest/static_equilibrium.h). Such an island stands on the
+// fixed world, has friction at all contacts and no joints, and its bodies are calm. It is small and sparse enough
+// that a direct solve is cheap.
 #pragma once
 
 #include "rigid/rest/resting_islands.h"
@@ -8,13 +8,14 @@
 
 namespace gyre {
 
-// Of one batch; `pairs` are its constraints' bodies. Large islands that did not hold in the last step are looked at only now and then.
-std::span<RestingStructure> find_contact_structures(const RigidWorld& w, std::span<const ColoringPair> pairs,
+// Of one batch; `pairs` are the bodies of its constraints. A large island that was not in equilibrium in the last
+// step is tried now and then only.
+std::span<RestingStructure> find_resting_structures(const RigidWorld& w, std::span<const ColoringPair> pairs,
                                                     const SolveBatch& batch, const RestingIslands& islands,
                                                     Arena& arena);
 
-// Tells the contacts where the kernels of `width` lanes keep them (find_kernel_places()).
-void place_structure_contacts(std::span<RestingStructure> structures, std::span<const std::uint32_t> places,
-                              int width);
+// Stores in each contact its block and lane in the memory of the kernels of `width` lanes (find_kernel_positions()).
+void set_structure_positions(std::span<RestingStructure> structures, std::span<const std::uint32_t> positions,
+                             int width);
 
 }  // namespace gyre

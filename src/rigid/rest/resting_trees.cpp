@@ -4,13 +4,13 @@ namespace gyre {
 
 namespace {
 
-bool hangs(const IslandCount& count) {
-  return !count.refused && !count.balances && count.grounded == 1 && count.contacts == count.bodies &&
-         count.bodies > 0;
+bool is_resting_tree(const IslandCount& count) {
+  return !count.refused && !count.has_narrow_contact && count.ground_contacts == 1 &&
+         count.contacts == count.bodies && count.bodies > 0;
 }
 
 TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, std::uint32_t constraint,
-                   bool is_b, float geometric_stiffness) {
+                   bool is_b, float gravity) {
   const BodyMass& mass = w.bodies.masses[body];
   TreeNode node;
   node.body = body;
@@ -18,68 +18,67 @@ TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, 
   node.constraint = constraint;
   node.sign = is_b ? 1.0f : -1.0f;
   node.mass = mass.mass;
-  node.rest_speed = kStillSpeedShare * std::sqrt(geometric_stiffness * mass.reach);
-  node.rest_spin = mass.reach > 0.0f ? node.rest_speed / mass.reach : 0.0f;
-  node.center = w.bodies.places[body].center;
-  node.orientation = w.bodies.places[body].orientation;
+  node.rest_speed = kStillSpeedShare * std::sqrt(gravity * mass.bounding_radius);
+  node.rest_spin = mass.bounding_radius > 0.0f ? node.rest_speed / mass.bounding_radius : 0.0f;
+  node.center = w.bodies.poses[body].center;
+  node.orientation = w.bodies.poses[body].orientation;
   node.inertia = mass.inertia;
   return node;
 }
 
 }  // namespace
 
-RestingTrees find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
+RestingTrees find_resting_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
                                 std::span<const ColoringPair> pairs, const SolveBatch& batch,
                                 const RestingIslands& islands, Arena& arena) {
-  RestingTrees forest;
-  std::size_t trees = 0, nodes = 0;
-  const auto is_tree = [&](std::uint32_t place) {
-    return islands.is_root(place) && hangs(islands.at_root(place));
+  RestingTrees trees;
+  std::size_t tree_count = 0, nodes = 0;
+  const auto is_tree = [&](std::uint32_t index) {
+    return islands.is_root(index) && is_resting_tree(islands.at_root(index));
   };
-  for (std::uint32_t place = 0; place < batch.bodies.size(); ++place) {
-    if (!is_tree(place)) continue;
-    ++trees;
-    nodes += islands.at_root(place).bodies;
+  for (std::uint32_t index = 0; index < batch.bodies.size(); ++index) {
+    if (!is_tree(index)) continue;
+    ++tree_count;
+    nodes += islands.at_root(index).bodies;
   }
-  if (trees == 0) return forest;
-  forest.trees = arena.make<RestingTree>(trees);
-  forest.nodes = arena.make<TreeNode>(nodes);
-  forest.work = arena.make<TreeScratch>(nodes);
+  if (tree_count == 0) return trees;
+  trees.trees = arena.make<RestingTree>(tree_count);
+  trees.nodes = arena.make<TreeNode>(nodes);
+  trees.work = arena.make<TreeScratch>(nodes);
   const IncidentContacts links = link_incident_contacts(pairs, batch.bodies.size(), arena);
-  const float geometric_stiffness = length(w.settings.gravity);
-  const auto body_at = [&](std::uint32_t place) { return std::int32_t(batch.bodies[place]); };
+  const float gravity = length(w.settings.gravity);
+  const auto body_at = [&](std::uint32_t index) { return std::int32_t(batch.bodies[index]); };
   std::uint32_t used = 0;
   std::size_t tree = 0;
   for (std::uint32_t root = 0; root < batch.bodies.size(); ++root) {
     if (!is_tree(root)) continue;
-    const std::uint32_t first = islands.at_root(root).first;
+    const std::uint32_t first = islands.at_root(root).ground_contact;
     const ColoringPair& ground = pairs[first];
     const bool is_b = ground.b != ColoringPair::kNone;
     const std::uint32_t begin = used;
-    forest.nodes[used++] =
-        make_node(w, body_at(is_b ? ground.b : ground.a), -1, first, is_b, geometric_stiffness);
-    // Breadth first: every other contact of a body leads to a child, as there are no loops.
+    trees.nodes[used++] = make_node(w, body_at(is_b ? ground.b : ground.a), -1, first, is_b, gravity);
+    // Breadth first. There are no loops, so every other contact of a body leads to a child.
     for (std::uint32_t at = begin; at < used; ++at) {
-      const std::uint32_t below = forest.nodes[at].constraint;
-      const std::uint32_t place = forest.nodes[at].sign > 0.0f ? pairs[below].b : pairs[below].a;
-      for (std::uint32_t link = links.first[place]; link != kNoPlace; link = links.next[link]) {
+      const std::uint32_t below = trees.nodes[at].constraint;
+      const std::uint32_t index = trees.nodes[at].sign > 0.0f ? pairs[below].b : pairs[below].a;
+      for (std::uint32_t link = links.first[index]; link != kNoIndex; link = links.next[link]) {
         const std::uint32_t i = link / 2;
         if (i == below) continue;
         const bool child_is_b = link % 2 == 0;
         const std::int32_t child = body_at(child_is_b ? pairs[i].b : pairs[i].a);
-        forest.nodes[used++] = make_node(w, child, std::int32_t(at), i, child_is_b, geometric_stiffness);
+        trees.nodes[used++] = make_node(w, child, std::int32_t(at), i, child_is_b, gravity);
       }
     }
-    for (std::uint32_t i = begin; i < used; ++i) constraints[forest.nodes[i].constraint].rigid = true;
-    forest.trees[tree++] = {begin, used};
+    for (std::uint32_t i = begin; i < used; ++i) constraints[trees.nodes[i].constraint].rigid = true;
+    trees.trees[tree++] = {begin, used};
   }
-  return forest;
+  return trees;
 }
 
-void place_tree_nodes(RestingTrees& forest, std::span<const std::uint32_t> places, int width) {
-  for (TreeNode& node : forest.nodes) {
-    node.block = places[node.constraint] / std::uint32_t(width);
-    node.lane = places[node.constraint] % std::uint32_t(width);
+void set_tree_positions(RestingTrees& trees, std::span<const std::uint32_t> positions, int width) {
+  for (TreeNode& node : trees.nodes) {
+    node.block = positions[node.constraint] / std::uint32_t(width);
+    node.lane = positions[node.constraint] % std::uint32_t(width);
   }
 }
 

@@ -1,6 +1,6 @@
-// Finds the islands that hang on the fixed world as trees of contacts and rest (solver/rest/resting_tree.h): the number of
-// contacts equals the number of bodies, one of them is with the fixed world, every patch has three points or more and
-// friction, nobody is joined to anything, and everybody is slow.
+// Finds the resting islands whose contacts form a tree that is rooted in the fixed world
+// (solver/rest/resting_tree.h). The number of contacts equals the number of bodies, one contact is with the fixed
+// world, every contact has three points or more and friction, there are no joints, and all bodies are slow.
 #pragma once
 
 #include "rigid/rest/resting_islands.h"
@@ -14,12 +14,13 @@ struct RestingTrees {
   std::span<TreeScratch> work;
 };
 
-// Of one batch; `pairs` are its constraints' bodies. Marks the constraints that are in trees as rigid.
-RestingTrees find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
+// Of one batch; `pairs` are the bodies of its constraints. Marks the constraints of trees as rigid.
+RestingTrees find_resting_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
                                 std::span<const ColoringPair> pairs, const SolveBatch& batch,
                                 const RestingIslands& islands, Arena& arena);
 
-// Tells the nodes where the kernels of `width` lanes keep their contacts (find_kernel_places()).
-void place_tree_nodes(RestingTrees& forest, std::span<const std::uint32_t> places, int width);
+// Stores in each node the block and lane of its contact in the memory of the kernels of `width` lanes
+// (find_kernel_positions()).
+void set_tree_positions(RestingTrees& trees, std::span<const std::uint32_t> positions, int width);
 
 }  // namespace gyre

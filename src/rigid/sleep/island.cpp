@@ -9,9 +9,9 @@ namespace {
 
 bool is_dynamic(const RigidWorld& w, std::uint32_t body) { return is_movable(w.bodies.flags[body]); }
 
-// What swings on a spring is slow where it turns round, a hundredth of its size from where it will rest: it must be this many times
-// slower than what lies on something.
-constexpr float kSpringRest = 0.1f;
+// A body on a spring is slow at the turning point of its oscillation, a hundredth of its size from its rest position.
+// Its sleep speed is smaller by this factor.
+constexpr float kSpringSpeedShare = 0.1f;
 
 bool is_on_spring(const RigidWorld& w, std::uint32_t body) {
   for (const std::uint32_t slot : joints_of(w.bodies, body)) {
@@ -25,10 +25,10 @@ bool is_asleep(const RigidWorld& w, std::uint32_t body) {
   return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
 }
 
-// Sets of bodies; the root of an island is its lowest body.
+// Disjoint sets of bodies; the root of an island is its lowest body.
 class Islands {
  public:
-  // Of those that are awake, in a step that has woken all who lie beside them: nobody sleeps in one.
+  // The islands of awake bodies. All bodies that touch them are awake by now, so no member of such an island sleeps.
   static Islands awake(const RigidWorld& w, Arena& arena) {
     Islands islands(w, arena);
     for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
@@ -66,22 +66,23 @@ void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
   w.events.sleep_changes.push_back({body_id(w, body), true});
 }
 
-// What is slow gains the time; what is faster than it may be pays by how much further it goes than it might have. So a limb of
-// a heap that slips once by a hair does not keep thousands awake, and what has begun to move has nothing left after a step or two.
-float gained_rest(const SleepTest& rest, float seconds) {
-  const float motion = rest.speed + kPushoutWeight * rest.pushed / seconds;
-  if (motion <= rest.rest_speed) return seconds;
-  return rest.rest_speed > 0.0f ? seconds * (1.0f - motion / rest.rest_speed) : -kMaxStillTime;
+// The change of the still time. A body below its sleep speed accumulates still time. Above it, still time shrinks in
+// proportion to the excess: a limb of a heap that slips once by a hair does not keep thousands awake, and a body that
+// starts to move loses all still time within a step or two.
+float still_time_gain(const SleepTest& test, float seconds) {
+  const float motion = test.speed + kPushoutWeight * test.pushout / seconds;
+  if (motion <= test.rest_speed) return seconds;
+  return test.rest_speed > 0.0f ? seconds * (1.0f - motion / test.rest_speed) : -kMaxStillTime;
 }
 
-void update_rest_timers(RigidWorld& w, float seconds, bool& somebody) {
-  const float geometric_stiffness = length(w.settings.gravity);
+void update_still_times(RigidWorld& w, float seconds, bool& any_ready) {
+  const float gravity = length(w.settings.gravity);
   for (const std::uint32_t i : w.bodies.awake) {
     if (w.bodies.flags[i].type != BodyType::dynamic) continue;
-    const SleepTest rest = test_sleep(w, i, geometric_stiffness);
+    const SleepTest test = test_sleep(w, i, gravity);
     float& still = w.bodies.sleep[i].still_time;
-    still = rest.allowed ? clamp(still + gained_rest(rest, seconds), 0.0f, kMaxStillTime) : 0.0f;
-    if (still >= kTimeToSleep) somebody = true;
+    still = test.allowed ? clamp(still + still_time_gain(test, seconds), 0.0f, kMaxStillTime) : 0.0f;
+    if (still >= kTimeToSleep) any_ready = true;
   }
 }
 
@@ -96,38 +97,38 @@ bool can_wake_others(const RigidWorld& w, std::uint32_t body) {
          (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{});
 }
 
-SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float geometric_stiffness) {
+SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float gravity) {
   const BodyFlags& flags = w.bodies.flags[body];
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyMass& mass = w.bodies.masses[body];
   const BodyForces& forces = w.bodies.forces[body];
   const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
-  SleepTest rest;
-  // Nothing holds a free body up: as long as it moves at all it goes on for ever.
-  rest.allowed = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && forces.force == Vec3{} &&
+  SleepTest test;
+  // A free body has no support: it never stops once it moves.
+  test.allowed = flags.can_sleep != 0 && (flags.constraint_use != 0 || !moves) && forces.force == Vec3{} &&
                  forces.torque == Vec3{} &&
-                 (flags.touched != 0 || geometric_stiffness * absolute(forces.gravity_scale) == 0.0f);
-  // A body without shapes still has the extent of its inertia: turning is motion.
+                 (flags.constraint_use != 0 || gravity * absolute(forces.gravity_scale) == 0.0f);
+  // A body without shapes has the radius of gyration of its inertia, so that rotation counts as motion.
   const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
-  const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
-  rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
-  // What is pushed apart in every step, and taken back by what it hangs on or is wedged in, goes nowhere.
-  rest.pushed = min(motion.pushout, length(motion.delta_position) + reach * length(motion.delta_rotation));
-  rest.rest_speed =
-      kRestShare * std::sqrt((geometric_stiffness > 0.0f ? geometric_stiffness : 9.81f) * reach);
-  if (is_on_spring(w, body)) rest.rest_speed *= kSpringRest;
+  const float radius = max(mass.bounding_radius, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
+  test.speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
+  // A wedged or jointed body may be pushed out in every step and return. Its pushout counts no more than its net
+  // motion.
+  test.pushout = min(motion.pushout, length(motion.delta_position) + radius * length(motion.delta_rotation));
+  test.rest_speed = kSleepSpeedShare * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * radius);
+  if (is_on_spring(w, body)) test.rest_speed *= kSpringSpeedShare;
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
-    // What only turns round in a field is slow for a moment: at rest its speed must stay, too. And what floats comes near
-    // its place as slowly as it is near: it must be slow indeed.
+    // A body in a field may be slow for a moment at a turning point, so its velocity must be constant, too. A
+    // floating body approaches its equilibrium ever more slowly, so its sleep speed is much smaller.
     const FieldRest& field = w.field_rest[body];
     constexpr float kFloatingShare = 1.0f / 200.0f;
-    if (field.acts == kFieldsAlone) rest.rest_speed *= kFloatingShare;
+    if (field.acts == kFieldsOnly) test.rest_speed *= kFloatingShare;
     const float change = length(motion.linear_velocity - field.linear) +
-                         reach * length(motion.angular_velocity - field.angular);
-    const float most = rest.rest_speed * w.settings.last_step / kTimeToSleep;
-    rest.allowed = rest.allowed && field.is_unsteady == 0 && change <= most;
+                         radius * length(motion.angular_velocity - field.angular);
+    const float max_change = test.rest_speed * w.settings.last_step / kTimeToSleep;
+    test.allowed = test.allowed && field.is_unsteady == 0 && change <= max_change;
   }
-  return rest;
+  return test;
 }
 
 void wake(RigidWorld& w, std::uint32_t body) {
@@ -174,9 +175,9 @@ void wake_neighbours(RigidWorld& w, std::uint32_t body) {
 
 void wake_touched(RigidWorld& w) {
   refresh_awake(w.bodies);
-  if (w.bodies.sleepers == 0) return;
-  // Whoever wakes disturbs its own neighbours in turn, also those that an earlier link led to: nobody may sleep beside a
-  // body that is solved, since colours and islands know only those that are awake.
+  if (w.bodies.sleeping_count == 0) return;
+  // A woken body wakes its own neighbours, also across edges that were visited before. Colours and batches contain
+  // awake bodies only, so no sleeping body may be connected to one of them.
   bool woken = true;
   while (woken) {
     woken = false;
@@ -191,24 +192,24 @@ void wake_touched(RigidWorld& w) {
 
 void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {
   if (w.settings.sleeping == 0) return;
-  bool somebody = false;
-  update_rest_timers(w, seconds, somebody);
-  if (!somebody) return;
+  bool any_ready = false;
+  update_still_times(w, seconds, any_ready);
+  if (!any_ready) return;
   Islands islands = Islands::awake(w, arena);
-  const std::span<std::uint8_t> restless = arena.make<std::uint8_t>(w.bodies.motion.size());
-  for (std::uint8_t& r : restless) r = 0;
+  const std::span<std::uint8_t> is_restless = arena.make<std::uint8_t>(w.bodies.motion.size());
+  for (std::uint8_t& r : is_restless) r = 0;
   for (const std::uint32_t i : w.bodies.awake) {
-    if (is_dynamic(w, i) && w.bodies.sleep[i].still_time < kTimeToSleep) restless[islands.root(i)] = 1;
+    if (is_dynamic(w, i) && w.bodies.sleep[i].still_time < kTimeToSleep) is_restless[islands.root(i)] = 1;
   }
   for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) {
-    // Who lies on something that moves does not rest.
-    if (is_dynamic(w, a) && !is_dynamic(w, b) && can_wake_others(w, b)) restless[islands.root(a)] = 1;
-    if (is_dynamic(w, b) && !is_dynamic(w, a) && can_wake_others(w, a)) restless[islands.root(b)] = 1;
+    // A body on a moving kinematic body does not sleep.
+    if (is_dynamic(w, a) && !is_dynamic(w, b) && can_wake_others(w, b)) is_restless[islands.root(a)] = 1;
+    if (is_dynamic(w, b) && !is_dynamic(w, a) && can_wake_others(w, a)) is_restless[islands.root(b)] = 1;
   });
   for (const std::uint32_t i : w.bodies.awake) {
     if (!is_dynamic(w, i)) continue;
     const std::uint32_t root = islands.root(i);
-    if (restless[root] == 0) fall_asleep(w, i, root);
+    if (is_restless[root] == 0) fall_asleep(w, i, root);
   }
 }
 

@@ -225,7 +225,7 @@ Vec3 spin_of(const BodyStore& bodies, std::uint32_t body, Vec3 turning) {
 }
 
 DVec3 center_of(const BodyStore& bodies, std::uint32_t body) {
-  return bodies.places[body].center + DVec3(bodies.motion[body].delta_position);
+  return bodies.poses[body].center + DVec3(bodies.motion[body].delta_position);
 }
 
 // The motion of what holds an island, as that of all its bodies: none, if it does not move.

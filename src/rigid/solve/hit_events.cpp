@@ -16,7 +16,7 @@ float hit_speed(const Contact& contact) { return kHitShare * std::sqrt(9.81f * c
 // `struck`: the point that closed fastest.
 ContactHit make_hit(const RigidWorld& w, const Contact& contact, const Manifold& manifold,
                     const ContactPointState& struck, float impulse) {
-  const DVec3 place = w.bodies.places[contact.body_a].center + struck.from_a;
+  const DVec3 place = w.bodies.poses[contact.body_a].center + struck.from_a;
   return {shape_id(w, contact.shape_a),
           shape_id(w, contact.shape_b),
           body_id(w, contact.body_a),

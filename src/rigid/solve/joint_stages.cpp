@@ -74,7 +74,7 @@ void begin_ball_joints(const JointGroup& g, int begin, int end) {
   const float warm_scale = s.all_iterative ? s.lane_start.warm_scale : 1.0f;
   const auto turns = [&](std::int32_t body) {
     return body != kNoBody &&
-           inertia_turns(s.w.bodies.masses[std::size_t(body)], s.w.bodies.flags[std::size_t(body)]);
+           inertia_rotates(s.w.bodies.masses[std::size_t(body)], s.w.bodies.flags[std::size_t(body)]);
   };
   for_balls(g, begin, end, [&](int block, int lane, std::uint32_t slot) {
     const JointRecord& joint = s.w.joints.records[slot];

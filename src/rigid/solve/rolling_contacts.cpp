@@ -344,7 +344,7 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const ContactLists& lists,
   for (std::uint32_t& place : all.of_constraint) place = kNotRolling;
   for (std::uint32_t n = 0; n < found; ++n) {
     for (const std::int32_t body : {sides[n].body, sides[n].other})
-      if (body != kNoBody) w.bodies.flags[std::size_t(body)].touched = kPoseRead;
+      if (body != kNoBody) w.bodies.flags[std::size_t(body)].constraint_use = kPoseRead;
     all.of_constraint[sides[n].constraint] = n;
   }
   for_blocks(tasks, int(found), kRollersPerBlock, [&](int begin, int end, int) {

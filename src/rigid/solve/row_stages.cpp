@@ -35,7 +35,7 @@ struct IslandRows {
 
 int sweeps_of(const SolverSettings& settings) {
   if (settings.options.iterations > 0) return settings.options.iterations;
-  return settings.kind == SolverKind::lcp ? kNncgSweeps : kSequentialSweeps;
+  return settings.kind == SolverKind::lcp ? kNncgIterations : kSequentialIterations;
 }
 bool pivots(LcpMethod method) { return method == LcpMethod::dantzig || method == LcpMethod::lemke; }
 

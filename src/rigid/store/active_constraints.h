@@ -1,9 +1,9 @@
-// Contacts and joints of bodies that go along in a step: whoever works on these asks no others, so that what sleeps costs nothing,
-// however much there is of it.
+// Bit sets of the contacts and joints that touch an awake body. Later stages visit only these, so sleeping islands
+// cost nothing.
 //
-// Bits by slot. A contact or joint of a body that goes along has its bit at any time; others may have theirs: contacts of shapes whose
-// boxes changed, for they may be gone, and whatever had a body that has fallen asleep since the step began. While few bodies sleep
-// all have theirs.
+// Bits are by slot. Each contact or joint of a simulated body has its bit at any time. Some others have theirs, too:
+// contacts of shapes whose boxes changed, since these may have to be removed, and constraints of bodies that fell
+// asleep during the step. While few bodies sleep, all bits are set.
 #pragma once
 
 #include "base/container/bitset.h"
@@ -16,15 +16,15 @@ struct RigidWorld;
 
 struct ActiveConstraints {
   Bitset contacts, joints;
-  bool all = false;  // all have theirs, always: tests compare with that
+  bool all = false;  // all bits are always set; tests compare with that
 };
 
-// Finds them anew, after the step's new pairs and before the list of changed shapes is forgotten.
+// Finds the sets after the new pairs of the step, while the list of changed shapes still exists.
 void find_active_constraints(RigidWorld& w);
-// Those of a body that has just woken, and a joint that is new.
+// Activates the constraints of a body that has just woken.
 void activate_constraints_of(RigidWorld& w, std::uint32_t body);
 void activate_joint(RigidWorld& w, std::uint32_t joint);
-// All of them: as a state begins of which nothing is known yet.
+// Sets all bits. A loaded state begins so.
 void activate_all_constraints(RigidWorld& w);
 
 }  // namespace gyre

@@ -11,7 +11,7 @@ IdPool::Slot add_body_slot(BodyStore& store) {
     const std::size_t count = i + 1;
     store.motion.resize(count);
     store.inertia.resize(count);
-    store.places.resize(count);
+    store.poses.resize(count);
     store.orientations.resize(count);
     store.masses.resize(count);
     store.forces.resize(count);
@@ -23,7 +23,7 @@ IdPool::Slot add_body_slot(BodyStore& store) {
   }
   store.motion[i] = {};
   store.inertia[i] = {};
-  store.places[i] = {};
+  store.poses[i] = {};
   store.orientations[i] = {};
   store.masses.set(i, {});
   store.forces[i] = {};
@@ -50,8 +50,8 @@ void remove_body_slot(BodyStore& store, std::uint32_t body) {
 
 namespace {
 
-// The inverse of `inertia` on the axes that are free, zero on the locked ones: the inverse of the sub-matrix, not the
-// sub-matrix of the inverse, since a locked axis takes up whatever torque it needs.
+// The inverse of `inertia` on the free axes, zero on locked ones. A locked axis takes up any torque, so this is the
+// inverse of the sub-matrix, not the sub-matrix of the inverse.
 Sym3 inverse_on_free_axes(Sym3 inertia, std::uint8_t locked) {
   if (locked & 1) inertia.xy = inertia.xz = 0.0f, inertia.xx = 1.0f;
   if (locked & 2) inertia.xy = inertia.yz = 0.0f, inertia.yy = 1.0f;
@@ -81,7 +81,7 @@ BodyInertia world_inertia(const BodyMass& mass, const BodyFlags& flags, Quat ori
 }
 
 void refresh_inertia(BodyStore& store, std::uint32_t body) {
-  store.inertia[body] = world_inertia(store.masses[body], store.flags[body], store.places[body].orientation);
+  store.inertia[body] = world_inertia(store.masses[body], store.flags[body], store.poses[body].orientation);
   store.motion[body].inverse_mass = store.inertia[body].inverse_mass;
 }
 
@@ -89,11 +89,11 @@ void refresh_awake(BodyStore& store) {
   if (!store.awake_stale) return;
   store.awake_stale = false;
   store.awake.clear();
-  store.sleepers = 0;
+  store.sleeping_count = 0;
   store.ids.for_each_live([&](std::uint32_t body) {
     const BodyFlags& flags = store.flags[body];
     if (is_simulated(flags)) store.awake.push_back(body);
-    if (is_movable(flags) && flags.awake == 0) ++store.sleepers;
+    if (is_movable(flags) && flags.awake == 0) ++store.sleeping_count;
   });
 }
 

@@ -37,7 +37,7 @@ FieldRecord make_field_record(const FieldDef& def) {
   r.core = def.core;
   r.axis = normalized(def.axis);
   r.normal = normalized(def.normal);
-  // The plane stays where it is: dot(normal, p) = offset for the normal of length 1.
+  // The offset is for the normal of length 1: dot(normal, p) = offset.
   r.offset = def.offset;
   return r;
 }

@@ -1,5 +1,5 @@
-// A field as the world keeps it: plain numbers, with directions of length 1, in a slot with a generation. Slots are handed out
-// lowest first; a generation is odd while its slot is in use.
+// A force field as the world stores it: plain numbers, directions of length 1. It occupies a slot with a generation.
+// The lowest free slot is used first; a generation is odd while its slot is in use.
 #pragma once
 
 #include <gyre/fields.h>
@@ -31,7 +31,7 @@ struct FieldRecord {
   bool is_medium() const { return kind != FieldKind::radial; }
 };
 
-// Of a definition that was checked; the generation is the caller's.
+// `def` must have passed the checks. The caller sets the generation.
 FieldRecord make_field_record(const FieldDef& def);
 FieldDef field_def(const FieldRecord& record);
 

@@ -1,4 +1,4 @@
-// How a world moves its bodies where that is not the default: integrator, springs, time plan. Part of the state.
+// How a world integrates motion: integrator, springs, time stepping. Part of the state.
 #pragma once
 
 #include <gyre/defs.h>
@@ -17,8 +17,7 @@ struct MotionSettings {
   TimeStepping time = TimeStepping::fixed;
   float tolerance = 1.0e-5f;       // m
   std::int32_t max_impacts = 128;  // in a step
-  std::int32_t planned_substeps =
-      0;  // that the next step begins with, by the error of the last; 0: as many as the settings say
+  std::int32_t planned_substeps = 0;  // of the next step, from the error of the last; 0: as the settings say
 };
 
 inline bool is_default(const MotionSettings& m) {
@@ -26,12 +25,13 @@ inline bool is_default(const MotionSettings& m) {
          m.time == TimeStepping::fixed;
 }
 
-// What Verlet knows of a body instead of a velocity: the way from its last pose but one to its last. (Not that pose itself: the
-// difference of two rounded places has lost its digits, and what is put elsewhere takes both poses with it.) The velocities are
-// those that were shown; whoever changes them since has changed the body's motion, and the next step begins with theirs.
+// The state of the Verlet integrator in place of a velocity: the displacement from the pose before the last to the
+// last pose. The former pose itself would not do: the difference of two rounded positions loses digits, and a
+// teleport moves both poses. `linear` and `angular` are the velocities that were published; if a command changed them
+// since, the next step starts from the new ones.
 struct LastMove {
   DVec3 moved, turned;   // m; rad, rotation vector, world frame
-  double seconds = 0.0;  // in which; 0: there is none
+  double seconds = 0.0;  // duration of the displacement; 0: there is none
   Vec3 linear, angular;  // m/s, rad/s
 };
 

@@ -35,7 +35,7 @@ ContactSurface combine_materials(const RigidWorld& w, const Material& a, const M
   surface.static_friction = combine(w.settings.friction_rule, a.static_friction, b.static_friction);
   surface.dynamic_friction = combine(w.settings.friction_rule, a.dynamic_friction, b.dynamic_friction);
   surface.restitution = combine(w.settings.restitution_rule, a.restitution, b.restitution);
-  // Lengths of deformation: the softer surface decides.
+  // Friction lengths grow with deformation, so the softer surface decides.
   surface.rolling_friction = max(a.rolling_friction, b.rolling_friction);
   surface.spinning_friction = max(a.spinning_friction, b.spinning_friction);
   if (const MaterialPair* pair = find_pair(w.material_pairs, a.id, b.id)) {
@@ -43,7 +43,7 @@ ContactSurface combine_materials(const RigidWorld& w, const Material& a, const M
     surface.dynamic_friction = pair->dynamic_friction;
     surface.restitution = pair->restitution;
   }
-  // Sliding never takes more than sticking.
+  // Static friction is at least dynamic friction.
   surface.static_friction = max(surface.static_friction, surface.dynamic_friction);
   return surface;
 }

@@ -1,4 +1,4 @@
-// Everything rigid: bodies, shapes, joints, contacts, and the settings that act on them.
+// The rigid part of a world: bodies, shapes, joints, contacts, fields and their settings.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -24,19 +24,20 @@ namespace gyre {
 struct JointStore {
   IdPool ids;
   Array<JointRecord> records;
-  Array<JointDetail> details;      // by slot, as far as a joint needed one: most worlds have none
-  Array<PathPoint> path_points;    // of all curves, one after the other
-  FlatMap<std::uint32_t> blocked;  // body pair key -> number of joints that keep the two from colliding; derived
+  Array<JointDetail> details;    // by slot, shorter than the records: most joints have none
+  Array<PathPoint> path_points;  // of all paths, one after the other
+  FlatMap<std::uint32_t>
+      blocked;  // body pair key -> number of joints that disable the collision of the two; derived
 };
 
-// What the joint has beyond its record; null if nothing.
+// Data of the joint beyond its record; null if there is none.
 inline const JointDetail* detail_of(const JointStore& joints, std::uint32_t slot) {
   return slot < joints.details.size() && joints.details[slot].used ? &joints.details[slot] : nullptr;
 }
 inline JointDetail* detail_of(JointStore& joints, std::uint32_t slot) {
   return slot < joints.details.size() && joints.details[slot].used ? &joints.details[slot] : nullptr;
 }
-// Asks for what is looked at first of a joint that comes soon: records are long, and there are many.
+// Prefetches the start of the records of a joint. Records are long, and loops visit many of them.
 inline void fetch_joint(const JointStore& joints, std::uint32_t slot) {
   if (slot < joints.records.size()) __builtin_prefetch(&joints.records[slot]);
   if (slot < joints.details.size()) __builtin_prefetch(&joints.details[slot]);
@@ -52,11 +53,11 @@ struct RigidSettings {
   CombineRule friction_rule = CombineRule::geometric_mean;
   CombineRule restitution_rule = CombineRule::maximum;
   std::uint8_t spare = 0;
-  float last_substep = 0.0f;  // s, between two sweeps of the solver: the warm start is scaled by the change of it
+  float last_substep = 0.0f;  // s; the warm start is scaled by the change of the sub-step
   float last_step = 0.0f;     // s
 };
 
-// What happened in a step, before it is made public.
+// The events of the present step, before they are published.
 struct RigidEvents {
   Array<ContactBegin> begins;
   Array<ContactEnd> ends;
@@ -66,18 +67,18 @@ struct RigidEvents {
   Array<SleepChange> sleep_changes;
 };
 
-// When memory that only busy steps need was last needed.
+// Shrink policies of the arrays that only busy steps fill.
 struct ScratchClocks {
-  ShrinkPolicy changed, hurried, new_pairs, sort_scratch;
+  ShrinkPolicy changed, moved_shapes, new_pairs, sort_scratch;
   ShrinkPolicy begins, ends, hits, sensors, broken, sleep_changes;
 };
 
-// How a body that fields act on fared in a step; by body, in worlds with fields.
-constexpr std::uint8_t kNoFields = 0, kFieldsToo = 1, kFieldsAlone = 2;
+// The effect of fields on a body in a step, for the sleep test. By body; empty in worlds without fields.
+constexpr std::uint8_t kNoFields = 0, kFieldsAndConstraints = 1, kFieldsOnly = 2;
 struct FieldRest {
   Vec3 linear, angular;            // velocity as the step began
-  std::uint8_t acts = kNoFields;   // beside constraints, or alone
-  std::uint8_t is_unsteady = 0;  // a field acts that changes by itself
+  std::uint8_t acts = kNoFields;   // kNoFields, kFieldsAndConstraints or kFieldsOnly
+  std::uint8_t is_unsteady = 0;    // a field with time-dependent forces acts
 };
 
 struct RigidWorld {
@@ -89,27 +90,27 @@ struct RigidWorld {
   Array<SurfaceRule> surface_rules;    // sorted by id
   Array<FieldRecord> fields;           // by slot
   RigidSettings settings;
-  Array<MotionSettings> motion_settings;  // one, where they are not the default; else none
-  Array<SolverSettings> solver;        // one, or none: the default solver
+  Array<MotionSettings> motion_settings;  // one record, or none for the defaults
+  Array<SolverSettings> solver;           // one record, or none for the default solver
 
-  // Not state: can be rebuilt or lives for one step.
+  // Derived, or valid for one step only.
   std::unique_ptr<Broadphase> broadphase;
   bool broadphase_stale = true;        // must be rebuilt from all proxies
-  ActiveConstraints awake_links;
+  ActiveConstraints active_constraints;
   TouchChanges touches;
-  InternalEdgeScratch internal_edges;  // contacts at flush edges, in the last step
+  InternalEdgeScratch internal_edges;  // contacts at internal edges in the last step
   Array<std::uint64_t> new_pairs;
   Array<std::uint64_t> sort_scratch;
-  Array<std::uint32_t> listed;         // contacts of a shape that is looked at
-  std::uint64_t steps = 0;             // done before this one: for what is looked at only now and then
-  double now = 0.0;                    // s, as the step begins: for fields that change by themselves
+  Array<std::uint32_t> listed;  // working memory: contacts of one shape
+  std::uint64_t steps = 0;      // steps done so far; some searches run only every n-th step
+  double now = 0.0;             // s, at the beginning of the step; for fields that depend on time
   Array<FieldRest> field_rest;
-  Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step
+  Array<std::uint8_t> refit_marks;  // by shape: 1 if it got a new fat box in this step
   RigidEvents events;
   ScratchClocks clocks;
   Array<std::uint8_t>
-      waiting;  // by contact: it does not act (rigid/time/toi_stepping.h); adaptive steps, else empty
-  std::uint16_t world_number = 0;      // for ids in events
+      inactive_contacts;  // by contact: not 0 if it does not act (rigid/time/toi_stepping.h); empty unless the step is adaptive
+  std::uint16_t world_number = 0;  // part of the ids in events
 };
 
 inline MotionSettings motion_settings(const RigidWorld& w) {
@@ -131,7 +132,7 @@ inline JointId joint_id(const RigidWorld& w, std::uint32_t joint) {
   return {joint, std::uint16_t(w.joints.ids.generation(joint)), w.world_number};
 }
 
-// Surface of a pair of shapes: the table's entry, or the combine rules.
+// The surface of a pair of shapes, from the table of pairs or by the combine rules.
 ContactSurface combine_materials(const RigidWorld& w, const Material& a, const Material& b);
 
 }  // namespace gyre

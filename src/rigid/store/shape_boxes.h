@@ -1,7 +1,8 @@
-// The boxes of shapes on bodies that move, four side by side: almost every step asks for those of everything that is awake.
+// Bounding boxes of shapes on moving bodies, four shapes in SIMD lanes; most steps compute the boxes of all awake
+// bodies.
 //
-// In: bodies and shapes as they are. Out: the box that holds a shape and how it moves, as collision/broadphase/fat_box.h wants them, or the
-// fat boxes that follow from these. The bits do not depend on what stands beside.
+// In: bodies and shapes. Out: the box of a shape and its motion, as collision/broadphase/fat_box.h takes them, or new
+// fat boxes. The result of a shape does not depend on its neighbours in the lanes.
 #pragma once
 
 #include "collision/broadphase/fat_box.h"
@@ -11,14 +12,15 @@ namespace gyre {
 
 struct ShapeBox {
   WorldBox tight;
-  BoxMotion motion;  // in a step of the length that was asked for
+  BoxMotion motion;  // in a step of the given length
 };
 ShapeBox find_box(const RigidWorld& w, std::uint32_t shape, float seconds);
 
-// Makes the fat boxes of the bodies' shapes anew where that must be, and marks these in refit_marks; whether there are any.
+// Refits the fat boxes of the shapes of these bodies if necessary, and marks the refitted shapes in refit_marks. True
+// if any was refitted.
 bool refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float seconds);
 
-// For each of the bodies, which move: whether all its shapes stay in their fat boxes on their way in this step. True is certain.
-void find_staying(const RigidWorld& w, std::span<const std::uint32_t> bodies, std::span<bool> stay);
+// For each of the moving bodies: true if all its shapes certainly stay within their fat boxes during this step.
+void find_within_fat_boxes(const RigidWorld& w, std::span<const std::uint32_t> bodies, std::span<bool> stay);
 
 }  // namespace gyre

@@ -7,7 +7,7 @@ IdPool::Slot add_shape_slot(ShapeStore& store) {
   const std::size_t i = slot.index;
   if (i >= store.colliders.size()) {
     store.bodies.resize(i + 1);
-    store.places.resize(i + 1);
+    store.body_from_shape.resize(i + 1);
     store.colliders.resize(i + 1);
     store.proxies.resize(i + 1);
     store.materials.resize(i + 1);
@@ -17,7 +17,7 @@ IdPool::Slot add_shape_slot(ShapeStore& store) {
     store.user_data.resize(i + 1);
   }
   store.bodies[i] = 0;
-  store.places.set(i, {});
+  store.body_from_shape.set(i, {});
   store.colliders.set(i, {});
   store.proxies[i] = {};
   store.materials.set(i, {});
@@ -38,7 +38,7 @@ void remove_shape_slot(ShapeStore& store, std::uint32_t shape) {
 void refresh_collider(ShapeStore& store, std::uint32_t shape) {
   ColliderShape collider;
   collider.shape = make_shape(store.geometry[shape]);
-  collider.body_from_shape = store.places[shape];
+  collider.body_from_shape = store.body_from_shape[shape];
   collider.size = inner_radius(collider.shape);
   store.colliders.set(shape, collider);
 }

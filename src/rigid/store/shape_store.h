@@ -1,4 +1,5 @@
-// Shapes on bodies: what collision needs as columns indexed by the shape's slot, and what only the user asks for.
+// Shapes on bodies as columns, indexed by the slot of the shape: data for collision, and data that only the user
+// reads.
 #pragma once
 
 #include "base/container/array.h"
@@ -28,27 +29,28 @@ inline auto interning_key(const ColliderShape& c) {
 
 struct ShapeStore {
   IdPool ids;
-  Array<std::uint32_t> bodies;      // owner of each shape
-  InternedColumn<Transform> places;         // body_from_shape
-  InternedColumn<ColliderShape> colliders;  // inner form of all that; borrows from `geometry`; derived
+  Array<std::uint32_t> bodies;  // the body of each shape
+  InternedColumn<Transform> body_from_shape;
+  InternedColumn<ColliderShape> colliders;  // the form for collision; refers to `geometry`; derived
   Array<Proxy> proxies;             // fat boxes are state: they decide when pairs begin
   InternedColumn<Material> materials;
-  std::vector<AnyShape> geometry;   // keeps cooked data alive
+  std::vector<AnyShape> geometry;  // owns cooked geometry
   Array<float> density;
   Array<std::uint64_t> user_data;
-  Array<std::uint32_t> changed;     // proxies that the broad phase has not seen yet, in no order; derived
-  // The fat boxes of what is awake hold its way in a step of this length (s), but for those of `hurried`; derived.
+  Array<std::uint32_t> changed;  // proxies that the broad phase does not know yet, in no order; derived
+  // The fat boxes of awake bodies cover their motion in a step of this length (s), except those of `moved_shapes`;
+  // derived.
   float fat_box_horizon = 0.0f;
-  Array<std::uint32_t> hurried;     // shapes that commands placed or set moving since
+  Array<std::uint32_t> moved_shapes;  // shapes that commands placed or set moving since the last step
 };
 
 IdPool::Slot add_shape_slot(ShapeStore& store);
 void remove_shape_slot(ShapeStore& store, std::uint32_t shape);
 
-// The inner form of a shape, from the columns that are state.
+// Derives the form for collision from the state columns.
 void refresh_collider(ShapeStore& store, std::uint32_t shape);
 
-// Mass properties of a set of shapes in the body's frame; kind planes, meshes and fields add none.
+// Mass properties of a set of shapes in the frame of the body. Planes, meshes and height fields have no mass.
 MassProperties shapes_mass(const ShapeStore& store, std::span<const ShapeId> shapes);
 
 }  // namespace gyre

@@ -1,5 +1,5 @@
-// Which solver a world has, if not the default one, and how it is set. Part of the state: worlds with the default solver have
-// no such record, and the hashes and snapshots that they always had.
+// The solver of a world, if it is not the default one, and its options. Part of the state. A world with the default
+// solver has no such record, so its hash and snapshots are those of older versions.
 #pragma once
 
 #include <gyre/defs.h>
@@ -13,21 +13,21 @@ struct SolverSettings {
   SolverOptions options;
 };
 
-// Why a solver cannot be set like this; null if it can.
+// Why these settings are invalid; null if they are valid.
 const char* fault_in(const SolverSettings& solver);
 
-// What iterations 0 stands for.
-constexpr int kSequentialSweeps = 10;
-constexpr int kNncgSweeps = 200;
+// The defaults that 0 iterations stand for.
+constexpr int kSequentialIterations = 10;
+constexpr int kNncgIterations = 200;
 
-// What a step's islands had to say, the sub-steps together.
+// Statistics of the islands of a step, over all sub-steps.
 struct RowStats {
   double residual = 0.0;  // N s, or N m s
   int islands = 0;
   int largest = 0;    // rows of the largest island
-  int direct = 0;     // islands that a direct method solved
-  int too_large = 0;  // islands that the method that was asked for does not take
-  int sweeps = 0;     // the most that an island took
+  int direct = 0;     // islands solved by a direct method
+  int too_large = 0;  // islands too large for the method that the user chose
+  int sweeps = 0;     // largest number of iterations of an island
 };
 
 }  // namespace gyre

@@ -1,22 +1,24 @@
-// Steps cut by their error, for bodies that contacts or joints act on: a step is solved with n sub-steps and, from the same state, with
-// 2 n; how far the ends are apart is the error of the latter, since the solver is of first order (L. F. Richardson). Until that is
-// within the tolerance n doubles. Who moves freely tells its own error (rigid/integrate/smooth_motion.h).
+// Error-controlled steps, for bodies that contacts or joints act on. A step is solved with n sub-steps and, from the
+// same state, with 2 n. The solver is of first order, so the difference of the two results is the error of the second
+// (L. F. Richardson). n doubles until the error is within the tolerance. Free bodies have an error estimate of their
+// own (rigid/integrate/smooth_motion.h).
 //
-// Blows are where this ends: one that falls into another sub-step leaves other velocities, and more sub-steps do not make that less than
-// what the bodies move in one. Such a step has as many as there may be, and its report says what error is left.
+// Impacts limit the method. An impact in another sub-step leads to other velocities, and more sub-steps do not reduce
+// that below the motion of one sub-step. Such a step uses the largest number of sub-steps, and its report states the
+// remaining error.
 #pragma once
 
 #include "rigid/time/toi_stepping.h"
 
 namespace gyre {
 
-// Sub-steps that a step is cut into for the sake of its error, at most.
+// The largest number of sub-steps that error control uses.
 constexpr std::int32_t kMaxPlanned = 64;
 
-// Whether a contact or joint acted on any awake body in the step that was solved last.
+// True if a contact or joint acted on an awake body in the last solve.
 bool is_anything_constrained(const RigidWorld& w);
-// m: how far the ends of the step of `seconds` are from those of the same step in `other`, places and what velocities make of
-// themselves in as much time again; the largest of all bodies that constraints act on.
+// The difference of two results of a step of `seconds`, m: that of the poses, plus that of the velocities times
+// `seconds`. The largest over all constrained bodies.
 double step_difference(const RigidWorld& w, std::span<const BodyMotion> other, float seconds);
 
 }  // namespace gyre

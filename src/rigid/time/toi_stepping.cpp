@@ -9,8 +9,8 @@ namespace gyre {
 
 namespace {
 
-// How a contact waits.
-constexpr std::uint8_t kActs = 0, kApart = 1, kParting = 2;
+// The states of a contact in RigidWorld::inactive_contacts.
+constexpr std::uint8_t kActs = 0, kApart = 1, kSeparating = 2;
 
 bool has_gap(const RigidWorld& w, const Contact& contact) {
   const auto is_solid = [&](std::uint32_t shape) {
@@ -25,15 +25,15 @@ bool is_considered(const RigidWorld& w, const Contact& contact) {
          (is_active(w, contact.body_a) || is_active(w, contact.body_b)) && has_gap(w, contact);
 }
 
-// The two shapes of a contact on their way.
+// The motions of the two shapes of a contact.
 struct SweptPair {
   Sweep sweep_a, sweep_b;
   SweptShape a, b;
 
-  // `moved`: on their way; else where they are as the step begins.
-  SweptPair(const RigidWorld& w, const Contact& contact, bool moved)
+  // `swept`: along their motion; else at their poses at the beginning of the step.
+  SweptPair(const RigidWorld& w, const Contact& contact, bool swept)
       : sweep_a(sweep_of_body(w.bodies, contact.body_a)), sweep_b(sweep_of_body(w.bodies, contact.body_b)) {
-    if (!moved) sweep_a.translation = sweep_a.rotation = sweep_b.translation = sweep_b.rotation = {};
+    if (!swept) sweep_a.translation = sweep_a.rotation = sweep_b.translation = sweep_b.rotation = {};
     const ColliderShape &shape_a = w.shapes.colliders[contact.shape_a],
                         &shape_b = w.shapes.colliders[contact.shape_b];
     a = make_swept_shape(shape_a.shape, shape_a.body_from_shape, sweep_a);
@@ -45,13 +45,13 @@ struct SweptPair {
   Gap gap(double time, double reach) const { return find_gap(a, b, time, reach); }
 };
 
-// The slowest that points of the contact part which touch, m/s; closing is below 0. `near`: m.
-float parting_speed(const RigidWorld& w, const Contact& contact, float near) {
+// The smallest separating speed of the contact points within `tolerance` (m), m/s. Closing speeds are negative.
+float separating_speed(const RigidWorld& w, const Contact& contact, float tolerance) {
   float slowest = 1.0e30f;
   for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
     for (int k = 0; k < manifold.count; ++k) {
       const ContactPointState& point = manifold.points[k];
-      if (point.separation > near) continue;
+      if (point.separation > tolerance) continue;
       const DVec3 v = DVec3(point_velocity(w.bodies.motion[contact.body_b], point.from_b)) -
                       DVec3(point_velocity(w.bodies.motion[contact.body_a], point.from_a));
       slowest = min(slowest, float(dot(v, DVec3(manifold.normal))));
@@ -61,72 +61,74 @@ float parting_speed(const RigidWorld& w, const Contact& contact, float near) {
 }
 
 float min_separation(const RigidWorld& w, const Contact& contact) {
-  float least = 1.0e30f;
+  float smallest = 1.0e30f;
   for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
-    for (int k = 0; k < manifold.count; ++k) least = min(least, manifold.points[k].separation);
+    for (int k = 0; k < manifold.count; ++k) smallest = min(smallest, manifold.points[k].separation);
   }
-  return least;
+  return smallest;
 }
 
-std::int32_t apply_impulse_to(const RigidWorld& w, std::uint32_t body) {
+std::int32_t movable_body(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
 }
 
-// The manifold's points that touch, as a blow knows them; none: count 0.
-ImpactContact make_blow(const RigidWorld& w, const Contact& contact, Manifold& manifold) {
+// The touching points of a manifold as an impact; count 0 if there are none.
+ImpactContact make_touching_impact(const RigidWorld& w, const Contact& contact, Manifold& manifold) {
   ContactConstraint constraint;
-  constraint.body_a = apply_impulse_to(w, contact.body_a);
-  constraint.body_b = apply_impulse_to(w, contact.body_b);
+  constraint.body_a = movable_body(w, contact.body_a);
+  constraint.body_b = movable_body(w, contact.body_b);
   constraint.dynamic_friction = contact.surface.dynamic_friction;
   constraint.restitution = contact.surface.restitution;
   constraint.manifold = &manifold;
   constraint.point_count = std::int16_t(manifold.count);
   if (!w.surface_rules.empty() && !apply_surface_rules(w, contact, manifold, constraint))
     constraint.restitution = 0.0f;
-  ImpactContact blow = make_impact(constraint);
-  const float near = 2.0f * touch_distance(contact);
+  ImpactContact impact = make_impact(constraint);
+  const float tolerance = 2.0f * touch_distance(contact);
   int touching = 0;
-  for (int k = 0; k < blow.count; ++k) {
-    if (blow.points[k].separation > near) {
-      blow.points[k].separation = 1.0e30f;  // never met
+  for (int k = 0; k < impact.count; ++k) {
+    if (impact.points[k].separation > tolerance) {
+      impact.points[k].separation = 1.0e30f;  // takes no part
       continue;
     }
-    blow.points[k].separation = 0.0f;
+    impact.points[k].separation = 0.0f;
     ++touching;
   }
-  if (touching == 0 || !(blow.restitution > 0.0f)) blow.count = 0;
-  return blow;
+  if (touching == 0 || !(impact.restitution > 0.0f)) impact.count = 0;
+  return impact;
 }
 
-// How far b is beyond the straight way, against a, at a share of a step: it starts slower than the mean speed and ends faster.
-DVec3 off_the_chord(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact, double share,
-                    double seconds) {
-  const auto energy_gain = [&](std::uint32_t body) {
+// The offset of b relative to a from its straight path at a share of the step. Under constant acceleration a body
+// starts slower than its mean speed and ends faster.
+DVec3 acceleration_offset(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact,
+                          double share, double seconds) {
+  const auto velocity_change = [&](std::uint32_t body) {
     if (!is_active(w, body)) return DVec3{};
     return DVec3(w.bodies.motion[body].linear_velocity) - DVec3(before.motion(body).linear_velocity);
   };
   return (-0.5 * share * (1.0 - share) * seconds) *
-         (energy_gain(contact.body_b) - energy_gain(contact.body_a));
+         (velocity_change(contact.body_b) - velocity_change(contact.body_a));
 }
 
-double first_meeting(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact,
-                     double seconds) {
-  const double near = double(touch_distance(contact));
+double first_impact_time(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact,
+                         double seconds) {
+  const double tolerance = double(touch_distance(contact));
   const SweptPair pair(w, contact, true);
-  const Impact impact = time_of_impact(pair.a, pair.b, 0.0, 1.0, 0.5 * near);
+  const Impact impact = time_of_impact(pair.a, pair.b, 0.0, 1.0, 0.5 * tolerance);
   if (!impact.hit) return kNoImpact;
-  const double end = pair.gap(1.0, 4.0 * near).distance;
-  if (impact.time >= 1.0 || absolute(end) <= near) return kNoImpact;  // just there
-  const DVec3 off = off_the_chord(w, before, contact, impact.time, seconds);
-  constexpr double kBit = 1.0e-3;
-  const double ahead = min(kBit, 0.5 * impact.time);
-  const Gap there = pair.gap(impact.time, 4.0 * near), earlier = pair.gap(impact.time - ahead, 1.0e30);
+  const double end = pair.gap(1.0, 4.0 * tolerance).distance;
+  if (impact.time >= 1.0 || absolute(end) <= tolerance) return kNoImpact;  // touches just at the end
+  const DVec3 off = acceleration_offset(w, before, contact, impact.time, seconds);
+  constexpr double kTimeStep = 1.0e-3;
+  const double dt = min(kTimeStep, 0.5 * impact.time);
+  const Gap at_impact = pair.gap(impact.time, 4.0 * tolerance),
+            before_impact = pair.gap(impact.time - dt, 1.0e30);
   const double closing =
-      ahead > 0.0 ? (earlier.distance - there.distance) / ahead : 0.0;  // m, in the whole step
+      dt > 0.0 ? (before_impact.distance - at_impact.distance) / dt : 0.0;  // m, for the whole step
   double time = impact.time;
-  if (closing > 0.0) time += dot(off, there.normal) / closing;
-  // Not beyond what the straight way says by more than a step's bend can: where the end overlaps it is met in any case.
+  if (closing > 0.0) time += dot(off, at_impact.normal) / closing;
+  // The correction may not move the impact out of the step: if the shapes overlap at the end, they meet in any case.
   if (!(time > 0.0)) time = impact.time;
   if (time >= 1.0) return end < 0.0 ? impact.time * seconds : kNoImpact;
   return time * seconds;
@@ -134,7 +136,7 @@ double first_meeting(const RigidWorld& w, const StepCheckpoint& before, const Co
 
 }  // namespace
 
-void StepCheckpoint::keep(const RigidWorld& w) {
+void StepCheckpoint::save(const RigidWorld& w) {
   motion_ = w.bodies.motion;
   inertia_ = w.bodies.inertia;
   orientations_ = w.bodies.orientations;
@@ -146,7 +148,7 @@ void StepCheckpoint::keep(const RigidWorld& w) {
   settings_ = w.settings;
 }
 
-void StepCheckpoint::put_back(RigidWorld& w) const {
+void StepCheckpoint::restore(RigidWorld& w) const {
   w.bodies.motion = motion_;
   w.bodies.inertia = inertia_;
   w.bodies.orientations = orientations_;
@@ -159,73 +161,73 @@ void StepCheckpoint::put_back(RigidWorld& w) const {
 }
 
 bool resolve_impacts(RigidWorld& w, ImpactScratch& scratch, float threshold) {
-  scratch.impacts.clear(), scratch.slots.clear(), scratch.fast.clear(), scratch.struck.clear();
+  scratch.impacts.clear(), scratch.contacts.clear(), scratch.is_hit.clear(), scratch.hit_bodies.clear();
   for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
     const Contact& contact = w.contacts.contacts[slot];
     if (!is_considered(w, contact) || !is_solved(w, contact)) continue;
     for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
-      const ImpactContact blow = make_blow(w, contact, manifold);
-      if (blow.count == 0) continue;
-      scratch.impacts.push_back(blow);
-      scratch.slots.push_back(slot);
-      scratch.fast.push_back(record_hit_approach(w, contact, manifold) ? 1 : 0);
+      const ImpactContact impact = make_touching_impact(w, contact, manifold);
+      if (impact.count == 0) continue;
+      scratch.impacts.push_back(impact);
+      scratch.contacts.push_back(slot);
+      scratch.is_hit.push_back(record_hit_approach(w, contact, manifold) ? 1 : 0);
     }
   }
   if (scratch.impacts.empty()) return false;
   const ContactBodies bodies{w.bodies.motion.data(), w.bodies.inertia.data()};
-  // No forces act within a blow, and no time passes: every point that touches and closes is met.
+  // No forces act during an impact and no time passes. Every touching point that closes takes part.
   const ImpactSettings settings{1.0f, threshold};
   record_approach(scratch.impacts, bodies);
   apply_restitution(scratch.impacts, bodies, settings);
   bool any = false;
   for (std::size_t i = 0; i < scratch.impacts.size(); ++i) {
-    const ImpactContact& blow = scratch.impacts[i];
+    const ImpactContact& impact = scratch.impacts[i];
     float impulse = 0.0f;
-    for (int k = 0; k < blow.count; ++k) impulse += blow.points[k].impulse;
+    for (int k = 0; k < impact.count; ++k) impulse += impact.points[k].impulse;
     if (!(impulse > 0.0f)) continue;
     any = true;
-    const Contact& contact = w.contacts.contacts[scratch.slots[i]];
-    scratch.struck.push_back(contact.body_a);
-    scratch.struck.push_back(contact.body_b);
-    if (scratch.fast[i] != 0) report_hit(w, contact, *blow.manifold, impulse);
+    const Contact& contact = w.contacts.contacts[scratch.contacts[i]];
+    scratch.hit_bodies.push_back(contact.body_a);
+    scratch.hit_bodies.push_back(contact.body_b);
+    if (scratch.is_hit[i] != 0) report_hit(w, contact, *impact.manifold, impulse);
   }
   return any;
 }
 
 void list_inactive_contacts(RigidWorld& w, float threshold) {
-  w.waiting.resize(w.contacts.contacts.size());
-  for (std::uint32_t slot = 0; slot < w.waiting.size(); ++slot) {
+  w.inactive_contacts.resize(w.contacts.contacts.size());
+  for (std::uint32_t slot = 0; slot < w.inactive_contacts.size(); ++slot) {
     const Contact& contact = w.contacts.contacts[slot];
-    std::uint8_t& waits = w.waiting[slot];
-    waits = kActs;
+    std::uint8_t& state = w.inactive_contacts[slot];
+    state = kActs;
     if (!is_considered(w, contact)) continue;
-    const float near = touch_distance(contact);
+    const float tolerance = touch_distance(contact);
     const SweptPair pair(w, contact, false);
-    const Gap gap = pair.gap(0.0, 2.0 * double(near));
-    const bool apart = gap.beyond || gap.distance > double(near);
-    if (apart && min_separation(w, contact) > near) {
-      waits = kApart;
-    } else if (parting_speed(w, contact, 2.0f * near) > threshold) {
-      waits = kParting;
+    const Gap gap = pair.gap(0.0, 2.0 * double(tolerance));
+    const bool apart = gap.beyond || gap.distance > double(tolerance);
+    if (apart && min_separation(w, contact) > tolerance) {
+      state = kApart;
+    } else if (separating_speed(w, contact, 2.0f * tolerance) > threshold) {
+      state = kSeparating;
     }
   }
 }
 
 FirstImpact find_first_impact(const RigidWorld& w, const StepCheckpoint& before, double seconds) {
   FirstImpact first;
-  for (std::uint32_t slot = 0; slot < w.waiting.size(); ++slot) {
-    if (w.waiting[slot] == kActs) continue;
+  for (std::uint32_t slot = 0; slot < w.inactive_contacts.size(); ++slot) {
+    if (w.inactive_contacts[slot] == kActs) continue;
     const Contact& contact = w.contacts.contacts[slot];
-    if (w.waiting[slot] == kApart) {
-      const double time = first_meeting(w, before, contact, seconds);
+    if (w.inactive_contacts[slot] == kApart) {
+      const double time = first_impact_time(w, before, contact, seconds);
       if (time < first.time) first = {time, false};
       continue;
     }
-    // Parting: back within the step? Then it turned between.
-    const double near = double(touch_distance(contact));
+    // A separating contact that is back at the end of the step had a turning point within it.
+    const double tolerance = double(touch_distance(contact));
     const SweptPair pair(w, contact, true);
     const Gap start = pair.gap(0.0, 1.0e30), end = pair.gap(1.0, 1.0e30);
-    if (end.distance > near) continue;
+    if (end.distance > tolerance) continue;
     const auto speed = [&](auto&& motion_of) {
       return dot(
           DVec3(motion_of(contact.body_b).linear_velocity) - DVec3(motion_of(contact.body_a).linear_velocity),

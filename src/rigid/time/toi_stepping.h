@@ -1,14 +1,16 @@
-// Impacts at their times: which pairs meet first in a step that was tried, and what happens to those that have met.
+// Adaptive steps: finds the first impact in a tried step and resolves impacts at their times.
 //
-// In adaptive steps a contact acts only while its shapes touch and do not part. The others wait: they are apart, or part from each
-// other. A step is tried with them left out; the bodies' motion then tells when the first two of them meet, and the step is done
-// again as long as that. Shapes that have met, and close, are struck at that moment (solver/contact/impact.h): one blow after the other until
-// none closes, which hands it down a row of balls in touch.
+// In adaptive steps a contact acts only while its shapes touch and do not separate. Other contacts are inactive:
+// their shapes are apart or separating. The step is tried without inactive contacts. The motion of the bodies then
+// gives the time of the first impact, and the step is repeated with that length. Shapes that touch and close get
+// impulses at that moment (solver/contact/impact.h), one contact after the other until none closes, so an impact
+// propagates through a row of touching balls.
 //
-// The time: the motion of the tried step, taken as straight and even, by conservative advancement (collision/continuous/time_of_impact.h); then
-// put right by how far bodies at their mean acceleration are from that straight way then. What parts and would be back within the step
-// is cut at the turn between: from there on it is apart like any other pair.
-// Meshes and height fields are no part of this: their contacts act as in a fixed step.
+// The time of impact is found by conservative advancement on the linear motion of the tried step
+// (collision/continuous/time_of_impact.h), then corrected by the deviation of bodies under constant acceleration from
+// it. A contact that separates and returns within the step ends the piece at its turning point; after that it is
+// apart like any other pair.
+// Meshes and height fields are excluded: their contacts act as in a fixed step.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -17,11 +19,11 @@
 
 namespace gyre {
 
-// What a tried step changes, to take it back.
+// A copy of all that a tried step changes.
 class StepCheckpoint {
  public:
-  void keep(const RigidWorld& w);
-  void put_back(RigidWorld& w) const;
+  void save(const RigidWorld& w);
+  void restore(RigidWorld& w) const;
   const BodyMotion& motion(std::uint32_t body) const { return motion_[body]; }
 
  private:
@@ -38,29 +40,30 @@ class StepCheckpoint {
 
 struct ImpactScratch {
   StepCheckpoint before;
-  Array<BodyMotion> other;  // what the step was with half the sub-steps
+  Array<BodyMotion> other;  // the result with half the sub-steps
   Array<ImpactContact> impacts;
-  Array<std::uint32_t> slots;   // of each
-  Array<std::uint8_t> fast;     // of each: to be told as a hit
-  Array<std::uint32_t> struck;  // bodies
+  Array<std::uint32_t> contacts;    // of each impact: its contact
+  Array<std::uint8_t> is_hit;       // of each impact: reported as a hit event
+  Array<std::uint32_t> hit_bodies;  // bodies that got an impulse
 };
 
-// How near shapes are that touch, m, by the size of their contact.
+// The distance at which shapes count as touching, m, from the size of their contact.
 inline float touch_distance(const Contact& contact) { return 1.0e-5f * contact.size; }
 
-// Strikes what touches and closes faster than `threshold` (m/s), and says whom: ImpactScratch::struck. What has no restitution is left to
-// the solver. Returns whether there was anything.
+// Resolves impacts of touching shapes that close faster than `threshold` (m/s); their bodies are listed in
+// ImpactScratch::hit_bodies. Contacts without restitution are left to the solver. True if there was an impact.
 bool resolve_impacts(RigidWorld& w, ImpactScratch& scratch, float threshold);
 
-// Says which contacts wait (RigidWorld::waiting): those apart, and those that part faster than `threshold`.
+// Finds the inactive contacts (RigidWorld::inactive_contacts): shapes that are apart, or separate faster than
+// `threshold` (m/s).
 void list_inactive_contacts(RigidWorld& w, float threshold);
 
-// When the first of those that wait meet within the step of `seconds` that was tried, or a turn must be waited for; s from its
-// beginning. kNoImpact if none do.
+// The time of the first impact, or turning point, of inactive contacts within the tried step of `seconds`, s from its
+// beginning; kNoImpact if there is none.
 constexpr double kNoImpact = 1.0e30;
 struct FirstImpact {
   double time = kNoImpact;
-  bool turn = false;
+  bool is_turning_point = false;
 };
 FirstImpact find_first_impact(const RigidWorld& w, const StepCheckpoint& before, double seconds);
 

@@ -1,4 +1,4 @@
-// What sleeps is not asked; and asking it all the same changes nothing.
+// Sleeping islands have no active constraints, and visiting theirs all the same changes nothing.
 #include "determinism/random_world.h"
 #include "determinism/scenes.h"
 #include "rigid/store/active_constraints.h"
@@ -11,7 +11,7 @@
 namespace gyre {
 namespace {
 
-ActiveConstraints& links_of(World& world) { return state_of(world).rigid.awake_links; }
+ActiveConstraints& constraints_of(World& world) { return state_of(world).rigid.active_constraints; }
 
 // `columns` stacks of two boxes each, side by side on a thin plate.
 World make_stacks(int columns) {
@@ -23,40 +23,41 @@ World make_stacks(int columns) {
   return std::move(*world);
 }
 
-TEST(ActiveConstraints, OfWhatSleepsNoneIsAsked) {
+TEST(ActiveConstraints, SleepingIslandsHaveNone) {
   World world = make_stacks(16);
   const BodyId low = scenes::add_moving(world, {-8, 0.25, 0}, Box{{0.25f, 0.25f, 0.25f}});
   const BodyId high = scenes::add_moving(world, {-8, 0.75, 0}, Box{{0.25f, 0.25f, 0.25f}});
   world.add_joint(FixedDef{.a = low, .b = high, .anchor = {-8, 0.5, 0}});
   world.step(scenes::kStepSeconds);
-  EXPECT_EQ(links_of(world).contacts.count(), links_of(world).contacts.size()) << "nobody sleeps";
+  EXPECT_EQ(constraints_of(world).contacts.count(), constraints_of(world).contacts.size()) << "nobody sleeps";
   for (int i = 0; i < 120; ++i) world.step(scenes::kStepSeconds);
   ASSERT_EQ(world.stats().awake_bodies, 0);
   ASSERT_GT(world.stats().touching, 32);
-  EXPECT_EQ(links_of(world).contacts.count(), 0u);
-  EXPECT_EQ(links_of(world).joints.count(), 0u);
-  // One stack that is pushed: two boxes have two contacts.
+  EXPECT_EQ(constraints_of(world).contacts.count(), 0u);
+  EXPECT_EQ(constraints_of(world).joints.count(), 0u);
+  // One stack is pushed: two boxes have two contacts.
   world.set_velocity(scenes::body_number(world, 1), {0.5f, 0, 0}, {});
   world.step(scenes::kStepSeconds);
   EXPECT_EQ(world.stats().awake_bodies, 2);
-  EXPECT_EQ(links_of(world).contacts.count(), 2u);
-  EXPECT_EQ(links_of(world).joints.count(), 0u);
+  EXPECT_EQ(constraints_of(world).contacts.count(), 2u);
+  EXPECT_EQ(constraints_of(world).joints.count(), 0u);
 }
 
-// Between steps, too: a tool may look at a world before it is stepped.
-TEST(ActiveConstraints, AreThoseOfABodyThatBeginsToMove) {
+// Must hold between steps, too: tools may read a world before its next step.
+TEST(ActiveConstraints, IncludeThoseOfABodyThatBeginsToMove) {
   World world = make_stacks(16);
   const BodyId hook = scenes::add_fixed(world, {0, 5, 8}, Sphere{0.5f});
   const JointId joint = world.add_joint(BallDef{.b = hook, .anchor = {0, 6, 8}});
   for (int i = 0; i < 120; ++i) world.step(scenes::kStepSeconds);
-  EXPECT_FALSE(links_of(world).joints.test(joint.index)) << "nothing can move it";
+  EXPECT_FALSE(constraints_of(world).joints.test(joint.index)) << "nothing can move it";
   world.set_type(hook, BodyType::dynamic);
-  EXPECT_TRUE(links_of(world).joints.test(joint.index));
+  EXPECT_TRUE(constraints_of(world).joints.test(joint.index));
   EXPECT_EQ(validate_state(state_of(world)).code, ErrorCode::none);
 }
 
-// What it bore as it fell asleep is an impulse of that step: in a shorter one it would be a larger force.
-TEST(ActiveConstraints, AJointThatSleepsDoesNotBreakInAShorterStep) {
+// The joint keeps its impulse of the step in which it fell asleep. Divided by a shorter step it would be a larger
+// force.
+TEST(ActiveConstraints, ASleepingJointDoesNotBreakInAShorterStep) {
   // Alone, and among many that fall.
   for (const int falling : {0, 16}) {
     World world = make_stacks(0);
@@ -72,67 +73,69 @@ TEST(ActiveConstraints, AJointThatSleepsDoesNotBreakInAShorterStep) {
   }
 }
 
-// Two worlds, of which one asks all contacts and joints in each step. Says in how many steps the other did not.
-struct Twins {
-  World some, all;
-  int left_out = 0;
+// Two worlds, one with active constraints and one that visits all. Counts the steps in which the first visited fewer.
+struct WorldPair {
+  World active, all;
+  int reduced_steps = 0;
 
-  Twins(World first, World second) : some(std::move(first)), all(std::move(second)) { links_of(all).all = true; }
+  WorldPair(World first, World second) : active(std::move(first)), all(std::move(second)) {
+    constraints_of(all).all = true;
+  }
   template <class Drive>
   void step(Drive&& drive) {
-    for (World* const world : {&some, &all}) {
+    for (World* const world : {&active, &all}) {
       drive(*world);
       world->step(scenes::kStepSeconds);
     }
-    const Bitset& asked = links_of(some).contacts;
-    left_out += asked.count() < asked.size() ? 1 : 0;
-    EXPECT_EQ(links_of(all).contacts.count(), links_of(all).contacts.size());
+    const Bitset& contacts = constraints_of(active).contacts;
+    reduced_steps += contacts.count() < contacts.size() ? 1 : 0;
+    EXPECT_EQ(constraints_of(all).contacts.count(), constraints_of(all).contacts.size());
   }
   bool are_equal() const {
-    const Events &a = some.events(), &b = all.events();
-    return hash_state(state_of(some)) == hash_state(state_of(all)) && a.begins.size() == b.begins.size() &&
+    const Events &a = active.events(), &b = all.events();
+    return hash_state(state_of(active)) == hash_state(state_of(all)) && a.begins.size() == b.begins.size() &&
            a.ends.size() == b.ends.size() && a.hits.size() == b.hits.size() &&
            a.sleep_changes.size() == b.sleep_changes.size();
   }
 };
 
-// Returns in how many steps some were not asked.
+// Returns the number of steps with fewer active constraints than all.
 int compare_random_worlds(std::uint32_t first, std::uint32_t count, TimeStepping time) {
-  int left_out = 0;
+  int reduced_steps = 0;
   for (std::uint32_t number = first; number < first + count; ++number) {
     scenes::RandomWorld one(number), other(number);
     WorldDef def = one.def();
     def.sleeping = true;
     def.stepping.time = time;
-    Twins twins(*World::create(def), *World::create(def));
-    one.build(twins.some), other.build(twins.all);
+    WorldPair pair(*World::create(def), *World::create(def));
+    one.build(pair.active), other.build(pair.all);
     for (int step = 0; step < 300; ++step) {
-      // Long pauses, in which some come to rest.
-      twins.step([&](World& world) {
-        if (step % 100 < 3) (&world == &twins.some ? one : other).drive(world, step);
+      // Long pauses, in which some bodies fall asleep.
+      pair.step([&](World& world) {
+        if (step % 100 < 3) (&world == &pair.active ? one : other).drive(world, step);
       });
-      EXPECT_TRUE(twins.are_equal()) << "world " << number << ", step " << step;
+      EXPECT_TRUE(pair.are_equal()) << "world " << number << ", step " << step;
       if (testing::Test::HasFailure()) return 0;
     }
-    left_out += twins.left_out;
+    reduced_steps += pair.reduced_steps;
   }
-  return left_out;
+  return reduced_steps;
 }
-TEST(ActiveConstraints, AskingAllIsTheSameInRandomWorlds) {
+TEST(ActiveConstraints, VisitingAllChangesNothingInRandomWorlds) {
   EXPECT_GT(compare_random_worlds(1, 20, TimeStepping::fixed), 500);
 }
-// Whose parts of a step some may be put to sleep between.
-TEST(LongAwakeLinks, AskingAllIsTheSameInAdaptiveSteps) {
+// Islands may fall asleep between the pieces of an adaptive step.
+TEST(LongActiveConstraints, VisitingAllChangesNothingInAdaptiveSteps) {
   EXPECT_GT(compare_random_worlds(100, 4, TimeStepping::adaptive), 50);
 }
 
-// What is shot out of its sleep is fast in the step in which it wakes, and the plate below is thin.
-TEST(ActiveConstraints, AskingAllIsTheSameWhereSleepersAreShot) {
-  Twins twins(make_stacks(40), make_stacks(40));
-  for (int i = 0; i < 120; ++i) twins.step([](World&) {});
-  ASSERT_EQ(twins.some.stats().awake_bodies, 0);
+// A sleeping body that is shot is fast in the step in which it wakes, and the plate below is thin.
+TEST(ActiveConstraints, VisitingAllChangesNothingWhereSleepersAreShot) {
+  WorldPair pair(make_stacks(40), make_stacks(40));
+  for (int i = 0; i < 120; ++i) pair.step([](World&) {});
+  ASSERT_EQ(pair.active.stats().awake_bodies, 0);
   for (int step = 0; step < 200; ++step) {
-    twins.step([&](World& world) {
+    pair.step([&](World& world) {
       if (step % 10 != 0) return;
       const int target = step / 10 * 2;
       const DVec3 above{3.0 * (target % 8), 12, 3.0 * (target / 8)};
@@ -144,14 +147,15 @@ TEST(ActiveConstraints, AskingAllIsTheSameWhereSleepersAreShot) {
       shape.geometry = Sphere{0.3f};
       ASSERT_TRUE(world.exists(world.add_body(def, shape)));
     });
-    ASSERT_TRUE(twins.are_equal()) << step;
+    ASSERT_TRUE(pair.are_equal()) << step;
   }
-  EXPECT_GT(twins.left_out, 150);
+  EXPECT_GT(pair.reduced_steps, 150);
 }
 
-// What is struck in its sleep and goes no farther than its fat box reaches: what stops it there must be known, though nobody asked in
-// that step. Boxes in flight, put to sleep before walls as thin as paper, which their fat boxes reach beyond.
-TEST(ActiveConstraints, AskingAllIsTheSameWhereWallsStopSleepers) {
+// A sleeping body is hit and does not leave its fat box. Its CCD blockers must be known, although the narrow phase
+// did not visit them in that step. Boxes are put to sleep in flight before walls as thin as paper, which their fat
+// boxes overlap.
+TEST(ActiveConstraints, VisitingAllChangesNothingWhereWallsStopSleepers) {
   constexpr int kBoxes = 100;
   const auto make = [] {
     Result<World> world = World::create({.gravity = {}});
@@ -165,13 +169,13 @@ TEST(ActiveConstraints, AskingAllIsTheSameWhereWallsStopSleepers) {
     for (int i = 0; i < kBoxes; ++i) world->set_awake(scenes::body_number(*world, std::size_t(2 * i)), false);
     return std::move(*world);
   };
-  Twins twins(make(), make());
-  for (int i = 0; i < 3; ++i) twins.step([](World&) {});
-  ASSERT_EQ(twins.some.stats().awake_bodies, 0);
+  WorldPair pair(make(), make());
+  for (int i = 0; i < 3; ++i) pair.step([](World&) {});
+  ASSERT_EQ(pair.active.stats().awake_bodies, 0);
   scenes::Random random(6);
   for (int i = 0; i < kBoxes; ++i) {
     const float speed = random.next(2.0f, 12.0f);
-    twins.step([&](World& world) {
+    pair.step([&](World& world) {
       BodyDef def;
       def.pose.position = {-0.1, 0, 2.0 * i};
       def.linear_velocity = {speed, 0, 0};
@@ -180,9 +184,9 @@ TEST(ActiveConstraints, AskingAllIsTheSameWhereWallsStopSleepers) {
       shape.geometry = Sphere{0.08f};
       world.add_body(def, shape);
     });
-    ASSERT_TRUE(twins.are_equal()) << i;
+    ASSERT_TRUE(pair.are_equal()) << i;
   }
-  EXPECT_GT(twins.left_out, 60);
+  EXPECT_GT(pair.reduced_steps, 60);
 }
 
 }  // namespace
