@@ -129,7 +129,7 @@ CastHit public_answer(const RigidWorld& w, const ShapeHit& hit) {
 ClosestPoint public_answer(const RigidWorld& w, const ShapeNear& near) {
   auto out = named<ClosestPoint>(w, near.shape, near.triangle);
   out.point = near.point;
-  out.query_point = near.own_point;
+  out.query_point = near.query_point;
   out.normal = near.normal;
   out.distance = near.distance;
   return out;

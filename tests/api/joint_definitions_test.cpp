@@ -2,6 +2,7 @@
 // that recordings hold.
 #include "io/codec/command_codec.h"
 #include "world/command.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gtest/gtest.h>
@@ -360,7 +361,7 @@ TEST(JointDefinitions, EveryKindIsTheSameCommandAndTheSameStateAsItsFlatForm) {
     kinds |= 1u << int(from_def.flat.kind);
     EXPECT_EQ(bytes_of(flatten(from_def.def)), bytes_of(from_def.flat)) << name;
     ASSERT_TRUE(by_def.world.add_joint(from_def.def)) << name << ": " << by_def.world.problems()[0].message;
-    ASSERT_TRUE(submit(by_flat.world.state(), AddJoint{from_flat.flat}).joint) << name;
+    ASSERT_TRUE(submit(state_of(by_flat.world), AddJoint{from_flat.flat}).joint) << name;
     for (int step = 0; step < 60; ++step) {
       EXPECT_EQ(by_def.world.hash(), by_flat.world.hash()) << name << ", step " << step;
       by_def.world.step(1.0f / 60.0f);

@@ -7,6 +7,7 @@
 
 #include "joint_scene.h"
 #include "world/command.h"
+#include "world/world_access.h"
 
 #include <gyre/gyre.h>
 
@@ -134,7 +135,7 @@ inline void build_pile(World& world) {
 
 // A joint as recordings hold it: with an axis also where the kind has none now, which is part of the state whose hashes are stored.
 inline JointId add_flat_joint(World& world, const FlatJoint& joint) {
-  return submit(world.state(), AddJoint{joint}).joint;
+  return submit(state_of(world), AddJoint{joint}).joint;
 }
 
 inline JointId join(World& world, JointKind kind, BodyId a, BodyId b, DVec3 anchor, Vec3 axis = {0, 0, 1}) {

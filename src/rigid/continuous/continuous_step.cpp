@@ -256,7 +256,7 @@ void list_moved_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
   }
 }
 
-// Sweeps the listed bodies; results go to scratch.kept.
+// Sweeps the listed bodies; results go to scratch.saved.
 void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
   // The shapes of each fast body as plain indices, by body.
   const std::span<std::span<const std::uint32_t>> shapes =
@@ -303,10 +303,10 @@ Vec3 spin_at(const BodyMass& mass, const BodyFlags& flags, Quat from, Quat to, V
 std::span<const HaltedBody> halt_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
   const std::span<HaltedBody> halted = arena.make<HaltedBody>(count_halted_with_joints(w, scratch));
   std::size_t halted_count = 0;
-  if (!halted.empty()) halt_together(w, scratch, scratch.kept, arena);
+  if (!halted.empty()) halt_together(w, scratch, scratch.saved, arena);
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
-    const SavedMotion& result = scratch.kept[k];
+    const SavedMotion& result = scratch.saved[k];
     if (!(result.fraction < 1.0f)) continue;
     BodyMotion& motion = w.bodies.motion[i];
     if (!joints_of(w.bodies, i).empty())
