@@ -52,8 +52,9 @@ struct Crowd {
   }
 
   void prepare(int width) {
-    kernels = &select_kernels(width).motion;
-    blocks = (int(bodies.size()) + width - 1) / width;
+    const SolverKernels& all = select_kernels(width);  // of fewer lanes on a processor without so many
+    kernels = &all.motion;
+    blocks = (int(bodies.size()) + all.width - 1) / all.width;
     memory.assign(kernels->block_bytes * std::size_t(blocks) / sizeof(std::max_align_t) + 64, {});
     kernels->prepare(place(), 0, blocks, bodies.data(), int(bodies.size()), inertia.data());
   }
