@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Looks in src/ and include/ for words that would break a promise: the same bits everywhere, no unfinished code.
+"""Finds words in src/, include/ and kit/ that would break a promise: the same bits everywhere, no unfinished code. In the names of
+files, types, functions and variables of src/ and include/ it also finds words for which docs/glossary.md has a standard term.
 
 An exception is a comment on the same line or the line above, with a reason:   // word-ok: <reason>
-Comments and strings are not searched for code words. Tests are not searched at all.
+Comments and strings are not searched for code words and names. Tests are not searched at all.
 """
 
 import re
@@ -44,6 +45,42 @@ CODE_WORDS = [
 ANY_WORDS = [
     (r"\b(TODO|FIXME|XXX|HACK|TBD)\b", "unfinished work does not go in"),
 ]
+# Words of a name and the term to use instead (docs/glossary.md). "body_look" stands for body_look, BodyLook, body_looks and
+# make_body_look; "k_most" for kMost and kMostSides. A new rename needs one more line here.
+NAME_WORDS = {
+    "awake_link": "active_constraint",
+    "body_look": "collision_body",
+    "body_place": "body_pose",
+    "closing_way": "projection_path",
+    "contact_aside": "contact_block_cold",
+    "counted_list": "bucketed_list",
+    "dense_net": "dense_graph_cache",
+    "error_taken_back": "clamped_error",
+    "forget_look": "invalidate_cache",
+    "free_place": "free_slot",
+    "goes_along": "is_simulated",
+    "hurried": "moved_shapes",
+    "hurry": "mark_moved",
+    "idle_clock": "shrink_policy",
+    "k_least": "kMin...",
+    "k_most": "kMax...",
+    "kept_state": "state_copy",
+    "linkage": "articulation",
+    "lone_solver": "worker_context",
+    "look_anew": "compute_manifold",
+    "net_joint": "joint_edge",
+    "pulled": "geometric_stiffness, stiffened",
+    "rounding_slack": "rounding_tolerance",
+    "seam": "internal_edge",
+    "shared_column": "interned_column",
+    "spinner": "fast_spinning",
+    "state_walk": "validate_state",
+    "tried_step": "step_checkpoint",
+    "whirl": "fast_spinning",
+    "whirling": "fast_spinning",
+    "worked_row": "actuated_row",
+}
+NAMED = ("include", "src")
 # Tests and what only they include: gjk_test.cpp, wide_test_kernels.h, convex_oracle.h.
 TESTS = re.compile(r"_(test|oracle)(_\w+)?\.(h|cpp)$")
 ALLOW = re.compile(r"//\s*word-ok:\s*\S.{5,}")
@@ -59,6 +96,39 @@ def strip(text):
     return pattern.sub(blank, text)
 
 
+def words_of(name):
+    """Its words in lower case, each with a _ on either side: _k_most_sides_ of kMostSides."""
+    parts = re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+", name)
+    return "_" + "_".join(part.lower() for part in parts) + "_"
+
+
+def old_words(name):
+    """The entries of NAME_WORDS that the name contains, in the singular or in the plural."""
+    words = words_of(name)
+    return [old for old in NAME_WORDS if f"_{old}_" in words or f"_{old}s_" in words]
+
+
+def check_names(path, lines, stripped):
+    """Prints the old words in the name of a file and in the names in its code, each name once. Returns how many there are."""
+    shown = path.relative_to(ROOT)
+    problems = 0
+    for old in old_words(path.name.split(".")[0]):
+        print(f"{shown}: the name of the file has '{old}': use {NAME_WORDS[old]} (docs/glossary.md)")
+        problems += 1
+    seen = set()
+    for i, line in enumerate(stripped):
+        if ALLOW.search(lines[i]) or (i > 0 and ALLOW.search(lines[i - 1])) or line.lstrip().startswith("#include"):
+            continue
+        for name in re.findall(r"[A-Za-z_]\w*", line):
+            if name in seen:
+                continue
+            seen.add(name)
+            for old in old_words(name):
+                print(f"{shown}:{i + 1}: the name '{name}' has '{old}': use {NAME_WORDS[old]} (docs/glossary.md)")
+                problems += 1
+    return problems
+
+
 def main():
     code_words = [(re.compile(pattern), why) for pattern, why in CODE_WORDS]
     any_words = [(re.compile(pattern), why) for pattern, why in ANY_WORDS]
@@ -72,6 +142,8 @@ def main():
             text = path.read_text(encoding="utf-8", errors="replace")
             lines = text.split("\n")
             stripped = strip(text).split("\n")
+            if top in NAMED:
+                problems += check_names(path, lines, stripped)
             for i, line in enumerate(lines):
                 found = [(p.search(stripped[i]), why) for p, why in code_words]
                 found += [(p.search(line), why) for p, why in any_words]

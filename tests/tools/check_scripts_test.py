@@ -110,6 +110,29 @@ class Tree(unittest.TestCase):
                 code_out, output = self.run_check("words")
                 self.assertEqual(code_out, 0, output)
 
+    def test_old_names(self):
+        for code in ("struct LinkageNode {};", "void hide_seams();", "struct Batch { int linkages; };", "constexpr int kMostSides = 4;",
+                     "bool whirls = false;", "void f() { hurry(1); }", "int look_anew_count;", "enum class Kind { kLeast };"):
+            with self.subTest(code=code):
+                self.write("src/solver/row.cpp", code + "\n")
+                self.assert_fails("words", "row.cpp:1")
+
+    def test_old_name_of_a_file(self):
+        self.write("src/solver/linkage_axes.h", "#pragma once\n")
+        self.assert_fails("words", "linkage_axes.h: the name of the file has 'linkage': use articulation")
+
+    def test_old_name_in_a_public_header(self):
+        self.write("include/gyre/math.h", "#pragma once\nstruct BodyLook {};\n")
+        self.assert_fails("words", "math.h:2: the name 'BodyLook' has 'body_look': use collision_body")
+
+    def test_names_that_are_fine(self):
+        for code in ("// a linkage of four bars", 'const char* s = "linkage";', "bool is_seamless;", "int most = kMax;", "void look();",
+                     "struct Articulation {};", "int almost;", "int linkage;  // word-ok: the name of a scene"):
+            with self.subTest(code=code):
+                self.write("src/solver/row.cpp", code + "\n")
+                code_out, output = self.run_check("words")
+                self.assertEqual(code_out, 0, output)
+
     def test_size(self):
         self.write("src/solver/rows/row.cpp", "\n" * 601)
         self.assert_fails("size", "601 lines")
