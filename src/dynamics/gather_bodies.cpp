@@ -19,7 +19,7 @@ bool may_fuse(const BatchContext& batch) {
   const JointSolve& joints = batch.joints;
   return !joints.bundles.bundles.empty() && !batch.motion.is_smooth &&
          batch.scratch.contacts.impacts.empty() && joints.lists.swept.empty() &&
-         joints.linkages.scalar.empty() && batch.motion.fields.blocks() == 0;
+         joints.articulations.scalar.empty() && batch.motion.fields.blocks() == 0;
 }
 
 // The bodies of runs of articulations come first, run by run. Marks them in `kinds`, by place in the batch.

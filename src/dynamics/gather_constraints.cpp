@@ -263,7 +263,7 @@ void gather_swept_joints(BatchContext& batch) {
     return body == kNoBody ? ColoringPair::kNone : joints.local_index[std::size_t(body)];
   };
   for (std::uint32_t i = 0; i < most; ++i) {
-    if (joints.linkages.iterative[i] == 0) continue;
+    if (joints.articulations.iterative[i] == 0) continue;
     if (batch.motion.is_smooth && is_explicit_spring(batch.w, joints.batch.joints[i])) continue;
     const JointEdge& joint = joints.edges[i];
     s.swept[count] = i;

@@ -15,7 +15,7 @@ constexpr std::size_t kLinesOnce = 24, kLinesPerHalfStep = 48;
 ProgramBuilder::ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena)
     : batch_(batch),
       bodies_(count_blocks(int(batch.motion.moved.size()), batch.kernels.width)),
-      spinners_(count_blocks(int(batch.motion.fast_spinning.size()), kSpinnersPerBlock)),
+      fast_spinning_(count_blocks(int(batch.motion.fast_spinning.size()), kFastSpinningPerBlock)),
       orientations_(count_blocks(int(batch.motion.moved.size()), kBodiesPerBlock)),
       free_bodies_(count_blocks(int(batch.motion.free_bodies.size()), kBodiesPerBlock)),
       fields_(batch.motion.fields.blocks()),
@@ -23,7 +23,7 @@ ProgramBuilder::ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena
       trees_(int(batch.contacts.forest.trees.size())),
       structures_(batch.contacts.structures.empty() ? 0 : 1),
       joint_slices_(batch.joints.groups.empty() ? 0 : kJointSlices),
-      articulations_(int(batch.joints.linkages.scalar.size())),
+      articulations_(int(batch.joints.articulations.scalar.size())),
       simd_articulations_(int(batch.joints.bundles.bundles.size())),
       joint_islands_(int(batch.joints.islands.size())),
       stiffened_(batch.joints.stiffened.empty() ? 0 : 1),

@@ -39,7 +39,7 @@ class ProgramBuilder {
   }
   template <auto stage>
   void spinning_bodies() {
-    add(run_stage<stage, BodyMotionSolve>, &batch_.motion, spinners_);
+    add(run_stage<stage, BodyMotionSolve>, &batch_.motion, fast_spinning_);
   }
   template <auto stage>
   void orientations() {
@@ -168,7 +168,7 @@ class ProgramBuilder {
 
   BatchContext& batch_;
   // How many blocks each kind has.
-  int bodies_, spinners_, orientations_, free_bodies_, fields_;
+  int bodies_, fast_spinning_, orientations_, free_bodies_, fields_;
   int contact_blocks_ = 0, impacts_, trees_, structures_;
   int joint_slices_, articulations_, simd_articulations_, joint_islands_, stiffened_;
   int row_islands_;

@@ -101,10 +101,10 @@ void begin_joints(BatchContext& batch, Arena& arena) {
   JointSolve& s = batch.joints;
   DenseGraphCache& nets = s.lists.dense_graphs;
   s.all_iterative = !s.edges.empty() && nets.contains(s.edges);
-  s.linkages = s.all_iterative
-                   ? no_articulations(s.edges.size(), arena)
-                   : find_articulations(s.w, s.batch, s.local_index, s.edges,
-                                        find_bodies_in_contact(batch, arena), s.lane_start, nets, arena);
+  s.articulations = s.all_iterative
+                        ? no_articulations(s.edges.size(), arena)
+                        : find_articulations(s.w, s.batch, s.local_index, s.edges,
+                                             find_bodies_in_contact(batch, arena), s.lane_start, nets, arena);
   s.works = begin_joints(s.w, s.batch, prepared_in_simd(s), s.lane_start.warm_scale, arena);
 }
 void prepare_articulations(JointSolve& s, std::size_t workers, Arena& arena) {
@@ -115,10 +115,10 @@ void prepare_articulations(JointSolve& s, std::size_t workers, Arena& arena) {
                           .settings = s.settings,
                           .compliance = kArticulationCompliance};
   s.articulation_solve.settings.iterative = false;
-  attach_drives(s.linkages, s.works.work, arena);
-  s.limit_rooms = find_limits(s.linkages, s.works.work, workers, arena);
+  attach_drives(s.articulations, s.works.work, arena);
+  s.limit_rooms = find_limits(s.articulations, s.works.work, workers, arena);
   s.bundles = lay_out_bundles(
-      s.linkages, s.kernels, {s.bodies.motion, s.bodies.inertia, s.bodies.orientation},
+      s.articulations, s.kernels, {s.bodies.motion, s.bodies.inertia, s.bodies.orientation},
       {s.settings.substep, s.settings.softness.bias_rate, kArticulationCompliance, add_geometric_stiffness},
       arena);
 }

@@ -139,7 +139,7 @@ void add_completion(ProgramBuilder& p) {
 std::size_t count_measured(const BatchContext& batch) {
   const JointSolve& joints = batch.joints;
   const bool has_contacts = !batch.contact_groups.empty(), has_lanes = !joints.bundles.bundles.empty(),
-             has_articulations = !joints.linkages.scalar.empty();
+             has_articulations = !joints.articulations.scalar.empty();
   if (batch.rows != nullptr) return 0;
   if (joints.groups.empty() && !has_articulations) {
     if (has_lanes) return has_contacts ? batch.moved_in_contact : 0;

@@ -28,7 +28,7 @@ bool turns_far(const BodyMotion& motion, float h) {
   return square(h) * length_squared(motion.angular_velocity) > square(kSlowRotation);
 }
 
-// Calls fn(place in the batch's list) for the joints that are looked at: those that are swept, of linkages solved alone, and of those
+// Calls fn(place in the batch's list) for the joints that are looked at: those that are swept, of articulations solved alone, and of those
 // side by side.
 template <class Fn>
 void for_each_swept(const JointSolve& solve, Fn&& fn) {
@@ -37,9 +37,9 @@ void for_each_swept(const JointSolve& solve, Fn&& fn) {
 template <class Fn>
 void for_each_joint(const JointSolve& solve, Fn&& fn) {
   for_each_swept(solve, fn);
-  for (const Articulation& articulation : solve.linkages.scalar)
+  for (const Articulation& articulation : solve.articulations.scalar)
     for (const ArticulationNode& node : articulation.nodes) fn(node.work);
-  for (const GroupedArticulation& articulation : solve.linkages.grouped)
+  for (const GroupedArticulation& articulation : solve.articulations.grouped)
     for (const ArticulationJoint& joint : articulation.joints) fn(joint.index);
 }
 
@@ -91,7 +91,7 @@ class IslandFinder {
     });
   }
   void find_kinds() {
-    for (const Articulation& articulation : solve_.linkages.scalar)
+    for (const Articulation& articulation : solve_.articulations.scalar)
       drafts_[sets_.of(place(articulation.bodies[0].body))].is_alone = true;
     for_each_swept(solve_, [&](std::uint32_t at) {
       const JointRecord& joint = w_.joints.records[solve_.batch.joints[at]];
@@ -359,9 +359,9 @@ double energy_of_errors(const BodyStore& bodies, const JointIsland& island, floa
   for (const std::uint32_t body : island.bodies) {
     const Sym3& inertia = bodies.masses[body].inertia;
     if (carriage.angular != Vec3{}) {
-      const Vec3 geometric_stiffness =
+      const Vec3 acceleration =
           cross(carriage.angular, carriage.at(center_of(bodies, body)) - carriage.linear);
-      bent += double(bodies.masses[body].mass) * double(length_squared(h * geometric_stiffness));
+      bent += double(bodies.masses[body].mass) * double(length_squared(h * acceleration));
     }
     sum += double(bodies.masses[body].mass) * square(double(kMaxErrors.point));
     sum += double(max(inertia.xx, max(inertia.yy, inertia.zz))) * square(double(kMaxErrors.rotation));
@@ -414,12 +414,12 @@ bool any_turns_far(const JointSolve& solve, const JointIsland& island) {
 
 std::span<JointIsland> find_joint_islands(const JointSolve& solve, std::span<const ColoringPair> contacts,
                                           std::span<const FieldBody> fields, Arena& arena) {
-  if (solve.lists.swept.empty() && solve.linkages.scalar.empty()) return {};
+  if (solve.lists.swept.empty() && solve.articulations.scalar.empty()) return {};
   const BodyStore& bodies = solve.w.bodies;
   const auto is_fast = [&](std::uint32_t body) {
     return is_active(solve.w, body) && turns_far(bodies.motion[body], solve.settings.substep);
   };
-  bool is_any = !solve.linkages.scalar.empty();
+  bool is_any = !solve.articulations.scalar.empty();
   for (const std::uint32_t body : solve.batch.bodies) {
     if (is_any) break;
     is_any = is_fast(body);

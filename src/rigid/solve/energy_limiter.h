@@ -1,7 +1,7 @@
-// What joints that are swept, or in linkages that are solved alone, give of energy and of angular momentum. Joints that only connect do no work;
+// What joints that are swept, or in articulations that are solved alone, give of energy and of angular momentum. Joints that only connect do no work;
 // where bodies turn far within a sub-step their rows, linear in what turns, do all the same, and what they give in one they give again in
 // the next: nets of rods went faster without end; where a light body with long arms strikes a stop between heavy ones, at once. As
-// solver/articulation/articulation_energy_kernel.h does it for linkages side by side, what joints have given in a sub-step is taken away as it ends,
+// solver/articulation/articulation_energy_kernel.h does it for articulations side by side, what joints have given in a sub-step is taken away as it ends,
 // by slowing all inner motion alike. And where inertia against joints is raised (solver/articulation/articulation.cpp, rigid/solve/geometric_stiffness.h) a body does not
 // take all of a turn that others gave: what hangs on nothing gets it back, as one rigid body (docs/decisions/joint-trees.md).
 #pragma once
@@ -34,7 +34,7 @@ struct JointIsland {
   DVec3 spin{};  // kg m^2/s: the angular momentum then, about the first body's centre of mass
 };
 
-// Those of the batch: bodies that hang together by joints, some of them swept or in linkages that are solved alone; of those that are
+// Those of the batch: bodies that hang together by joints, some of them swept or in articulations that are solved alone; of those that are
 // swept, where a body turns far. What springs, motors and drives do is told apart (rigid/solve/actuated_rows.h). What a
 // kinematic body holds is seen from that. Not where several that move hold it, where a body is bound to axes of the world, or where a linkage
 // in lanes is driven. Where contacts or fields act, gains are taken away only beside what turns far: they may answer between two stages what

@@ -63,15 +63,15 @@ std::span<const StiffenedBody> find_stiffened_bodies(const JointSolve& solve, Ar
   };
   std::size_t count = 0;
   for (std::uint32_t place = 0; place < pulls.size(); ++place) count += is_stiffened(place) ? 1 : 0;
-  const std::span<StiffenedBody> pulled = arena.make<StiffenedBody>(count);
+  const std::span<StiffenedBody> stiffened = arena.make<StiffenedBody>(count);
   count = 0;
   for (std::uint32_t place = 0; place < pulls.size(); ++place) {
     if (!is_stiffened(place)) continue;
     const float raise =
         square(solve.settings.substep) * pulls[place] * (1.0f - kMaxGeometricStiffness / unresolved(place));
-    pulled[count++] = {solve.batch.bodies[place], raise};
+    stiffened[count++] = {solve.batch.bodies[place], raise};
   }
-  return pulled;
+  return stiffened;
 }
 
 void disable_gyroscopic_torque(const JointSolve& solve, std::span<MovedBody> moved, Arena& arena) {

@@ -38,7 +38,7 @@ struct JointSolve {
   bool all_iterative = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
   LaneStart lane_start{};  // of joints that are begun in lanes
   JointConstraints works{};
-  Articulations linkages{};
+  Articulations articulations{};
   ArticulationSolve articulation_solve{};
   std::span<std::span<double>> limit_rooms{};  // by worker, where an articulation has limits
   BundleSolve bundles{};                       // articulations side by side
@@ -60,7 +60,7 @@ struct JointGroup {
 
 // By index in the batch: 1 for those joints that are begun and finished in their lanes, and have no work.
 inline std::span<const std::uint8_t> prepared_in_simd(const JointSolve& s) {
-  return s.all_iterative ? s.ball_lanes : s.linkages.simd;
+  return s.all_iterative ? s.ball_lanes : s.articulations.simd;
 }
 
 }  // namespace gyre

@@ -41,7 +41,7 @@ template <void (*stage)(const Articulation&, const ArticulationSolve&)>
 void for_articulations(const JointSolve& s, int begin, int end, int worker) {
   ArticulationSolve own = s.articulation_solve;
   if (!s.limit_rooms.empty()) own.room = s.limit_rooms[std::size_t(worker)];
-  for (int i = begin; i < end; ++i) stage(s.linkages.scalar[std::size_t(i)], own);
+  for (int i = begin; i < end; ++i) stage(s.articulations.scalar[std::size_t(i)], own);
 }
 
 // Articulations that hang together alike, side by side (solver/articulation/linkage_lanes.h).

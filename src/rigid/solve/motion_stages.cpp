@@ -88,7 +88,7 @@ void integrate_fast_spinning_of_blocks(const BodyMotionSolve& s, int begin, int 
                  s.kernels.rotation);
 }
 void integrate_fast_spinning(const BodyMotionSolve& s, int begin, int end) {
-  rotate_exactly(s.w.bodies, block_of(s.fast_spinning, begin, end, kSpinnersPerBlock), s.motions.substep,
+  rotate_exactly(s.w.bodies, block_of(s.fast_spinning, begin, end, kFastSpinningPerBlock), s.motions.substep,
                  s.kernels.rotation);
 }
 

@@ -31,8 +31,8 @@ void integrate_positions_in_lanes(const BodyMotionSolve& s, int begin, int end, 
 // Rotations that are fast or bound to axes, which the above leave alone: of blocks of bodies, and whether there are any.
 void integrate_fast_spinning_of_blocks(const BodyMotionSolve& s, int begin, int end);
 bool has_fast_spinning(const BodyMotionSolve& s, int begin, int end);
-// And in blocks of kSpinnersPerBlock of them.
-constexpr int kSpinnersPerBlock = 8;
+// And in blocks of kFastSpinningPerBlock of them.
+constexpr int kFastSpinningPerBlock = 8;
 void integrate_fast_spinning(const BodyMotionSolve& s, int begin, int end);
 
 // Velocities are saved, overlap is pushed apart by displacements in their place, and velocities are restored.
