@@ -1,6 +1,6 @@
 // Fused stages: all that happens to an articulation bundle and its bodies between two sets of contacts is done in one line, run by run.
 // Nothing else acts there in a fused batch, and the data of a run stays in the cache. Stage by stage each articulation would come from
-// memory several times a half-step, for all of them together are larger than a core's cache (docs/decisions/bundle-runs.md).
+// memory several times a half-step, for all of them together are larger than a core's cache (docs/decisions/fused-stages.md).
 // dynamics/substep_program.cpp says which stages are fused, and in which order.
 //
 // In: a batch whose articulations are laid out. Out: the order in which its bodies are moved, and the parts of fused stages. Every number is

@@ -27,7 +27,7 @@ constexpr int kHalfStepsPerSubstep = 2;
 constexpr float kJointRate = 40.0f;
 constexpr float kJointLeak = 22.0f;
 // Those of articulations are solved exactly; rows give way by this share of what would move them freely, enough to decide among
-// redundant ones (docs/decisions/joint-trees.md).
+// redundant ones (docs/decisions/articulations.md).
 constexpr float kArticulationCompliance = 1.0e-4f;
 // Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;

@@ -3,7 +3,7 @@
 // the next: nets of rods went faster without end; where a light body with long arms strikes a stop between heavy ones, at once. As
 // solver/articulation/articulation_energy_kernel.h does it for articulations side by side, what joints have given in a sub-step is taken away as it ends,
 // by slowing all inner motion alike. And where inertia against joints is raised (solver/articulation/articulation.cpp, rigid/solve/geometric_stiffness.h) a body does not
-// take all of a turn that others gave: what hangs on nothing gets it back, as one rigid body (docs/decisions/joint-trees.md).
+// take all of a turn that others gave: what hangs on nothing gets it back, as one rigid body (docs/decisions/articulations.md).
 #pragma once
 
 #include "rigid/field/fields.h"
