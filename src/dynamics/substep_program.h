@@ -1,6 +1,7 @@
-// The program of a batch: its sub-steps as a table of stages (task/program.h).
+// The program of a batch: its sub-steps as a table of stages (task/program.h). A sub-step of the settings is two half-steps, each of
+// which is solved once; add_half_step in the source is their order.
 //
-// In: a batch, gathered and laid out (dynamics/batch_context.h). Out: velocities, `moved`, `turned` and orientations of its bodies, impulses
+// In: a batch, gathered and laid out (dynamics/batch_context.h). Out: velocities, displacements and orientations of its bodies, impulses
 // of its manifolds and joints.
 #pragma once
 
