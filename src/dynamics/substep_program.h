@@ -1,6 +1,6 @@
-// The program of a batch: its sub-steps as a table of stages (task/program.h).
+// Builds the program of a batch: its sub-steps as a table of stages (task/program.h).
 //
-// In: a batch, gathered and laid out (dynamics/batch_context.h). Out: velocities, `moved`, `turned` and orientations of its bodies, impulses
+// In: a gathered and laid out batch (dynamics/batch_context.h). Out: velocities, `moved`, `turned` and orientations of its bodies, impulses
 // of its manifolds and joints.
 #pragma once
 
