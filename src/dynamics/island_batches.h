@@ -20,8 +20,8 @@ struct BatchSize {
   std::uint32_t fewest = 0;
 };
 
-// Alone a worker is as fast with twice as much, but a batch's memory stays. Workers that solve batches in parallel come out even
-// if there are some for each; those that meet after each colour of one need more of it to do in between.
+// A single worker is as fast with twice the size, but the memory of a batch stays. Workers that solve batches in parallel finish together
+// if each has some. Workers that share a batch meet after each colour, and need a larger one.
 constexpr BatchSize batch_size(int workers, bool in_parallel) {
   if (workers == 1) return {512, 1, 2};
   const std::uint32_t count = std::uint32_t(workers);
