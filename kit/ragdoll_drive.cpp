@@ -190,8 +190,7 @@ class Driver {
   Ragdoll& ragdoll_;
   float seconds_;
   bool moves_ = false;  // the last target was a step ago
-  float mean_ =
-      1.0f;  // share of the path between targets: the mean of the half-steps' ends
+  float mean_ = 1.0f;   // share of the path between targets: the mean of the half-steps' ends
 };
 
 bool is_share(float v) { return v >= 0.0f && v <= 1.0f; }

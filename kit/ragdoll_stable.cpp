@@ -56,8 +56,7 @@ Result<RagdollDef> stabilized(const RagdollDef& def, const StableDef& stable) {
   for (std::size_t i = 0; i < count; ++i) mass[i] = bone_mass(def.bones[i]);
   const std::vector<float> shifted = shifted_masses(def, mass, stable.mass_ratio);
   RagdollDef result = def;
-  std::vector<float> asked(
-      count, 0.0f);  // kg m^2: least smallest moment of a bone, for its children
+  std::vector<float> asked(count, 0.0f);  // kg m^2: least smallest moment of a bone, for its children
   for (std::size_t i = count; i-- > 0;) {
     const Sym3 own = (shifted[i] / mass[i].mass) * mass[i].inertia;
     const PrincipalAxes axes = principal_axes(own);

@@ -1,8 +1,8 @@
-// Moves vehicles. In one call wheels find their ground, springs and anti-roll bars give loads, tyres and drive line advance together in
-// short steps, and the body gets the mean of the tyres' forces.
+// Moves vehicles with wheels on springs, tyres and a drive line. In one call wheels find their ground, springs and anti-roll bars give
+// loads, tyres and drive line advance together in short steps, and the body gets the mean of the tyres' forces.
 //
-// The drive line is stiff: the spin of a wheel follows the ground within milliseconds, and faster at low speed. So the spin of each wheel
-// is integrated linearly implicitly in its own slip. Clutch and differentials are dampers, as stiff as is stable in a short step.
+// The drive line is stiff: a wheel's spin follows the ground within milliseconds, and faster at low speed. So each spin is integrated
+// linearly implicitly in its own slip. Clutch and differentials are dampers, as stiff as is stable in a short step.
 #include <gyre/kit/vehicle.h>
 
 namespace gyre::kit {

@@ -15,7 +15,7 @@ namespace {
 // Largest speed of penetration removal, as a share of sqrt(gravity * size). A body that falls its own size has about that speed, so the
 // rule holds from millimetres to kilometres.
 constexpr float kPushShare = 0.4f;
-// How many items ahead manifolds and joints are fetched, for they are scattered in memory.
+// Manifolds and joints are fetched so many items ahead, for they are scattered in memory.
 constexpr std::size_t kAhead = 6;
 constexpr int kContactsPerGather = 64;
 constexpr int kJointsPerGather = 128;

@@ -50,7 +50,7 @@ bool add_edge(const RigidWorld& w, std::uint32_t a, std::uint32_t b, std::uint32
   return true;
 }
 
-// How many records ahead contacts and joints are fetched.
+// Contacts and joints are fetched so many records ahead.
 constexpr std::uint32_t kContactsFetched = 8, kJointsFetched = 8;
 
 Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {

@@ -29,12 +29,12 @@ struct SolveScratch {
   int colors = 0;
 };
 
-// How constraints are divided into colours.
+// The options of graph colouring.
 constexpr ColoringOptions kColoringOptions{.max_colors = 32, .statics_last = true};
 static_assert(kColoringOptions.max_colors < 64, "colors_used has a bit for each, and one for the rest");
 
-// Solves one step of `seconds`. Writes velocities, `moved`, `turned` and orientations of awake bodies, and impulses in manifolds and
-// joints.
+// Solves one step of `seconds`. Writes velocities, delta positions, delta rotations and orientations of awake bodies, and impulses in
+// manifolds and joints.
 void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
                 const SolverKernels& kernels, float seconds);
 

@@ -1,7 +1,7 @@
 // Builds the program of a batch: its sub-steps as a table of stages (task/program.h).
 //
-// In: a gathered and laid out batch (dynamics/batch_context.h). Out: velocities, `moved`, `turned` and orientations of its bodies, impulses
-// of its manifolds and joints.
+// In: a gathered and laid out batch (dynamics/batch_context.h). Out: velocities, delta positions, delta rotations and orientations of its
+// bodies, impulses of its manifolds and joints.
 #pragma once
 
 #include "dynamics/batch_context.h"

@@ -7,9 +7,8 @@ namespace gyre {
 
 // All lists are in ascending order.
 struct SolveBatch {
-  std::span<const std::uint32_t> bodies;  // awake dynamic and kinematic bodies
-  std::span<const std::uint32_t>
-      contacts;                           // slots; each has a manifold and a body that it moves
+  std::span<const std::uint32_t> bodies;    // awake dynamic and kinematic bodies
+  std::span<const std::uint32_t> contacts;  // slots; each has a manifold and a body that it moves
   std::span<const std::uint32_t> joints;  // slots
 };
 

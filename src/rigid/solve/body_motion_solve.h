@@ -14,10 +14,10 @@ struct BodyMotionSolve {
   const SolverKernels& kernels;
   Motions motions{};
   MotionArrays arrays{};
-  std::span<MovedBody> moved{};  // the constrained bodies of the batch
-  void* blocks = nullptr;        // the same bodies in blocks for the kernels
-  std::span<Vec3> pushes{};      // rotation of each by pushout
-  int measured_blocks = 0;       // the contact change is measured in the first blocks only
+  std::span<MovedBody> moved{};                     // the constrained bodies of the batch
+  void* blocks = nullptr;                           // the same bodies in blocks for the kernels
+  std::span<Vec3> pushes{};                         // rotation of each by pushout
+  int measured_blocks = 0;                          // the contact change is measured in the first blocks only
   std::span<std::uint32_t> fast_spinning{};         // bodies that the kernels do not rotate
   std::span<std::uint32_t> fast_spinning_starts{};  // by block of moved bodies: its first; one more
   std::span<std::uint32_t> free_bodies{};           // bodies without constraints

@@ -32,8 +32,8 @@ struct ContactSolve {
 struct ContactGroup {
   const ContactSolve* solve = nullptr;
   std::uint32_t first = 0, count = 0;  // blocks
-  bool serial = false;          // the overflow group, whose members share bodies
-  const int* bounds = nullptr;  // bounds of each worker's share: Stage::bounds
+  bool serial = false;                 // the overflow group, whose members share bodies
+  const int* bounds = nullptr;         // bounds of each worker's share: Stage::bounds
 };
 
 }  // namespace gyre

@@ -45,8 +45,7 @@ void for_each_joint(const JointSolve& solve, Fn&& fn) {
 // The data of an island under construction, stored at its lowest body index.
 struct Draft {
   bool has_joints = false, is_swept = false, is_alone = false, is_fast = false;
-  bool is_untold =
-      false;  // its work is unknown: several moving carriers, locked axes, drives in lanes
+  bool is_untold = false;  // its work is unknown: several moving carriers, locked axes, drives in lanes
   bool is_in_equilibrium = false, is_pushed = false;
   std::int32_t carrier = kNoBody;  // first body that carries it
   IslandFrame frame = IslandFrame::rigid;
@@ -127,8 +126,7 @@ class IslandFinder {
       if (flags.locked_linear != 0 || flags.locked_angular != 0) draft.is_untold = true;
     }
   }
-  // Seen from its carrier, an island gains no energy. This holds if the carrier is one body and no row depends on more than motion relative
-  // to it.
+  // In its own frame a carrier does no work. This holds for one carrier, and for rows that depend only on motion relative to it.
   void hold(Draft& draft, std::int32_t body) const {
     if (draft.is_in_equilibrium && body != draft.carrier && (moves(body) || moves(draft.carrier)))
       draft.is_untold = true;
@@ -152,7 +150,7 @@ class IslandFinder {
   std::span<JointIsland> list() {
     for (Draft& draft : drafts_) end_hold(draft);
     // Scalar articulations are always watched, because that costs little of their solve. Kernels watch islands of grouped articulations
-    // alone.
+    // only.
     const auto is_watched = [](const Draft& draft) {
       return draft.bodies > 0 && (draft.is_alone || (draft.is_swept && draft.is_fast)) && !draft.is_untold;
     };
@@ -322,8 +320,8 @@ RigidMotion rigid_motion(const BodyStore& bodies, const JointIsland& island) {
   return rigid;
 }
 
-// Joint impulses on an island sum to zero. With geometric stiffness (solver/articulation/articulation.cpp) a body takes up less angular
-// momentum than its impulses carry; the island gets the rest as one rigid body.
+// Joint impulses on an island sum to zero. With geometric stiffness (solver/articulation/articulation.cpp) bodies take up less angular
+// momentum than that; the island gets the rest as one rigid body.
 void keep_angular_momentum(BodyStore& bodies, const JointIsland& island) {
   const DVec3 lost = island.spin - angular_momentum(bodies, island, center_of(bodies, island.bodies[0]));
   if (!(length_squared(lost) > square(kSpinRounding) * length_squared(island.spin))) return;
@@ -385,8 +383,8 @@ void clear_impulses(JointAxisRecord& axis) {
   axis.low_impulse = axis.high_impulse = axis.motor_impulse = axis.spring_impulse = axis.friction_impulse =
       0.0f;
 }
-// Clears the impulses that gave too much energy, and those of springs and motors that they answered, so that no warm start uses them.
-// Within a step the axes are in the joint constraints, at its end in the stored records.
+// Clears the impulses that gave too much energy, and the spring and motor impulses that they answered, so that no warm start uses them. The
+// axes are in the joint constraints within a step, and in the stored records at its end.
 void clear_impulses(const JointSolve& solve, const JointIsland& island) {
   JointStore& joints = solve.w.joints;
   const std::span<const std::uint8_t> in_lanes = prepared_in_simd(solve);

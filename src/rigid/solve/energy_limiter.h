@@ -32,7 +32,7 @@ struct JointIsland {
   bool is_bounded = false;         // the gain was limited before bodies moved
   double energy_gain = 0.0;        // J, by passive rows in this sub-step
   double before = 0.0;             // J, before the present stage of joints
-  DVec3 spin{};  // kg m^2/s: angular momentum then, about the first body's centre of mass
+  DVec3 spin{};                    // kg m^2/s: angular momentum then, about the first body's centre of mass
 };
 
 // Finds the islands of the batch to watch: those with scalar articulations, and those with iterative joints and a body that rotates far.

@@ -35,8 +35,8 @@ struct JointSolve {
   JointBodies bodies{};
   std::span<JointEdge> edges{};          // of the batch's joints
   std::span<std::uint8_t> ball_lanes{};  // 1 for joints that may be solved as ball joints in lanes
-  bool all_iterative = false;     // all are iterative: joints of ball_lanes begin in lanes
-  LaneStart lane_start{};  // for joints that begin in lanes
+  bool all_iterative = false;            // all are iterative: joints of ball_lanes begin in lanes
+  LaneStart lane_start{};                // for joints that begin in lanes
   JointConstraints works{};
   Articulations articulations{};
   ArticulationSolve articulation_solve{};
@@ -53,9 +53,9 @@ struct JointSolve {
 struct JointGroup {
   const JointSolve* solve = nullptr;
   std::uint32_t first = 0, count = 0;  // in JointSolve::order
-  bool serial = false;           // the overflow group, whose members share bodies
-  std::int32_t ball_block = -1;  // first block of ball joints in lanes, or -1
-  const int* bounds = nullptr;   // bounds of each worker's share: Stage::bounds
+  bool serial = false;                 // the overflow group, whose members share bodies
+  std::int32_t ball_block = -1;        // first block of ball joints in lanes, or -1
+  const int* bounds = nullptr;         // bounds of each worker's share: Stage::bounds
 };
 
 // By index in the batch: 1 for joints that begin and finish in lanes and have no JointConstraint.

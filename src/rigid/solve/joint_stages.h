@@ -44,7 +44,7 @@ void for_articulations(const JointSolve& s, int begin, int end, int worker) {
   for (int i = begin; i < end; ++i) stage(s.articulations.scalar[std::size_t(i)], own);
 }
 
-// Runs kernels for bundles [begin, end) of grouped articulations (solver/articulation/linkage_lanes.h).
+// Runs kernels for bundles [begin, end) of grouped articulations (solver/articulation/articulation_lanes.h).
 template <BundleKernel... stages>
 void for_simd_articulations(const JointSolve& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {

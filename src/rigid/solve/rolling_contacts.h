@@ -52,8 +52,7 @@ struct RollingContact : RollingSides {
   int count = 0;        // of points
   bool on_rim = false;  // any point on the rim
   AdvancedArms arms;    // at the last advance
-  Vec3
-      drift;  // rad/s: change of the angular velocity by free rotation until the middle of the sub-step
+  Vec3 drift;  // rad/s: change of the angular velocity by free rotation until the middle of the sub-step
 };
 
 // The bodies of the constraint's two sides.
