@@ -85,7 +85,7 @@ class Drive {
     return min(angle, def_.steer_angle);
   }
 
-  // Applies a spring and a damper towards the sum of gravity and the bend's acceleration.
+  // Applies a spring and a damper that align the body with the sum of gravity and the bend's acceleration.
   void lean() {
     const Vec3 gravity = world_.gravity();
     const float pull = length(gravity);

@@ -332,7 +332,7 @@ void begin_scratch(BatchScratch& scratch) {
   scratch.rows = {};
 }
 
-// Constrained bodies have their velocities from the constraints, so their applied moves are forgotten.
+// Constrained bodies have their velocities from the constraints, so their last moves are forgotten.
 void forget_moves(RigidWorld& w) {
   for (const std::uint32_t body : w.bodies.awake) {
     if (w.bodies.flags[body].constraint_use != kNotConstrained) w.bodies.last_moves[body] = {};
