@@ -1,6 +1,6 @@
 // Fused stages: all stages of an articulation bundle and its bodies between two solves of contacts are one line, run by run. Nothing else
 // acts on them in a fused batch, and the data of a run stays in the cache. Stage by stage, each articulation would come from memory several
-// times a half-step, because all of them together exceed a core's cache (docs/decisions/bundle-runs.md). dynamics/substep_program.cpp says
+// times a half-step, because all of them together exceed a core's cache (docs/decisions/fused-stages.md). dynamics/substep_program.cpp says
 // which stages are fused, and in which order.
 //
 // In: a batch whose articulations are laid out. Out: the order in which its bodies move, and the parts of fused stages. All numbers equal

@@ -27,7 +27,7 @@ constexpr int kHalfStepsPerSubstep = 2;
 constexpr float kJointRate = 40.0f;
 constexpr float kJointLeak = 22.0f;
 // Compliance of articulations as a share of the effective inverse mass. They are solved exactly, so this need only decide among redundant
-// rows (docs/decisions/joint-trees.md).
+// rows (docs/decisions/articulations.md).
 constexpr float kArticulationCompliance = 1.0e-4f;
 // Least closing speed for restitution, in speeds that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;

@@ -4,7 +4,7 @@
 // solver/articulation/articulation_energy_kernel.h does for bundles, this unit measures the gain of a sub-step and removes it at the end by
 // slowing all inner motion alike. Geometric stiffness (solver/articulation/articulation.cpp, rigid/solve/geometric_stiffness.h) makes a
 // body take less angular momentum than its impulses carry; an island that nothing holds gets it back as one rigid body
-// (docs/decisions/joint-trees.md).
+// (docs/decisions/articulations.md).
 #pragma once
 
 #include "rigid/field/fields.h"
