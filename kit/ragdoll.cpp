@@ -126,7 +126,7 @@ JointDef joint_of(const BoneDef& bone, BodyId parent, BodyId body, const Pose& p
   ConeDef cone{.a = parent, .b = body, .anchor = place.position, .axis = frame.x, .axis_b = frame.z};
   cone.friction = j.friction;
   if (j.kind == BoneJointKind::cone) {
-    cone.limits = Limits{-half(j.turn), half(j.turn)};
+    cone.limits = Limits{-half(j.twist), half(j.twist)};
     cone.swing_y = half(j.swing_y);
     cone.swing_z = half(j.swing_z);
   }

@@ -108,8 +108,8 @@ std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constrai
   return weights;
 }
 
-// Consecutive islands of equal weight are mostly alike (a crowd) and are solved in lanes. Their batch ends where lanes are full, if one
-// more would leave lanes empty. Such a batch is more than half full.
+// Consecutive islands of equal weight are mostly alike (a crowd) and are solved in lanes. Their batch ends where lanes are full, if it
+// is too small to fill them once more. Such a batch is more than half full.
 constexpr std::uint32_t kIslandLanes = 8;
 
 // Assigns a batch to each island, written to `batch_of` for all its bodies. Small islands fill one batch after the other; an island above

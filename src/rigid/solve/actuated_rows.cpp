@@ -2,7 +2,7 @@
 
 #include "solver/joint/joint_axis.h"
 #include "solver/joint/joint_blocks.h"
-#include "solver/joint/joint_drive.h"
+#include "solver/joint/pose_drive.h"
 
 namespace gyre {
 
