@@ -103,7 +103,7 @@ void write_joints(const kit::RagdollDef& def, const kit::RagdollPose& pose, int 
       const auto half = [](const Limits& l) { return rounded(0.5 * double(l.high - l.low)); };
       std::printf(", \"swing\": [%g, %g], ", half(joint.swing_y), half(joint.swing_z));
     }
-    write("limits", joint.turn);
+    write("limits", joint.twist);
     std::printf(", \"friction\": %.4g}%s\n", double(joint.friction),
                 last && i + 1 == def.bones.size() ? "" : ",");
   }

@@ -59,7 +59,7 @@ TEST(DecompositionCodec, KeysTellMeshesAndSettingsApart) {
   keys.push_back(changed([](DecompositionDef& def) { def.shell_thickness = 0.5f; }));
   keys.push_back(decomposition_key(box_mesh({0, 0, 0}, {1, 1, 1.0000001f}).def()));
   TestMesh turned = mesh;
-  turned.turn_over();
+  turned.flip();
   keys.push_back(decomposition_key(turned.def()));
   for (std::size_t i = 0; i < keys.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) EXPECT_NE(keys[i], keys[k]) << i << ' ' << k;

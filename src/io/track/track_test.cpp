@@ -265,7 +265,7 @@ TEST(Track, HoldsEveryKindOfShape) {
   ASSERT_TRUE(track) << track.error().message;
   const TrackFrame frame = track->frame();
   ASSERT_EQ(frame.ids.size(), 17u);
-  for (std::size_t i = 0; i < view.ids.size(); ++i) {
+  for (std::size_t i = 0; i < frame.ids.size(); ++i) {
     const BodyId id = world.bodies().ids[i];
     const TrackModel& model = track->models()[frame.models[i]];
     EXPECT_EQ(model.type, world.type(id));
@@ -304,7 +304,7 @@ TEST(Track, TellsNamesColoursAndNotes) {
   Result<PoseTrack> opened = PoseTrack::open(sink.bytes);
   ASSERT_TRUE(opened);
   const PoseTrack track = *std::move(opened);
-  const TrackFrame view = track.frame();
+  const TrackFrame frame = track.frame();
   EXPECT_EQ(track.label(frame.ids[0]).name, "a wooden box");
   ASSERT_EQ(track.label(frame.ids[0]).colors.size(), 2u);
   EXPECT_EQ(track.label(frame.ids[0]).colors[1], (TrackColor{1, 2, 3}));

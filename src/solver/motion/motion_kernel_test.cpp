@@ -163,7 +163,7 @@ TEST(MotionKernel, RepeatsTheEffectOfContacts) {
   EXPECT_EQ(crowd.motion[0].linear_velocity, (Vec3{0, -1, 0}));
   // A contact stops it; twice, as iterations do.
   crowd.motion[0].linear_velocity = {0, -0.25f, 0};
-  crowd.record_velocity_change();
+  crowd.add_contact_change();
   crowd.motion[0].linear_velocity = {0, 0, 0};
   crowd.motion[0].angular_velocity = {0, 0, 2};
   crowd.integrate_positions(0.25f);
