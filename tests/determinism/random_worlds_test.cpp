@@ -49,7 +49,7 @@ std::uint64_t digest_of_events(const Events& events) {
   digest.add(events.ends.size());
   for (const ContactHit& e : events.hits)
     digest.add(e.shape_a), digest.add(e.shape_b), digest.add(e.point), digest.add(e.normal),
-        digest.add(e.speed);
+        digest.add(e.approach_speed);
   digest.add(events.hits.size());
   for (const SensorTouch& e : events.sensors)
     digest.add(e.sensor), digest.add(e.visitor), digest.add(std::size_t(e.begins));

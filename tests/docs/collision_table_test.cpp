@@ -130,8 +130,8 @@ std::string kind_table() {
     const ImpactScale scale{0.001, 0.003, 0.001};
     TriangleHull triangle;
     const bool surface = !convex && it.shape.kind != ShapeKind::plane;
-    tell(surface ? stop_before_surface(ball_falls, core_falls, it_rests, 1.0, scale, triangle).hit
-                 : stop_before(ball_falls, core_falls, it_rests, 0.0, 1.0, scale).hit);
+    tell(surface ? surface_time_of_impact(ball_falls, core_falls, it_rests, 1.0, scale, triangle).hit
+                 : convex_time_of_impact(ball_falls, core_falls, it_rests, 0.0, 1.0, scale).hit);
     tell(convex && time_of_impact(make_swept_shape(it.shape, {}, falls), make_swept_shape(ball, {}, rests),
                                   0.0, 1.0, 0.001)
                        .hit);
