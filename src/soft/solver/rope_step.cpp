@@ -136,12 +136,12 @@ class RopeSolver {
       if (!held(s + 1)) band_.add(t, kUnknowns * (s + 1) + c, axis[c]);
     }
     const double error = span - rest;
-    double tension = chain_.tension[s];
+    // With the part of damping: it alone can hold a load, and turns with the segment as the rest does.
+    const double tension = chain_.tension[s];
     if (chain_.stretch_stiffness > 0.0) {
       const double k = chain_.stretch_stiffness / rest, beta = double(body_.damping);
       band_.add(t, t, -1.0 / (k * h_ * (h_ + beta)));
       right_[std::size_t(t)] = -(error + beta * dot(n, at(speed_, s + 1) - at(speed_, s))) / (h_ + beta);
-      tension = k * error;
     } else {
       right_[std::size_t(t)] = -error / h_;
     }
