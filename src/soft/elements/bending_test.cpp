@@ -64,14 +64,15 @@ TEST(Bending, ACylinderHasItsEnergyWhateverTheTrianglesAndTheDirection) {
   const double border = 1.0 - 1.0 / kCells;  // what bends along the border is not seen by differences
   constexpr double kAngles[] = {0.0, 0.4, 0.785398, 1.570796, 2.3};
   const SoftBody grid = grid_cloth({1.0f, 1.0f}, {kCells, kCells}, Pose{}, material);
-  for (const double angle : kAngles) EXPECT_NEAR(cylinder_energy(grid, angle, 2.0e-3), border, 0.05) << angle;
+  for (const double angle : kAngles) EXPECT_NEAR(cylinder_energy(grid, angle, 2.0e-3), border, 0.03) << angle;
   for (const bool shifted : {false, true}) {
     for (const double scatter : {0.0, 0.2}) {
       const Mesh mesh = make_mesh(kCells, shifted, scatter);
       const SoftBody sheet = mesh_cloth(mesh.places, mesh.triangles, material);
+      const double tolerance = scatter == 0.0 ? 0.08 : shifted ? 0.12 : 0.25;
       for (const double angle : kAngles) {
-        // Triangles without any order are up to a quarter too stiff.
-        EXPECT_NEAR(cylinder_energy(sheet, angle, 2.0e-3), border, scatter == 0.0 ? 0.08 : 0.25)
+        // Right triangles moved about are up to a quarter too stiff: docs/decisions/soft-solver.md, Limits.
+        EXPECT_NEAR(cylinder_energy(sheet, angle, 2.0e-3), border, tolerance)
             << angle << ' ' << shifted << ' ' << scatter;
       }
     }
@@ -123,9 +124,14 @@ TEST_P(OwnWeight, BendsARodToTheElastica) {
   EXPECT_NEAR(1.0 - rod.particles.x[tip], wanted.x, 0.01 * wanted.x + 1.0e-4);
 }
 
-TEST_P(OwnWeight, BendsAStripToTheElastica) {
+INSTANTIATE_TEST_SUITE_P(Bending, OwnWeight,
+                         testing::Values(Elastica{1, 0.12347, 0.00875}, Elastica{5, 0.49591, 0.15334},
+                                         Elastica{10, 0.70020, 0.34365}, Elastica{50, 0.90792, 0.75499}));
+
+class OwnWeightOfAStrip : public testing::TestWithParam<Elastica> {};
+
+TEST_P(OwnWeightOfAStrip, BendsItToTheElastica) {
   const Elastica& wanted = GetParam();
-  if (wanted.k > 10.0) return;  // there the bend is no wider than a few cells of this grid
   constexpr int kCells = 30;
   // Bending is seen from the middle of the clamped cells on.
   const double cell = 1.0 / (kCells - 0.5);
@@ -143,12 +149,12 @@ TEST_P(OwnWeight, BendsAStripToTheElastica) {
   Bench bench;
   bench.settle(strip, {0, -9.81f, 0}, 0.1f, 80);
   const int tip = kCells + columns;
-  EXPECT_NEAR(-strip.particles.y[tip], wanted.y, 0.02 * wanted.y);
-  EXPECT_NEAR(1.0 - (strip.particles.x[tip] - clamp), wanted.x, 0.03 * wanted.x + 1.0e-3);
+  EXPECT_NEAR(-strip.particles.y[tip], wanted.y, 0.01 * wanted.y);
+  EXPECT_NEAR(1.0 - (strip.particles.x[tip] - clamp), wanted.x, 0.01 * wanted.x);
 }
-INSTANTIATE_TEST_SUITE_P(Bending, OwnWeight,
+INSTANTIATE_TEST_SUITE_P(Bending, OwnWeightOfAStrip,
                          testing::Values(Elastica{1, 0.12347, 0.00875}, Elastica{5, 0.49591, 0.15334},
-                                         Elastica{10, 0.70020, 0.34365}, Elastica{50, 0.90792, 0.75499}));
+                                         Elastica{10, 0.70020, 0.34365}));
 
 TEST(MembraneForces, AreTheGradientOfTheEnergy) {
   const Mesh mesh = make_mesh(4, true, 0.2);
@@ -182,25 +188,30 @@ TEST(MembraneForces, AreTheGradientOfTheEnergy) {
   }
 }
 
+// The strain e of a St Venant-Kirchhoff strip, free across, under this force per width over its stiffness: (1 + e) (e + e^2 / 2) = load.
+double strip_strain(double load) {
+  double e = load;
+  for (int i = 0; i < 20; ++i) e = load / ((1.0 + e) * (1.0 + 0.5 * e));
+  return e;
+}
+
 TEST(MembraneStatics, AStripStretchesAsItsModulusSays) {
   const Mesh mesh = make_mesh(8, true, 0.2);
   ClothMaterial material;
   material.links = ClothLinks::membrane;
   material.stretch_stiffness = 500.0f;
+  material.shear_stiffness = 250.0f;  // no lateral contraction, which the held edge would hinder
   material.area_density = 2.0f;
   material.bend_stiffness = 0.0f;
-  for (const float shear : {250.0f, 190.0f}) {  // lateral contraction 0 and 0.32
-    material.shear_stiffness = shear;
-    SoftBody sheet = mesh_cloth(mesh.places, mesh.triangles, material);
-    for (int i = 0; i <= 8; ++i) hold(sheet, i, sheet.particles.place(i));
-    Bench bench;
-    bench.settle(sheet, {0, 0, 9.81f}, 0.5f, 40);
-    double mean = 0.0;
-    for (int i = 0; i <= 8; ++i) mean += (sheet.particles.z[72 + i] - 1.0) / 9.0;
-    const double strain = 2.0 * 9.81 / (2.0 * 500.0);
-    EXPECT_NEAR(mean, strain, (shear == 250.0f ? 0.01 : 0.08) * strain)
-        << shear;  // held across, it is stiffer at the top
-  }
+  SoftBody sheet = mesh_cloth(mesh.places, mesh.triangles, material);
+  for (int i = 0; i <= 8; ++i) hold(sheet, i, sheet.particles.place(i));
+  Bench bench;
+  bench.settle(sheet, {0, 0, 9.81f}, 0.5f, 40);
+  double mean = 0.0;
+  for (int i = 0; i <= 8; ++i) mean += (sheet.particles.z[72 + i] - 1.0) / 9.0;
+  double wanted = 0.0;  // the mean over the height: each part bears what hangs below
+  for (int i = 0; i < 100; ++i) wanted += 0.01 * strip_strain((i + 0.5) / 100.0 * 2.0 * 9.81 / 500.0);
+  EXPECT_NEAR(mean, wanted, 0.002 * wanted);
 }
 
 }  // namespace

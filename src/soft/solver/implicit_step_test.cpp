@@ -22,34 +22,30 @@ SoftBody hanging_sheet(int cells, const ClothMaterial& material) {
   return sheet;
 }
 
+// Without shear links, since the formula is for a strip that may contract: docs/decisions/soft-solver.md, Limits.
 TEST(ClothSprings, HangsFromAnEdgeWithTheStrainOfItsWeight) {
-  for (const float shear : {0.0f, 200.0f}) {
-    for (const int cells : {8, 20}) {
-      ClothMaterial material;
-      material.stretch_stiffness = 500.0f;
-      material.shear_stiffness = shear;
-      material.area_density = 2.0f;
-      material.bend_stiffness = 0.0f;
-      SoftBody sheet = hanging_sheet(cells, material);
-      const double top = sheet.particles.y[0];
-      ASSERT_NEAR(absolute(top), 0.5, 1.0e-6);
-      const Vec3 down{0.0f, top > 0.0 ? -9.81f : 9.81f, 0.0f};
-      // Only the height of the edge is held along its whole width: it may contract, as a strip in a test of materials does.
-      for (int i = 0; i <= cells; ++i) hold(sheet, i, sheet.particles.place(i));
-      Bench bench;
-      bench.settle(sheet, down, 0.5f, 40);
-      const double strain = 2.0 * 9.81 * 1.0 / (2.0 * 500.0);
-      double mean = 0.0;
-      for (int i = 0; i <= cells; ++i) {
-        mean += (absolute(sheet.particles.y[i + cells * (cells + 1)] - top) - 1.0) / (cells + 1);
-      }
-      // Held across, the upper part cannot contract: with shear links that makes it a little stiffer.
-      EXPECT_NEAR(mean, strain, (shear == 0.0f ? 0.002 : 0.05) * strain) << shear << ' ' << cells;
-      if (shear == 0.0f) {  // the strain grows evenly from the lower edge up
-        const double half = absolute(sheet.particles.y[cells / 2 * (cells + 1)] - top) - 0.5;
-        EXPECT_NEAR(half / strain, 0.75, 0.005);
-      }
+  for (const int cells : {8, 20}) {
+    ClothMaterial material;
+    material.stretch_stiffness = 500.0f;
+    material.shear_stiffness = 0.0f;
+    material.area_density = 2.0f;
+    material.bend_stiffness = 0.0f;
+    SoftBody sheet = hanging_sheet(cells, material);
+    const double top = sheet.particles.y[0];
+    ASSERT_NEAR(absolute(top), 0.5, 1.0e-6);
+    const Vec3 down{0.0f, top > 0.0 ? -9.81f : 9.81f, 0.0f};
+    for (int i = 0; i <= cells; ++i) hold(sheet, i, sheet.particles.place(i));
+    Bench bench;
+    bench.settle(sheet, down, 0.5f, 40);
+    const double strain = 2.0 * 9.81 * 1.0 / (2.0 * 500.0);
+    double mean = 0.0;
+    for (int i = 0; i <= cells; ++i) {
+      mean += (absolute(sheet.particles.y[i + cells * (cells + 1)] - top) - 1.0) / (cells + 1);
     }
+    EXPECT_NEAR(mean, strain, 0.002 * strain) << cells;
+    // The strain grows evenly from the lower edge up.
+    const double half = absolute(sheet.particles.y[cells / 2 * (cells + 1)] - top) - 0.5;
+    EXPECT_NEAR(half / strain, 0.75, 0.005) << cells;
   }
 }
 
@@ -77,7 +73,7 @@ TEST(ClothSprings, MeanStretchDoesNotDependOnTheCells) {
     }
     mean /= 2.0 * cells * (cells + 1);
     if (first == 0.0) first = mean;
-    EXPECT_NEAR(mean / first, 1.0, 0.1) << cells;
+    EXPECT_NEAR(mean / first, 1.0, 0.05) << cells;
   }
 }
 
@@ -113,14 +109,18 @@ SoftBody thrown_cloth(int cells, float speed) {
 }
 
 TEST(ClothMomentum, IsKeptAtAnyNumberOfIterations) {
-  for (const int iterations : {1, 5, 100}) {
+  for (const int iterations : {1, 3, 100}) {
     SoftBody cloth = thrown_cloth(20, 0.5f);
     const DVec3 linear = soft_test::momentum(cloth), angular = soft_test::angular_momentum(cloth);
     Bench bench;
     ImplicitSettings settings;
     settings.step = 1.0f / 240.0f;
     settings.least_iterations = settings.most_iterations = iterations;
+    const double start = soft_test::kinetic_energy(cloth) + elastic_energy(cloth);
     for (int i = 0; i < 240; ++i) bench.step(cloth, settings);
+    // One iteration alone gains energy slowly; three, the least by default, do not.
+    const double energy = soft_test::kinetic_energy(cloth) + elastic_energy(cloth);
+    EXPECT_LT(energy, (iterations == 1 ? 1.2 : 1.0) * start) << iterations;
     EXPECT_LT(length(soft_test::momentum(cloth) - linear), 1.0e-5 * length(linear)) << iterations;
     EXPECT_LT(length(soft_test::angular_momentum(cloth) - angular), 1.0e-4 * length(angular)) << iterations;
   }
