@@ -1,5 +1,5 @@
-// Plain data that the kernels of soft bodies work on: slots of a sparse matrix (soft/sliced_rows.h) and blocks of elements
-// (soft/continuum.h). Nothing here has functions of its own, since kernels are compiled once for each kind of processor.
+// Plain data that the kernels of soft bodies work on: slots of a sparse matrix (soft/body/sliced_rows.h) and blocks of elements
+// (soft/body/continuum.h). Nothing here has functions of its own, since kernels are compiled once for each kind of processor.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SoftBody: particles and what holds them together. Particles are structures of arrays, padded to whole slices of 16 rows
-// (soft/sliced_rows.h). Places are double, so that the difference of two neighbours is exact however far from the origin they lie and
+// (soft/body/sliced_rows.h). Places are double, so that the difference of two neighbours is exact however far from the origin they lie and
 // however large the body is beside their distance; velocities and forces are float.
 //
-// Elements: tetrahedra (soft/continuum.h). Springs (Hooke): T = k (l - l0). Bending: a quadratic energy 1/2 sum_e w_e |sum_a s_a x_a|^2, whose
+// Elements: tetrahedra (soft/body/continuum.h). Springs (Hooke): T = k (l - l0). Bending: a quadratic energy 1/2 sum_e w_e |sum_a s_a x_a|^2, whose
 // matrix is constant and the same for x, y and z; for surfaces and rods that are flat at rest.
 //
 // Sources: D. Baraff, A. Witkin, "Large Steps in Cloth Simulation", 1998; M. Bergou, M. Wardetzky, D. Harmon, D. Zorin, E. Grinspun, "A
@@ -61,7 +61,7 @@ struct BendRows {
   Array<float> stiffness;  // by place
 };
 
-// A rope: particles 0, 1, 2, ... one after the other. What the exact solve of ropes (soft/rope_step.h) knows beside the particles; the same
+// A rope: particles 0, 1, 2, ... one after the other. What the exact solve of ropes (soft/solver/rope_step.h) knows beside the particles; the same
 // springs and bending stand in the rows too, for the other solvers.
 struct Chain {
   Array<double> rest_length;       // m, of each segment; none: not a rope

@@ -1,7 +1,7 @@
 // The kernels of the implicit step of a soft body, one table for each kind of processor. A kernel works on a range of slices
-// (soft/sliced_rows.h); ranges may be done by several workers at once, since each writes only its own rows. Every width gives the same bits.
+// (soft/body/sliced_rows.h); ranges may be done by several workers at once, since each writes only its own rows. Every width gives the same bits.
 //
-// What is solved, with d = v' - v the change of velocity in the sub-step (soft/implicit_step.h):
+// What is solved, with d = v' - v the change of velocity in the sub-step (soft/solver/implicit_step.h):
 //
 //   A d = b,  A = M + sum of the elements' matrices, scaled.
 #pragma once

@@ -1,4 +1,4 @@
-// The kernel of membrane triangles (soft/continuum.h), one template for every width.
+// The kernel of membrane triangles (soft/body/continuum.h), one template for every width.
 //
 // With S the stress of St Venant and Kirchhoff, the second derivative is that of the strains with the material's constants, and
 // (g_a . S g_b) 1 from the stress that is there. Of S its negative part is left out, as with springs.
