@@ -1,4 +1,4 @@
-// The kernels of the implicit step, one template for every width (soft/soft_kernels.h says what each does).
+// The kernels of the implicit step, one template for every width (soft/kernels/soft_kernels.h says what each does).
 //
 // A spring of length l, direction n and tension T = k (l - l0) has the stiffness k n n^T + (T / l)(1 - n n^T). Where T < 0 the second part
 // is negative: it is left out, so that the matrix is positive semi-definite (D. Baraff, A. Witkin, 1998, leave out as much).
