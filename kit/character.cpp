@@ -1,7 +1,8 @@
-// The kinematic mover. One call: carried by the ground, out of overlap, velocity, slide with steps, ground again.
+// Moves the kinematic character. One call rides on the ground, leaves overlaps, updates the velocity, slides with steps, and finds the
+// ground again.
 //
-// Source of the ideas: K. Fauerby, "Improved Collision Detection and Response", 2003 (collide and slide); what is different here, and
-// why, is told in docs/decisions/character.md.
+// Source of the ideas: K. Fauerby, "Improved Collision Detection and Response", 2003 (collide and slide). docs/decisions/character.md tells
+// what is different here, and why.
 #include "kit/character_walk.h"
 
 namespace gyre::kit {
@@ -53,7 +54,7 @@ class Mover {
   }
 
  private:
-  // With what it stands on, exactly as that moved since the last call.
+  // Rides on the ground body, exactly as that moved since the last call.
   void ride() {
     s_.ground_velocity = {};
     s_.ground_rotation = 0.0f;
@@ -85,13 +86,13 @@ class Mover {
                         : wanted;
     } else {
       const Vec3 fall = walk_.along_up(s_.velocity) * def_.up + seconds_ * world_.gravity();
-      // Steep ground gives no hold to brake on.
+      // Steep ground gives no grip to brake.
       const bool may_steer = def_.air_acceleration > 0.0f && s_.ground != GroundKind::steep;
       s_.velocity = (may_steer ? towards(level, wanted, seconds_ * def_.air_acceleration) : level) + fall;
     }
   }
 
-  // A level way, led along the ground: as far as before seen from above.
+  // Leads a level displacement along the ground; it is as long as before, seen from above.
   Vec3 along_ground(Vec3 way) const {
     return walk_.is_firm(s_.ground_normal) ? led(way, s_.ground_normal) : way;
   }
@@ -112,25 +113,25 @@ class Mover {
       Vec3 normal = hit.normal;
       if (!walk_.is_firm(normal)) {
         if (walks_ && !hit.dynamic && step(way)) continue;
-        // Steep ground is a wall to who walks: it lifts nobody. So is a ceiling that leans.
+        // Steep ground is a wall to a walking character and lifts nobody. A sloped ceiling is a wall, too.
         const Vec3 wall = walk_.flat(normal);
         const bool lifts = walk_.along_up(normal) > 0.0f &&
                            walk_.along_up(way) > walk_.along_up(first) - 1.0e-6f && !falls(way);
         if ((walks_ || lifts) && length_squared(wall) > 1.0e-4f) normal = normalized(wall);
       }
       planes[count++] = normal;
-      // Who walks onto firm ground keeps its pace, seen from above.
+      // A walking character keeps its speed, seen from above, on firm ground.
       if (walks_ && walk_.is_firm(normal)) way = led(walk_.flat(way), normal);
       way = clipped(way, planes, count);
       if (!walks_) s_.velocity = clipped(s_.velocity, planes, count);
-      // Turned back by what stands across: stop rather than rock to and fro.
+      // If the planes turn it back, it stops; it would rock to and fro otherwise.
       if (dot(walk_.flat(way), walk_.flat(first)) < 0.0f) way = walk_.along_up(way) * def_.up;
     }
   }
 
   bool falls(Vec3 way) const { return walk_.along_up(way) < 0.0f; }
 
-  // The part of a way that leads into none of the planes.
+  // Returns the component of a displacement that enters none of the planes.
   static Vec3 clipped(Vec3 way, const Vec3* planes, int count) {
     const auto enters = [&](Vec3 v, int but_1, int but_2) {
       for (int i = 0; i < count; ++i) {
@@ -150,7 +151,7 @@ class Mover {
     return enters(out, first, second) < 0 ? out : Vec3{};
   }
 
-  // Over a ledge: up, on, and down onto something firm that is not too high. What is left of the way shrinks.
+  // Steps over a ledge: up, on, and down onto firm ground that is not too high. Removes the moved part from `way`.
   bool step(Vec3& way) {
     const Vec3 level = walk_.flat(way);
     const float size = length(level);
@@ -181,12 +182,12 @@ class Mover {
     const bool firm = walk_.is_firm(hit);
     const float facing = walk_.along_up(hit.normal);
     const double gap = double(kGap) / double(facing > 0.3f ? facing : 0.3f);
-    // Farther down than it touches: only ground that is firm, and not deeper below what it stood on than a step. (The feet are
-    // lower than an edge on which they stand.)
+    // It follows ground below its contact only if that is firm, and no deeper than a step below the last ground. (The feet are lower than
+    // an edge on which they stand.)
     const double drop = walk_.height_of(s_.ground_point) - walk_.height_of(hit.point);
     const bool follows = firm && walks_ && drop <= double(def_.step_down + kGap);
     if (!follows && hit.distance > gap + 2.0 * double(kGap)) return;
-    // Down to it, and not up: who is too near by rounding stays.
+    // It moves down to the ground, never up: a gap that is too small by rounding stays.
     if (firm && hit.distance > gap) s_.feet = s_.feet - (hit.distance - gap) * DVec3(def_.up);
     s_.ground = firm ? GroundKind::firm : GroundKind::steep;
     s_.ground_body = hit.body;

@@ -1,4 +1,4 @@
-// The dynamic character: an upright capsule without friction of its own, driven by a motor at its feet.
+// Moves the dynamic character: an upright capsule without friction of its own, driven by a motor at its feet.
 #include "kit/character_walk.h"
 
 namespace gyre::kit {
@@ -18,8 +18,8 @@ Vec3 within(Vec3 v, float most) {
   return size > most ? (most / size) * v : v;
 }
 
-// Both sides of a blow at the feet, and of a force that acts through the next step. (A blow against gravity's pull down a slope would
-// lift the body at once and let it sink through the step: it would creep uphill.)
+// strike_apart applies an impulse at the feet and its reaction; push_apart does so with a force through the next step. (An impulse against
+// gravity's pull down a slope would lift the body at once and let it sink through the step: it would creep uphill.)
 void strike_apart(World& world, BodyId character, const CharacterGround& ground, Vec3 impulse) {
   world.add_impulse(character, impulse);
   if (world.type(ground.body) == BodyType::dynamic) world.add_impulse_at(ground.body, -impulse, ground.point);
@@ -37,11 +37,11 @@ BodyId add_character_body(World& world, const CharacterDef& def, DVec3 feet, con
   BodyDef body;
   body.pose = place.pose;
   for (bool& locked : body.locked.angular) locked = true;
-  body.can_sleep = false;  // it is asked where it stands in every step
+  body.can_sleep = false;  // it must react in every step
   if (def.mass > 0.0f) body.mass = def.mass;
   ShapeDef shape;
   shape.geometry = place.shape;
-  // Grip is the drive's: with friction too it would hang on walls.
+  // The drive has the grip. With friction, too, the body would hang on walls.
   shape.material.static_friction = shape.material.dynamic_friction = 0.0f;
   shape.filter = filter;
   return world.add_body(body, shape);
@@ -52,7 +52,7 @@ CharacterGround find_character_ground(const World& world, const CharacterDef& de
   if (!world.exists(character)) return ground;
   const CharacterState state = state_of(world, def, character);
   const Walker walk(world, def, state);
-  // Contacts may rest a little deep or let go for a step.
+  // Contacts may rest a little deep or separate for a step.
   constexpr float kReach = 0.03f;
   const DVec3 lifted = state.feet + double(kReach) * DVec3(def.up);
   const WalkHit hit = walk.cast(lifted, -2.0f * kReach * def.up);
@@ -91,7 +91,7 @@ Error drive_character_body(World& world, const CharacterDef& def, BodyId charact
     const float lack = move.jump_speed - dot(velocity - ground.velocity, def.up);
     if (lack > 0.0f) strike_apart(world, character, ground, mass * lack * def.up);
   }
-  // Along the ground, with what gravity would take there in the step; as much as what holds it up lets it grip.
+  // The force along the ground reaches the target velocity against gravity's pull in the step, up to the grip under the load.
   const Vec3 wanted = flat(move.velocity);
   const Vec3 along = wanted - (dot(wanted, n) / dot(n, def.up)) * def.up;
   const Vec3 pull = seconds * (gravity - dot(gravity, n) * n);

@@ -4,7 +4,7 @@ namespace gyre::kit {
 
 namespace {
 
-// The turn that takes y to `up`, a unit vector.
+// Returns the rotation that takes y to `up`, a unit vector.
 Quat turn_to(Vec3 up) {
   if (up.y < -0.999999f) return {1, 0, 0, 0};
   return normalized(Quat{up.z, 0.0f, -up.x, 1.0f + up.y});
@@ -51,14 +51,14 @@ WalkHit Walker::cast_down(DVec3 feet, float reach) const {
 WalkHit Walker::cast(const ShapePose& place, Vec3 way, BodyId ignored) const {
   const float size = length(way);
   if (!(size > 0.0f)) return {};
-  // A little overlap does not stop what leads out of it or along.
+  // A little overlap does not stop a motion that leads out of it or along it.
   const ShapeCast question{place.shape, place.pose, way, 4.0f * kGap};
   WalkHit out;
   const std::uint32_t solid = def_.layers & ~def_.one_way_layers;
   if (const auto hit = world_.cast_shape(question, filter(solid, ignored))) out = to_hit(*hit, size);
   const std::uint32_t one_way = def_.layers & def_.one_way_layers;
   if (one_way == 0 || along_up(way) >= 0.0f) return out;
-  // These hold what comes from above: not what is in them, nor what meets their sides.
+  // One-way shapes stop motion from above, but not from inside or at their sides.
   const auto hit = world_.cast_shape(question, filter(one_way, ignored));
   if (!hit || (hit->inside && hit->depth > 2.0f * kGap) || along_up(hit->normal) < 0.7f) return out;
   const WalkHit held = to_hit(*hit, size);
@@ -70,7 +70,7 @@ Vec3 Walker::go(DVec3& feet, Vec3 way, WalkHit& hit, BodyId ignored) const {
   hit = {};
   if (!(size > 0.0f)) return {};
   const Vec3 direction = way / size;
-  // A little farther, so that what is just beyond keeps its gap too.
+  // The cast is a little longer, so that the gap to an obstacle just beyond stays, too.
   const float reach = size + 2.0f * kGap;
   hit = cast(feet, reach * direction, ignored);
   double distance = double(size);
@@ -92,11 +92,11 @@ bool Walker::is_firm(Vec3 normal) const { return along_up(normal) >= cosine(def_
 
 Vec3 Walker::face_normal(const WalkHit& hit) const {
   if (along_up(hit.normal) > 0.99999f || along_up(hit.normal) < 0.02f) return hit.normal;
-  // An edge is round to a capsule: what counts is the face behind it, a little farther in and seen from above.
+  // A capsule meets an edge like a round surface. The face behind the edge decides, a little farther in and seen from above.
   const Vec3 inward = normalized(flat(-hit.normal), {});
   const Vec3 lift = (0.5f * def_.radius) * def_.up;
   const auto face = world_.cast_ray(hit.point + 0.02f * inward + lift, -2.0f * lift, filter(def_.layers, {}));
-  // Of a face that lies as high as the edge; the ray must not start inside of something higher.
+  // The face must lie as high as the edge, and the ray must not start inside a higher shape.
   if (!face || face->inside || height_of(face->point) - height_of(hit.point) > 0.03) return hit.normal;
   return face->normal;
 }
@@ -114,7 +114,7 @@ bool Walker::escape(DVec3& feet) const {
     const std::size_t count =
         world_.penetration_all(shape_at(feet, state_.height), deep, filter(solid, {}));
     if (count == 0 || deep[0].depth <= 2.0f * kGap) return true;
-    // Each contact in turn, less what those before have done for it: side by side faces do not push twice.
+    // Each contact gets its displacement less that of the contacts before, so that adjacent faces do not push twice.
     Vec3 moved{};
     const std::size_t kept = count < 8 ? count : 8;
     for (std::size_t i = 0; i < kept; ++i) {
@@ -124,7 +124,7 @@ bool Walker::escape(DVec3& feet) const {
     feet = feet + moved;
   }
   if (is_free(feet, state_.height)) return true;
-  // Faces on two sides push it to and fro: straight up, by its own height at most, to the first place that is free.
+  // Faces on two sides push it to and fro. It is moved straight up to the first free place, by twice its height at most.
   constexpr int kTries = 16;
   for (int i = 1; i <= kTries; ++i) {
     const DVec3 higher = start + (2.0 * double(state_.height) * i / kTries) * DVec3(def_.up);

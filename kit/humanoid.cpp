@@ -1,8 +1,8 @@
-// A person of 16 bones, in a T pose with the palms forward: y up, z forward, x to the left.
+// Defines a person of 16 bones, in a T pose with the palms forward: y up, z forward, x to the left.
 //
-// Masses and lengths: P. de Leva, "Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters", J. Biomech. 29 (1996), table 4,
-// men (73.0 kg, 1.741 m). Limits: C. C. Norkin, D. J. White, "Measurement of Joint Motion", table of the American Academy of
-// Orthopaedic Surgeons; of the back half for each of two joints. Shoulders: docs/ragdolls.md.
+// Masses and lengths: P. de Leva, "Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters", J. Biomech. 29 (1996), table 4, men
+// (73.0 kg, 1.741 m). Limits: C. C. Norkin, D. J. White, "Measurement of Joint Motion", table of the American Academy of Orthopaedic
+// Surgeons; each of the two back joints has half of the back's range. Shoulders: docs/ragdolls.md.
 #include <gyre/kit/ragdoll.h>
 
 namespace gyre::kit {
@@ -19,7 +19,7 @@ ShapeDef along(const AnyShape& shape, Vec3 middle, Vec3 y) {
   def.local = {middle, from_directions({0, 1, 0}, y)};
   return def;
 }
-// A capsule from the bone's origin over a length.
+// Returns a capsule from the bone's origin over a length.
 ShapeDef limb(Vec3 direction, float length, float radius) {
   return along(Capsule{radius, 0.5f * length - radius}, 0.5f * length * direction, direction);
 }
@@ -40,7 +40,7 @@ class Builder {
     scale(shape.geometry);
     bone.shapes = {shape};
     bone.mass = share * mass_;
-    // Dry friction of a joint: little beside what its muscles can.
+    // The dry friction of a joint is small beside the torque of its muscles.
     joint.max_torque *= strength_;
     joint.friction = 0.005f * joint.max_torque;
     bone.joint = joint;
@@ -72,7 +72,7 @@ BoneJoint hinge(Vec3 axis, Limits turn, float torque) {
   return {BoneJointKind::hinge, axis, {0, 0, 1}, turn, {}, {}, 0.0f, torque};
 }
 
-// swing_z bends it forward, swing_y to the side.
+// swing_z bends the arm forward, swing_y to the side.
 void add_arm(Builder& b, int chest, float side) {
   const bool left = side > 0.0f;
   const Vec3 out{side, 0, 0}, across{0, -side, 0};

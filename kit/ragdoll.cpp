@@ -1,7 +1,6 @@
-// Ragdolls put into a world: what is checked first, bodies, joints, and which bones do not touch.
+// Adds ragdolls to a world: checks, bodies, joints, and pairs of bones that do not collide.
 //
-// Bodies are made as the middle of all limits has them, joined, and only then put where they start: a joint's zero is the pose in which
-// it is made.
+// A joint's zero is the pose in which it is made. So bodies are made at the middle of all limits, joined, and then moved to their start.
 #include "kit/ragdoll_frames.h"
 
 namespace gyre::kit {
@@ -127,14 +126,14 @@ JointDef joint_of(const BoneDef& bone, BodyId parent, BodyId body, const Pose& p
   ConeDef cone{.a = parent, .b = body, .anchor = place.position, .axis = frame.x, .axis_b = frame.z};
   cone.friction = j.friction;
   if (j.kind == BoneJointKind::cone) {
-    cone.limits = Limits{-half(j.turn), half(j.turn)};
+    cone.limits = Limits{-half(j.twist), half(j.twist)};
     cone.swing_y = half(j.swing_y);
     cone.swing_z = half(j.swing_z);
   }
   return cone;
 }
 
-// Pairs that overlap as they stand in the rest pose: asked of a world of their own.
+// Finds the pairs that overlap in the rest pose, by queries in a world of their own.
 std::vector<RagdollDef::Pair> rest_overlaps(const RagdollDef& def) {
   std::vector<RagdollDef::Pair> pairs;
   Result<World> made = World::create({});
@@ -154,7 +153,7 @@ std::vector<RagdollDef::Pair> rest_overlaps(const RagdollDef& def) {
   return pairs;
 }
 
-// Shapes of one negative group never touch anyhow.
+// False for shapes of one negative group, which never collide.
 bool may_touch(const BoneDef& a, const BoneDef& b) {
   for (const ShapeDef& of_a : a.shapes) {
     for (const ShapeDef& of_b : b.shapes) {
@@ -164,7 +163,7 @@ bool may_touch(const BoneDef& a, const BoneDef& b) {
   return false;
 }
 
-// Pairs that do not touch besides those that a joint keeps apart.
+// Lists the pairs that shall not collide and that no joint keeps from it.
 std::vector<RagdollDef::Pair> pairs_apart(const RagdollDef& def) {
   std::vector<RagdollDef::Pair> all = def.filtered_pairs, kept;
   if (def.skip_rest_overlaps) {
@@ -189,8 +188,8 @@ std::vector<RagdollDef::Pair> pairs_apart(const RagdollDef& def) {
   return kept;
 }
 
-// By how much what hangs on each joint is harder to turn than the two bodies of the joint: about a hinge's axis, else the
-// mean of all directions.
+// Computes for each joint the inertia of all bones that hang on it, over the effective inertia of its two bodies: about a hinge's axis,
+// else as the mean of all directions.
 void find_motor_shares(const RagdollDef& def, Ragdoll& ragdoll) {
   const RagdollPose rest = rest_pose(def);
   const std::size_t count = def.bones.size();
@@ -288,7 +287,7 @@ Result<Ragdoll> add_ragdoll(World& world, const RagdollDef& def, const RagdollPo
     return why;
   }
   for (const RagdollDef::Pair& p : pairs_apart(def)) {
-    // A joint that does nothing but keep the two from touching.
+    // This joint only keeps the two bones from colliding.
     const BallDef joint{.a = ragdoll.bones[std::size_t(p.a)].body,
                         .b = ragdoll.bones[std::size_t(p.b)].body,
                         .anchor = place(std::size_t(p.b)).position};

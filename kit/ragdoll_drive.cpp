@@ -1,19 +1,18 @@
-// Drives of ragdolls: what a bone is told for the next step, by the engine's own soft rows, which bear any stiffness.
+// Drives ragdolls: sets a target for each bone and the next step, with the engine's soft rows, which bear any stiffness.
 //
-// A key is a motor joint between the bone and the world (or the root), a motor the drive of the bone's own joint. Both know no target
-// that moves within a step: they are given the place where it is in the mean of the ends of a step's parts, and its velocity, so that
-// what follows a steady motion lags behind by nothing. Only what differs from what was told before is told: so a ragdoll whose target
-// stands still may sleep.
+// A key is a motor joint between the bone and the world (or the root). A motor is the drive of the bone's own joint. Neither has a target
+// that moves within a step. So they get the target's pose in the mean of the ends of the step's half-steps, and its velocity: a bone then
+// follows a steady motion without lag. A target is set only if it changed, so that a ragdoll with a resting target may sleep.
 #include "kit/ragdoll_frames.h"
 
 namespace gyre::kit {
 
 namespace {
 
-// Far from where a key's joint was made, floats would tell the place badly.
+// Distance from a key's joint above which floats would be too coarse for the position.
 constexpr double kFar = 64.0;  // m
 
-// A joint's rotation told as small angles lies near these: turns are taken the short way round.
+// Angles of a joint's rotation are taken the short way round.
 Quat shortest(Quat q) { return q.w < 0.0f ? -q : q; }
 
 bool same(const PoseDrive& a, const PoseDrive& b) {
@@ -32,7 +31,7 @@ class Driver {
   Driver(World& world, const RagdollDef& def, Ragdoll& ragdoll, const RagdollPose& target, float seconds)
       : world_(world), def_(def), ragdoll_(ragdoll), seconds_(seconds) {
     moves_ = world.step_count() == ragdoll.target_step + 1;
-    const float n = float(world.substeps());  // each has two parts
+    const float n = float(world.substeps());  // each has two half-steps
     mean_ = moves_ ? 0.5f + 0.25f / n : 1.0f;
     for (std::size_t i = 0; i < def.bones.size(); ++i) {
       RagdollBone& bone = ragdoll.bones[i];
@@ -92,7 +91,7 @@ class Driver {
     b.key_drive = d;
   }
 
-  // The joint's frames: the body's as it is now, at its centre of mass.
+  // The frames of the joint: the body's is its present one, at its centre of mass.
   void make_key(RagdollBone& b, BodyId to) {
     const Pose pose = world_.pose(b.body);
     const Mat3 frame = to_matrix(pose.orientation);
@@ -102,13 +101,13 @@ class Driver {
     joint.anchor = world_.center_of_mass(b.body);
     joint.axis = frame.x;
     joint.axis_b = frame.z;
-    joint.collide_connected = true;  // bones that touch go on doing so
+    joint.collide_connected = true;  // bones in contact stay in contact
     b.key = world_.add_joint(joint);
     b.key_to_root = bool(to);
     b.key_position = joint.anchor;
     b.key_orientation = normalized(from_matrix(frame));
     b.key_drive = {};
-    if (to) {  // as the root sees it
+    if (to) {  // relative to the root
       const Pose root = world_.pose(to);
       b.key_position = DVec3(inverse_times(root, joint.anchor));
       b.key_orientation = normalized(conjugate(root.orientation) * b.key_orientation);
@@ -117,7 +116,7 @@ class Driver {
 
   Vec3 center(std::size_t i) const { return world_.mass_properties(ragdoll_.bones[i].body).center; }
 
-  // The target's way from the last call to this one at the mean of the step, and its velocities.
+  // Returns the target's pose at the mean of the step, between the last call and this one, and its velocities.
   PoseDrive key_from_world(std::size_t i) const {
     const RagdollBone& b = ragdoll_.bones[i];
     const Vec3 c = center(i);
@@ -161,7 +160,7 @@ class Driver {
     const Quat from =
         shortest(middle * turn_between(bone, before(parent).orientation, before(i).orientation));
     const Quat to = shortest(middle * turn_between(bone, after(parent).orientation, after(i).orientation));
-    // A motor of no torque is told no target: it need not be told again.
+    // A motor without torque needs no target, and so no update.
     const bool works = most > 0.0f;
     if (bone.joint.kind == BoneJointKind::hinge) {
       Motor m;
@@ -191,8 +190,7 @@ class Driver {
   Ragdoll& ragdoll_;
   float seconds_;
   bool moves_ = false;  // the last target was a step ago
-  float mean_ =
-      1.0f;  // of the way from the last target to this: where the sub-steps stand in the mean as they begin
+  float mean_ = 1.0f;   // share of the path between targets: the mean of the half-steps' ends
 };
 
 bool is_share(float v) { return v >= 0.0f && v <= 1.0f; }

@@ -1,7 +1,7 @@
-// Poses of ragdolls: angles of joints from orientations of bones, and the other way.
+// Converts poses of ragdolls: from orientations of bones to angles of joints, and back.
 //
-// A joint's limits lie about their middle: the frame on the parent is the rest pose's, turned there by `middle_turn`. The
-// frame on the bone is fixed. So the engine's joint, whose zero is where its two frames agree, has limits that are even to both sides.
+// The engine's joint has its zero where its two frames agree. The frame on the parent is that of the rest pose, rotated by `middle_turn` to
+// the middle of the joint's limits, and the frame on the bone is fixed. So the engine's limits are even to both sides.
 #include "kit/ragdoll_frames.h"
 
 namespace gyre::kit {
@@ -99,7 +99,7 @@ float limit_violation(const RagdollDef& def, const RagdollPose& pose, int bone) 
                                                      pose.bones[std::size_t(bone)].orientation);
   const float twist = absolute(twist_of(from_middle)) - half(b.joint.twist);
   if (b.joint.kind == BoneJointKind::hinge) return max(twist, 0.0f);
-  // The swing is the shortest turn of x; where its ellipse is left along the way to it.
+  // The swing is the shortest rotation of x. It is compared with its ellipse along the path to it.
   const Vec3 x = rotate(from_middle, {1, 0, 0});
   const float sine = std::sqrt(x.y * x.y + x.z * x.z), angle = atan2(sine, x.x);
   if (!(sine > 1.0e-6f))
@@ -121,7 +121,7 @@ int find_bone(const RagdollDef& def, std::string_view name) {
 int joints_between(const RagdollDef& def, int a, int b) {
   int count = 0;
   while (a != b) {
-    // Parents come first: who stands later is never the other's ancestor.
+    // Parents come first, so the later one is never an ancestor of the other.
     int& later = a > b ? a : b;
     later = def.bones[std::size_t(later)].parent;
     ++count;

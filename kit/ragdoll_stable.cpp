@@ -1,16 +1,16 @@
-// Ragdolls whose neighbouring bones are alike enough in mass and inertia.
+// Makes neighbouring bones of a ragdoll similar enough in mass and inertia.
 //
-// Masses: with x = log mass, each joint asks |x_child - x_parent| <= log ratio: a convex set, which projecting on its violated parts in
-// turns approaches (Bregman, 1967); scaling all by one factor then gives the sum back and keeps the ratios. Inertias: from
-// the leaves to the root each is scaled with its mass and raised by a multiple of the unit tensor, which raises all principal
-// moments alike and so keeps it one that a body can have.
+// Masses: with x = log mass, each joint requires |x_child - x_parent| <= log ratio. This is a convex set, and projection on its violated
+// constraints in turn approaches it (Bregman, 1967). One factor for all masses then restores the sum and keeps the ratios. Inertias: from
+// the leaves to the root, each inertia is scaled with its mass and raised by a multiple of the unit tensor. This raises all principal
+// moments alike, and so a body can have the result.
 #include "kit/ragdoll_frames.h"
 
 namespace gyre::kit {
 
 namespace {
 
-// Ratios end within this of what was asked.
+// Relative tolerance of the ratios.
 constexpr float kClose = 1.0e-4f;
 
 float raised_least(const Vec3& moments, float max_ratio) {
@@ -29,7 +29,7 @@ std::vector<float> shifted_masses(const RagdollDef& def, const std::vector<MassP
     for (std::size_t i = 1; i < count; ++i) {
       float& child = shifted[i];
       float& parent = shifted[std::size_t(def.bones[i].parent)];
-      // Both give way by the same factor.
+      // Both masses change by the same factor.
       const float low = parent / (child * ratio), high = child / (parent * ratio);
       if (low > 1.0f) child *= std::sqrt(low), parent /= std::sqrt(low);
       if (high > 1.0f) child /= std::sqrt(high), parent *= std::sqrt(high);
@@ -56,14 +56,13 @@ Result<RagdollDef> stabilized(const RagdollDef& def, const StableDef& stable) {
   for (std::size_t i = 0; i < count; ++i) mass[i] = bone_mass(def.bones[i]);
   const std::vector<float> shifted = shifted_masses(def, mass, stable.mass_ratio);
   RagdollDef result = def;
-  std::vector<float> asked(
-      count, 0.0f);  // kg m^2: the least that the smallest moment of a bone may be, for its children
+  std::vector<float> asked(count, 0.0f);  // kg m^2: least smallest moment of a bone, for its children
   for (std::size_t i = count; i-- > 0;) {
     const Sym3 own = (shifted[i] / mass[i].mass) * mass[i].inertia;
     const PrincipalAxes axes = principal_axes(own);
     float raise = max(raised_least(axes.moments, stable.slenderness), asked[i] - axes.moments.x);
     if (stable.slenderness == 1.0f && axes.moments.z > axes.moments.x * (1.0f + kClose)) {
-      // A ball: no sum makes it one.
+      // The target is a ball, which no added multiple reaches.
       const float moment = max(axes.moments.z, asked[i]);
       result.bones[i].inertia = Sym3{moment, moment, moment, 0, 0, 0};
       raise = 0.0f;

@@ -1,5 +1,5 @@
-// One pass down the skeleton: joints with a bone go with it; the others follow their parent by their local pose; and once a joint
-// with a bone is reached at the end of a chain of others, the chain is fitted to it.
+// Maps ragdoll poses to skeletons in one pass from the root. Joints with a bone follow the bone, others follow their parent by their local
+// pose. A chain of joints between two bones is fitted to its end once the pass reaches the lower bone.
 #include <gyre/kit/skeleton_map.h>
 
 namespace gyre::kit {
@@ -49,7 +49,7 @@ Error pair_up(const RagdollDef& def, const Skeleton& skeleton, std::span<const M
   return {};
 }
 
-// Of two bones the one above has the joint above.
+// Checks that the next bone above a bone's joint is the bone's parent.
 Error check_order(const RagdollDef& def, const Skeleton& skeleton, const SkeletonMap& map) {
   for (std::size_t bone = 0; bone < def.bones.size(); ++bone) {
     int joint = map.joint_of_bone[bone];
@@ -67,14 +67,14 @@ Error check_order(const RagdollDef& def, const Skeleton& skeleton, const Skeleto
   return {};
 }
 
-// Joints without a bone that lie on the way from one with a bone down to the next.
+// Finds the chains: joints without a bone between a joint with a bone and the next one below.
 void find_chains(const Skeleton& skeleton, SkeletonMap& map) {
   for (std::size_t i = 0; i < map.joints.size(); ++i) {
     if (map.joints[i].bone < 0) continue;
     int count = 0, top = -1;
     for (int j = skeleton.joints[i].parent; j >= 0; j = skeleton.joints[std::size_t(j)].parent) {
       const SkeletonMap::Rule& rule = map.joints[std::size_t(j)];
-      // Another chain's, if the way branches off it: that one has it.
+      // If two chains branch, the first has their common joints.
       if (rule.bone >= 0 || rule.end >= 0) {
         top = j;
         break;
@@ -98,7 +98,7 @@ Transform unit(Transform t) {
   return t;
 }
 
-// Fits the joints of a chain, which stand as the animation has them, to its end: `wanted` instead of `led`, where they lead to.
+// Fits the joints of a chain, which have the animation's poses, to its end: they shall lead to `wanted` instead of `led`.
 void fit_chain(const SkeletonMap& map, int end, int last, const Transform& led, const Transform& wanted,
                std::span<Transform> model) {
   const Vec3 origin = model[std::size_t(map.joints[std::size_t(last)].first)].position;
@@ -180,7 +180,7 @@ bool skeleton_from_ragdoll(const SkeletonMap& map, std::span<const Transform> bo
     if (rule.parent >= 0 && map.joints[std::size_t(rule.parent)].end == int(i))
       fit_chain(map, int(i), rule.parent, led, model[i], model);
   }
-  // What hangs on joints that were fitted after it.
+  // Joints below a chain were placed before it was fitted, and are placed again.
   for (std::size_t i = 0; i < count; ++i) {
     const SkeletonMap::Rule& rule = map.joints[i];
     if (rule.bone < 0 && rule.end < 0 && rule.parent >= 0)

@@ -1,8 +1,8 @@
-// One call: wheels find their ground, springs and bars give loads, tyres and drive line are turned on together in short steps, and
-// the mean of the tyres' forces goes to the body.
+// Moves vehicles with wheels on springs, tyres and a drive line. In one call wheels find their ground, springs and anti-roll bars give
+// loads, tyres and drive line advance together in short steps, and the body gets the mean of the tyres' forces.
 //
-// The drive line is stiff: a wheel's spin follows the ground within milliseconds, and faster the slower it rolls. So each wheel's
-// spin is taken on linearly implicit in its own slip, and clutch and differentials are dampers just as stiff as a short step bears.
+// The drive line is stiff: a wheel's spin follows the ground within milliseconds, and faster at low speed. So each spin is integrated
+// linearly implicitly in its own slip. Clutch and differentials are dampers, as stiff as is stable in a short step.
 #include <gyre/kit/vehicle.h>
 
 namespace gyre::kit {
@@ -10,7 +10,7 @@ namespace gyre::kit {
 namespace {
 
 constexpr int kShortSteps = 8;
-// Ground speeds below this count as this much in slips, so that these stay finite at rest.
+// Least ground speed in the computation of slips, so that these stay finite at rest.
 constexpr float kSlowest = 0.5f;  // m/s
 
 float clamp_to(float value, float most) { return value > most ? most : value < -most ? -most : value; }
@@ -26,7 +26,7 @@ float torque_at(const EngineDef& engine, float speed) {
   return c.back().torque;
 }
 
-// 2 s / (1 + s^2) up to the peak, then down to the sliding share.
+// Computes 2 s / (1 + s^2) up to the peak, then a fall to the sliding share.
 float tyre_curve(const TyreDef& tyre, float s) {
   const float bell = 2.0f * s / (1.0f + s * s);
   return s <= 1.0f ? bell : tyre.slide + (1.0f - tyre.slide) * bell;
@@ -34,11 +34,11 @@ float tyre_curve(const TyreDef& tyre, float s) {
 
 // A wheel on the ground in this call.
 struct Rolling {
-  Vec3 along{}, across{};  // unit, in the ground: where it rolls, and to its left
-  float speed = 0.0f;      // m/s along, of the vehicle against the ground
+  Vec3 along{}, across{};  // unit, in the ground plane: rolling direction, and to its left
+  float speed = 0.0f;      // m/s along, relative to the ground
   float side = 0.0f;       // m/s across
-  float inertia = 0.0f;    // kg m^2, with what the ground holds of the wheel within a short step
-  Vec3 sum{};              // of forces over the short steps
+  float inertia = 0.0f;    // kg m^2, with the resistance of the ground to spin in a short step
+  Vec3 sum{};              // sum of forces over the short steps
 };
 
 class Drive {
@@ -70,7 +70,7 @@ class Drive {
   }
 
  private:
-  // The steering angle of full lock: at speed no more than the lean can follow.
+  // The steering angle of full lock; at speed it is limited to what the lean can follow.
   float steering_limit() const {
     if (!(def_.lean.frequency > 0.0f)) return def_.steer_angle;
     float front = -1.0e9f, rear = 1.0e9f;
@@ -85,7 +85,7 @@ class Drive {
     return min(angle, def_.steer_angle);
   }
 
-  // A spring and a damper towards the direction in which gravity and the bend's acceleration pull together.
+  // Applies a spring and a damper that align the body with the sum of gravity and the bend's acceleration.
   void lean() {
     const Vec3 gravity = world_.gravity();
     const float pull = length(gravity);
@@ -105,7 +105,8 @@ class Drive {
     if (touching == 0.0f) return;
     height = height / touching;
     const Vec3 axis = rotate_inverse(pose_.orientation, forward_);
-    // It leans about the ground, as far as tyres hold; before they do, it turns about its centre: no stiffer than a step bears there.
+    // The body leans about the ground while tyres hold. Before they do, it rotates about its centre, so the stiffness is limited to what is
+    // stable there in a step.
     const float alone = dot(axis, world_.mass_properties(body_).inertia * axis);
     const float whole = alone + mass_ * square(height);
     const float rate = 2.0f * kPi * def_.lean.frequency;
@@ -153,7 +154,8 @@ class Drive {
     r.sum = {};
   }
 
-  // Springs, dampers, bars. Both are held below what a step of a body on so many wheels bears.
+  // Computes the loads of springs, dampers and anti-roll bars. Stiffness and damping are limited to what is stable in a step for a body on
+  // so many wheels.
   void share_loads() {
     const float share = mass_ / float(count());
     for (std::size_t i = 0; i < count(); ++i) {
@@ -182,7 +184,7 @@ class Drive {
     const int last = int(def_.gearbox.ratios.size());
     int wanted = in_.gear < -1 ? -1 : in_.gear > last ? last : in_.gear;
     if (def_.gearbox.automatic && in_.gear > 0) {
-      // By the wheels, not by an engine that runs ahead of a slipping clutch.
+      // The wheels decide, not an engine that is faster than a slipping clutch.
       const float geared = driven_speed();
       wanted = s_.gear > 0 ? s_.gear : 1;
       if (s_.gear > 0 && geared > def_.gearbox.shift_up && s_.gear < last) ++wanted;
@@ -193,21 +195,21 @@ class Drive {
     s_.shifting = def_.gearbox.shift_time;
   }
 
-  // Turns of the engine for one of the wheels.
+  // Revolutions of the engine for one revolution of the wheels.
   float ratio() const {
     const GearboxDef& g = def_.gearbox;
     if (s_.gear == 0) return 0.0f;
     return g.final_ratio * (s_.gear < 0 ? -g.reverse : g.ratios[std::size_t(s_.gear) - 1]);
   }
 
-  // Of the engine, if the clutch held.
+  // The speed of the engine without clutch slip.
   float driven_speed() const {
     float driven = 0.0f;
     for (std::size_t i = 0; i < count(); ++i) driven += def_.wheels[i].drive * s_.wheels[i].angular_velocity * ratio();
     return driven;
   }
 
-  // Torque of the clutch on the gearbox: a damper, as stiff as the two sides bear, that slips above what it holds.
+  // The torque of the clutch on the gearbox: a damper, as stiff as is stable for the two sides, that slips above its limit.
   float clutch_torque(float h) const {
     const float gear = ratio();
     if (gear == 0.0f || s_.shifting > 0.0f) return 0.0f;
@@ -216,7 +218,7 @@ class Drive {
       const WheelDef& d = def_.wheels[i];
       inverse += square(d.drive * gear) / rolling_[i].inertia;
     }
-    // Below one and a half times its idle speed it lets go, so that the engine does not stall.
+    // The clutch opens below one and a half times the idle speed, so that the engine does not stall.
     const float above = (s_.engine_speed - def_.engine.idle) / (0.5f * def_.engine.idle);
     const float grip = clamp(above, 0.0f, 1.0f);
     const float holds = def_.gearbox.clutch * (1.0f - in_.clutch) * grip;
@@ -226,7 +228,7 @@ class Drive {
   void turn_engine(float h, float load) {
     const EngineDef& e = def_.engine;
     const float speed = s_.engine_speed;
-    const float idle = speed < e.idle ? 0.3f : 0.0f;  // the governor's share
+    const float idle = speed < e.idle ? 0.3f : 0.0f;  // the governor's throttle
     const bool cut = speed > e.redline || s_.shifting > 0.0f;
     const float throttle = cut ? idle : max(in_.throttle, idle);
     const float made = throttle * torque_at(e, speed) - (1.0f - throttle) * e.braking * speed;
@@ -259,7 +261,7 @@ class Drive {
     turn_engine(h, clutch);
   }
 
-  // One speed for all wheels of a track: what they turn with stays.
+  // Gives all wheels of a track one speed and keeps their angular momentum.
   void bind(const TrackDef& track) {
     float momentum = 0.0f, inertia = 0.0f;
     for (const int wheel : track.wheels) {
@@ -273,11 +275,11 @@ class Drive {
     const WheelDef& d = def_.wheels[i];
     WheelState& w = s_.wheels[i];
     Rolling& r = rolling_[i];
-    float slope = 0.0f, pull = 0.0f;  // of the tyre's force with the wheel's speed; the force along
+    float slope = 0.0f, pull = 0.0f;  // derivative of the tyre's force by the wheel's speed; the force along
     if (w.on_ground) pull = tyre(d, w, r, slope);
     const float inertia = r.inertia;
     w.angular_velocity += h * (torque - d.radius * pull) / inertia;
-    // Brakes and rolling resistance stop it and never turn it back.
+    // Brakes and rolling resistance stop the wheel and never reverse it.
     const float hold = in_.brake * d.brake + in_.handbrake * d.handbrake +
                        (w.on_ground ? d.tyre.rolling * w.load * d.radius : 0.0f);
     w.angular_velocity -= clamp_to(w.angular_velocity, h * hold / inertia);
@@ -289,7 +291,7 @@ class Drive {
     }
   }
 
-  // Force along; that across is left in side_. Similarity: slips over those of the peaks are one vector.
+  // Returns the force along, and leaves the force across in side_. By similarity, slips over the peak slips are one vector.
   float tyre(const WheelDef& d, WheelState& w, const Rolling& r, float& slope) {
     const float ground = max(absolute(r.speed), kSlowest);
     w.slip = (w.angular_velocity * d.radius - r.speed) / ground;
@@ -299,7 +301,7 @@ class Drive {
     const float most = d.tyre.grip * w.load;
     const float share = s > 1.0e-6f ? tyre_curve(d.tyre, s) / s : 2.0f;
     slope = most * share / (d.tyre.peak_slip * ground);
-    // Nobody is stopped more than it moves: what rests on the wheel, within the step.
+    // A force stops the mass on the wheel within the step at most.
     const float bears = w.load / 9.81f / seconds_;
     side_ = clamp_to(most * share * y, absolute(r.side) * bears);
     return clamp_to(most * share * x, absolute(w.angular_velocity * d.radius - r.speed) * bears + most * 0.02f);

@@ -244,13 +244,15 @@ TEST(SceneRunner, AFinalSceneIsAScene) {
   // The anchor on the arm went along with the arm, the rod kept its length, the hinge's limits their places.
   const Pose arm = runner.world().pose(runner.bodies()[1]);
   const DVec3 tip = arm * Vec3{1, 0, 0};
-  EXPECT_NEAR(length(again->joints[1].def.anchor - tip), 0.0, 1e-4);
-  EXPECT_NEAR(*again->joints[1].def.length, 1.0f, 1e-6f);
+  const DistanceDef& rod = std::get<DistanceDef>(again->joints[1].def);
+  EXPECT_NEAR(length(rod.anchor - tip), 0.0, 1e-4);
+  EXPECT_NEAR(*rod.length, 1.0f, 1e-6f);
+  const HingeDef& shoulder = std::get<HingeDef>(again->joints[0].def);
   const float angle = 2.0f * std::atan2(arm.orientation.z, arm.orientation.w);
-  ASSERT_TRUE(again->joints[0].def.limits);
-  EXPECT_NEAR(again->joints[0].def.limits->low, -1.0f - angle, 0.02f);
-  EXPECT_NEAR(again->joints[0].def.limits->high, 1.0f - angle, 0.02f);
-  EXPECT_EQ(again->joints[0].def.anchor, (DVec3{0, 2, 0}));
+  ASSERT_TRUE(shoulder.limits);
+  EXPECT_NEAR(shoulder.limits->low, -1.0f - angle, 0.02f);
+  EXPECT_NEAR(shoulder.limits->high, 1.0f - angle, 0.02f);
+  EXPECT_EQ(shoulder.anchor, (DVec3{0, 2, 0}));
   run(saved, 10);
 }
 

@@ -28,14 +28,19 @@ MassProperties plain(const MassProperties& mass) {
 struct Counts {
   std::array<int, 3> bodies{};  // by BodyType
   std::array<int, std::variant_size_v<SceneGeometry>> shapes{};
-  std::array<int, 5> joints{};  // by JointKind
+  std::array<int, kJointKindCount> joints{};  // by JointKind
 };
 
 constexpr const char* kBodyWords[] = {"static", "kinematic", "dynamic"};
 constexpr const char* kShapeWords[] = {
     "sphere", "box",         "capsule", "cylinder",     "cone",
     "plane",  "convex_hull", "mesh",    "height_field", "convex_decomposition"};
-constexpr const char* kJointWords[] = {"ball", "hinge", "slider", "fixed", "distance"};
+
+std::array<const char*, kJointKindCount> joint_words() {
+  std::array<const char*, kJointKindCount> words{};
+  for (int kind = 0; kind < kJointKindCount; ++kind) words[std::size_t(kind)] = to_string(JointKind(kind));
+  return words;
+}
 
 Counts count(const Scene& scene) {
   Counts out;
@@ -46,7 +51,7 @@ Counts count(const Scene& scene) {
       if (hull == nullptr || hull->part == 0) ++out.shapes[shape.geometry.index()];
     }
   }
-  for (const SceneJoint& joint : scene.joints) ++out.joints[std::size_t(joint.def.kind)];
+  for (const SceneJoint& joint : scene.joints) ++out.joints[std::size_t(kind_of(joint.def))];
   return out;
 }
 
@@ -74,7 +79,7 @@ void print_text(const SceneRunner& runner) {
   if (!scene.name.empty()) out += scene.name + "\n";
   out += "bodies  " + listed(counts.bodies, kBodyWords) + "\n";
   out += "shapes  " + listed(counts.shapes, kShapeWords) + "\n";
-  out += "joints  " + listed(counts.joints, kJointWords) + "\n";
+  out += "joints  " + listed(counts.joints, joint_words().data()) + "\n";
   out += "step    " + rounded(scene.world.time_step) + " s in " + std::to_string(scene.world.substeps) +
          " sub-steps, gravity " + vector(scene.world.gravity) + " m/s^2\n";
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -148,7 +153,7 @@ void print_json(const SceneRunner& runner) {
   json.field("shapes", std::int64_t(shapes));
   write_counts(json, "shapes_by_type", counts.shapes, kShapeWords);
   json.field("joints", std::int64_t(scene.joints.size()));
-  write_counts(json, "joints_by_type", counts.joints, kJointWords);
+  write_counts(json, "joints_by_type", counts.joints, joint_words().data());
   json.field("materials", std::int64_t(scene.materials.size()));
   json.field("meshes", std::int64_t(scene.meshes.size()));
   json.end_object();

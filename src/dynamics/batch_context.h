@@ -1,5 +1,5 @@
-// The context of a batch: those of contacts, joints and bodies, which the stages of `rigid` work on, and the data that only the program
-// of the batch needs.
+// The context of a batch: the contexts of contacts, joints and bodies for the stages of `rigid`, and data that only the program of the
+// batch needs.
 #pragma once
 
 #include "dynamics/fused_stages.h"
@@ -14,7 +14,7 @@
 
 namespace gyre {
 
-// What is counted of the batches of a step.
+// Statistics of the batches of a step.
 struct SolveCounts {
   std::size_t manifolds = 0;
   std::size_t joints = 0;
@@ -22,17 +22,17 @@ struct SolveCounts {
   std::uint64_t colors_used = 0;  // bits
 };
 
-// Of the present batch; kept from step to step only for its memory.
+// Data of the present batch. It persists between steps only to reuse its memory.
 struct BatchScratch {
   ContactLists contacts;
   JointLists joints;
   Coloring contact_colors;
   Coloring joint_colors;
-  // Of all batches that were solved with it in this step:
+  // Results of all batches that were solved with this memory in the step:
   Array<SlotHit> hits;
   SolveCounts counts;
   StepStats report;
-  RowStats rows;  // of solvers that work on rows
+  RowStats rows;  // from solvers that work on rows
 };
 
 struct BatchContext {
@@ -46,13 +46,13 @@ struct BatchContext {
   BodyMotionSolve motion;
   std::span<ContactGroup> contact_groups{};
   WorkerPartition partition{};
-  std::span<int> group_bounds{};      // where there are several workers: for kMaxGroups groups
-  const int* moved_bounds = nullptr;  // of blocks of bodies, by worker: where contacts act on nearly all
-  std::size_t moved_in_contact = 0;   // of the moved bodies, the first: contacts act on them
-  FusedRuns fused_runs[2] = {};       // if bodies are moved run by run: of other bodies, and of articulations
+  std::span<int> group_bounds{};      // for kMaxGroups groups, if there are several workers
+  const int* moved_bounds = nullptr;  // of blocks of bodies, by worker, if contacts act on nearly all
+  std::size_t moved_in_contact = 0;   // number of first moved bodies that contacts act on
+  FusedRuns fused_runs[2] = {};       // if bodies move run by run: of other bodies; of articulations
   RowSolve* rows = nullptr;           // if constraints are solved as rows
 
-  // All that is between the contacts of one half-step and those of the next is done run by run.
+  // True if all stages from the contacts of one half-step to those of the next are fused run by run.
   bool is_fused() const { return !fused_runs[1].runs.empty(); }
 };
 

@@ -20,9 +20,9 @@ void mark_rolling_lanes(ContactSolve& s, std::uint32_t blocks, Arena& arena) {
   }
 }
 
-// A block takes as long as the lane with the most points, and is swept again where some point would pull, as those do that bear
-// nothing; where some lanes roll, the whole block is taken along, in each part or once: so contacts that are alike lie side by
-// side. Those of one colour do not notice each other. Those without a body A come last.
+// Sort key by which similar contacts of a colour share blocks. A block takes as long as its lane with the most points. It is solved again
+// if a point would pull, as points without load do. If one lane rolls, the points of the whole block are advanced, once or in each
+// half-step. Contacts of one colour are independent, so their order is free. Contacts without a body A come last.
 constexpr int kWaysToRoll = 3;
 constexpr int kWithA = 2 * kWaysToRoll * kMaxManifoldPoints;
 int likeness(const BatchContext& batch, std::uint32_t member) {
@@ -34,7 +34,7 @@ int likeness(const BatchContext& batch, std::uint32_t member) {
   return (constraint.body_a == kNoBody ? kWithA : 0) + kWaysToRoll * (2 * points + load) + roll;
 }
 
-// Appends the members of a colour to the order, in whole blocks, share by share; `bounds` of these, if there are several.
+// Appends the members of a colour to the order, in whole blocks, share by share, and writes the `bounds` of several shares.
 void order_alike(const BatchContext& batch, std::span<const std::uint32_t> members,
                  Array<std::uint32_t>& order, int* bounds) {
   constexpr int kKinds = 2 * kWithA;
@@ -46,7 +46,7 @@ void order_alike(const BatchContext& batch, std::span<const std::uint32_t> membe
   std::uint32_t starts[kMaxShares * kKinds], firsts[kMaxShares];
   for (std::size_t i = 0; i < shares * kKinds; ++i) starts[i] = 0;
   for (const std::uint32_t member : members) ++starts[kind_of(member)];
-  // No block has contacts with and without a body A.
+  // No block mixes contacts with and without a body A.
   const std::uint32_t width = std::uint32_t(batch.kernels.width);
   std::uint32_t place = 0;
   bool had_a = true;
@@ -114,7 +114,7 @@ void make_contact_blocks(BatchContext& batch, Arena& arena) {
 
 namespace {
 
-// Of a group whose joints are solved one after the other.
+// Begins a ball joint of a group whose joints are solved one after the other.
 void begin_ball_alone(JointSolve& s, std::uint32_t joint, Arena& arena) {
   if (s.all_iterative) begin_joint(s.w, s.batch, joint, s.lane_start.warm_scale, s.works, arena);
 }

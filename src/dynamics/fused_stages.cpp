@@ -8,12 +8,12 @@ namespace gyre {
 
 namespace {
 
-// Bodies are moved in whole blocks: with as many in a run, few lanes of the last one are empty.
+// Least number of bodies in a run. Bodies move in whole blocks, and few lanes of the last block are empty at this number.
 constexpr std::size_t kMinBodies = 96;
-// Of other bodies.
+// Blocks in a run of other bodies.
 constexpr int kBlocksAlone = 4;
 
-// (Bodies whose rotation the kernels leave alone are turned by their records.)
+// Returns the lanes of the run's velocities, or none. (Rotations outside of the kernels use the records of their bodies.)
 LaneVelocities find_lanes(const FusedRuns& line, const ArticulationRun& run) {
   if (run.bundles != 1) return {};
   const SolverKernels& all = line.motion->kernels;
@@ -110,7 +110,7 @@ void FusedRun::prepare_joints() const { for_bundles(&ArticulationKernels::prepar
 void FusedRun::compute_joint_bias() const { for_bundles(&ArticulationKernels::compute_bias); }
 void FusedRun::solve_joints_first() const { solve(true); }
 void FusedRun::solve_joints() const { solve(is_apart()); }
-// Since solve() only contacts have changed velocities in the records, and only of bodies that are measured: lanes have the others'.
+// Since solve() only contacts have changed velocities in the records, and only of measured bodies. The lanes hold the others.
 void FusedRun::solve_joints_after_contacts() const {
   for_bundles(&ArticulationKernels::solve_after_contacts, is_apart(), is_apart() || spins_);
 }
@@ -121,7 +121,7 @@ void FusedRun::relax_joints_last() const {
   for_bundles(&ArticulationKernels::end_step, is_apart() || spins_, true);
 }
 
-// `loads`, `stores`: as LaneArrays. (Cold: what it calls is long.)
+// `loads`, `stores`: as LaneArrays. (It is cold because the functions it calls are long.)
 GYRE_COLD void FusedRun::for_bundles(BundleKernel kernel, bool loads, bool stores) const {
   LaneArrays arrays = joints_.bundles.arrays;
   arrays.loads = loads, arrays.stores = stores;

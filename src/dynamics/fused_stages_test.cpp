@@ -1,4 +1,4 @@
-// Runs hold every bundle and every body that bundles push once, in whole blocks of their own.
+// Runs hold every bundle and every moved body of bundles exactly once, in whole blocks of their own.
 #include "dynamics/fused_stages.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace gyre {
 namespace {
 
-// Chains of three bodies, the last of which hangs on the world.
+// Chains of three bodies; the last body is joined to the world.
 struct Crowd {
   explicit Crowd(std::size_t count) : nodes(3), joints(3 * count) {
     nodes[0].a = 0, nodes[0].b = 1;
@@ -76,7 +76,7 @@ TEST(RunLayout, HaveEachBundleAndEachPushedBodyOnce) {
   }
 }
 
-// The lanes of a bundle's body are the lanes of a block.
+// The lanes of a bundle's body are the lanes of one block.
 TEST(RunLayout, ListTheBodiesOfAFullBundleLaneByLane) {
   constexpr int kWidth = 4;
   Crowd crowd(kWidth);

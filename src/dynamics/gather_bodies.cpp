@@ -7,14 +7,14 @@ namespace gyre {
 
 namespace {
 
-// The kernels leave out what no body of a block needs: those whose rotation is integrated in another way lie apart.
+// Bodies are sorted by how they rotate, because the kernels skip work that no body of a block needs.
 constexpr std::uint8_t kExactRotation = 0, kNotGyroscopic = 1, kGyroscopic = 2, kRotationModes = 3;
 std::uint8_t rotation_mode(const BodyMotionSolve& motion, std::uint32_t body) {
   if (needs_exact_rotation(motion.w.bodies, body, motion.motions.substep)) return kExactRotation;
   return motion.w.bodies.masses[body].isotropic != 0 ? kNotGyroscopic : kGyroscopic;
 }
 
-// Whether there are articulations side by side, and nothing but they and contacts comes between the moves of bodies.
+// True if the batch has grouped articulations, and only these and contacts act between the moves of bodies.
 bool may_fuse(const BatchContext& batch) {
   const JointSolve& joints = batch.joints;
   return !joints.bundles.bundles.empty() && !batch.motion.is_smooth &&
@@ -22,7 +22,7 @@ bool may_fuse(const BatchContext& batch) {
          joints.articulations.scalar.empty() && batch.motion.fields.blocks() == 0;
 }
 
-// The bodies of runs of articulations come first, run by run. Marks them in `kinds`, by place in the batch.
+// Lists the bodies of articulation runs first, run by run. Marks them in `kinds`, by index in the batch.
 GYRE_COLD void list_runs(BatchContext& batch, const RunLayout& runs, std::span<std::uint8_t> kinds,
                          std::uint8_t mark, Arena& arena) {
   const ArenaScope scope(arena);
@@ -37,7 +37,7 @@ GYRE_COLD void list_runs(BatchContext& batch, const RunLayout& runs, std::span<s
   }
 }
 
-// Lists the bodies that constraints act on, and the others.
+// Divides the bodies into constrained and free ones.
 void part_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   const RigidWorld& w = batch.w;
   BodyMotionSolve& motion = batch.motion;
@@ -49,7 +49,7 @@ void part_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   motion.free_bodies = arena.make<std::uint32_t>(bodies.size());
   const std::span<int> bounds = arena.make<int>(std::size_t(batch.partition.count() + 1));
   const ArenaScope scope(arena);
-  // Where a body belongs: those in contact first, by share and kind of rotation.
+  // The kind of a body is its group in the order: bodies in contact come first, by share and rotation mode.
   static_assert((kMaxShares + 1) * kRotationModes + 3 < 256, "kinds are bytes");
   const int shares = batch.partition.count();
   const std::uint8_t apart = std::uint8_t(shares * kRotationModes),
@@ -116,7 +116,7 @@ void gather_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
       }
       const std::uint32_t body = std::uint32_t(each.body);
       each = describe_motion(w.bodies, body, motion.motions, w.bodies.flags[body].constraint_use == kPoseRead);
-      // A field may spin a light body up within the step, beyond what the kernels turn.
+      // A field may accelerate a light body within the step beyond the rotation that kernels compute.
       if (!w.field_rest.empty() && w.field_rest[body].acts != kNoFields) each.needs_exact_rotation = true;
       any_spins = any_spins || each.needs_exact_rotation;
     }

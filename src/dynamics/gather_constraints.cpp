@@ -12,21 +12,22 @@ namespace gyre {
 
 namespace {
 
-// The fastest that overlap is taken back, as a share of sqrt(gravity * size): falling its own size is a body's natural
-// scale of speed, so the rule holds from millimetres to kilometres.
+// Largest speed of penetration removal, as a share of sqrt(gravity * size). A body that falls its own size has about that speed, so the
+// rule holds from millimetres to kilometres.
 constexpr float kPushShare = 0.4f;
-// Manifolds and joints lie anywhere in memory: how many places before its turn one is asked for.
+// Manifolds and joints are fetched so many items ahead, for they are scattered in memory.
 constexpr std::size_t kAhead = 6;
 constexpr int kContactsPerGather = 64;
 constexpr int kJointsPerGather = 128;
 
-// A body as constraints know it: kNoBody if it never moves (its record is then never read).
+// The body as constraints store it: kNoBody if it never moves. Then its record is not read.
 std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
 }
 
-// Others may touch it at once: what is fixed is in many batches. (Not std::atomic_ref: Emscripten's library has none yet.)
+// Marks a body that other workers may mark at once: static bodies are in many batches. (std::atomic_ref is not used because Emscripten's
+// library does not have it yet.)
 void touch_shared(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
   std::uint8_t* const touched = &w.bodies.flags[body].constraint_use;
   std::uint8_t before = __atomic_load_n(touched, __ATOMIC_RELAXED);
@@ -39,7 +40,7 @@ void fetch_manifold(const ContactStore& store, std::uint32_t slot) {
   prefetch(&store.manifolds[store.contacts[slot].first_manifold], sizeof(Manifold));
 }
 
-// Which points of a manifold bore load in the last step.
+// Tells if any and if all points of a manifold carried load in the last step.
 struct Loads {
   bool any = false, all = true;
 
@@ -64,9 +65,9 @@ class ContactGatherer {
         has_rules_(!w_.surface_rules.empty()),
         is_alone_(is_alone) {}
 
-  // What was found among some contacts.
+  // The properties found among some contacts.
   struct Found {
-    bool gaps = false;  // constraints without a manifold: nothing is asked of these
+    bool gaps = false;  // some constraints have no manifold and are skipped
     bool bouncy = false;
   };
 
@@ -92,7 +93,7 @@ class ContactGatherer {
   }
 
  private:
-  // What follows from the two bodies of a contact, and its size.
+  // Data that depends on the contact's bodies and its size.
   struct Ends {
     bool active_a, active_b, linked;
     std::int32_t body_a, body_b;
@@ -110,13 +111,13 @@ class ContactGatherer {
     ends.push_speed = kPushShare * (fall_ > 0.0f ? fall_ : 3.132f) * std::sqrt(contact.size);
     return ends;
   }
-  // A body that is active is in one batch only.
+  // No atomics here: an active body is in one batch only.
   void touch_body(std::uint32_t body, bool active, std::uint8_t touch) const {
     if (!is_alone_ || !active) return touch_shared(w_, body, touch);
     std::uint8_t& touched = w_.bodies.flags[body].constraint_use;
     touched = max(touched, touch);
   }
-  // Every member is written, at its place: what is built elsewhere and copied in wider pieces waits for the smaller ones.
+  // Writes every member in place. A struct that is built elsewhere and copied in wider stores would wait for the narrow ones.
   static void describe(const Contact& contact, const Ends& ends, ContactConstraint& constraint) {
     constraint.static_friction = contact.surface.static_friction;
     constraint.dynamic_friction = contact.surface.dynamic_friction;
@@ -131,7 +132,7 @@ class ContactGatherer {
     constraint.rigid = false;
     constraint.has_joint = ends.linked;
   }
-  // The rest of the members.
+  // Writes the members that depend on the manifold.
   bool add_manifold(const Contact& contact, Manifold& manifold, ContactConstraint& constraint) const {
     const Loads loads(manifold);
     constraint.manifold = &manifold;
@@ -188,7 +189,7 @@ void gather_contacts(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
     for_blocks(tasks, int(slots.size()), kContactsPerGather,
                [&](int begin, int end, int) { run(std::size_t(begin), std::size_t(end)); });
   };
-  // Where the constraints of a block of contacts begin.
+  // Returns the block of contacts at `begin`, for the list of each block's first constraint.
   const auto block_of = [](std::size_t begin) { return begin / std::size_t(kContactsPerGather); };
   const std::span<std::uint32_t> firsts =
       arena.make<std::uint32_t>(std::size_t(count_blocks(int(slots.size()), kContactsPerGather)));

@@ -1,5 +1,5 @@
-// Islands as disjoint sets, islands to batches in the order of their lowest bodies, members to batches by counting. See
-// island_batches.h.
+// Finds islands as disjoint sets, assigns them to batches in the order of their lowest bodies, and sorts members into batches by counting.
+// See island_batches.h.
 #include "dynamics/island_batches.h"
 
 #include "base/arena/bucketed_lists.h"
@@ -13,17 +13,17 @@ namespace gyre {
 
 namespace {
 
-// Manifolds and joints: what is less is not worth to be shared among workers.
+// Fewest manifolds and joints that are worth sharing among workers.
 constexpr std::uint32_t kWorthSharing = 64;
 
-// What islands and batches need to know of a contact or joint, so that its record is read once.
+// The data of a contact or joint that islands and batches need, so that its record is read once.
 struct ConstraintEdge {
-  std::uint32_t owner;  // a body that moves: its island is the constraint's
-  std::uint32_t other;  // may be one that does not, or kNoIndex
+  std::uint32_t owner;  // a moving body; its island has the constraint
+  std::uint32_t other;  // may be immovable, or kNoIndex
   std::uint32_t size;   // manifolds
 };
 
-// What is solved in this step, ascending, and between whom: by slot, of others nothing is known.
+// The constraints of this step in ascending order, and their edges by slot. Edges of other slots are undefined.
 struct Constraints {
   std::span<const std::uint32_t> contacts;
   std::span<const std::uint32_t> joints;
@@ -31,7 +31,7 @@ struct Constraints {
   std::span<const ConstraintEdge> joint_edges;
   std::size_t size = 0;  // manifolds and joints
 
-  // Of the contacts, then of the joints.
+  // Calls fn for the edges of contacts, then of joints.
   template <class Fn>
   void for_each_edge(Fn&& fn) const {
     for (const std::uint32_t slot : contacts) fn(contact_edges[slot]);
@@ -39,7 +39,7 @@ struct Constraints {
   }
 };
 
-// Returns whether constraints move one of the bodies; kNoIndex is none.
+// Adds an edge; false if neither body moves. kNoIndex stands for no body.
 bool add_edge(const RigidWorld& w, std::uint32_t a, std::uint32_t b, std::uint32_t size, ConstraintEdge& to) {
   if (a != kNoIndex && is_active(w, a)) {
     to = {a, b, size};
@@ -50,7 +50,7 @@ bool add_edge(const RigidWorld& w, std::uint32_t a, std::uint32_t b, std::uint32
   return true;
 }
 
-// How many are asked for before they are looked at.
+// Contacts and joints are fetched so many records ahead.
 constexpr std::uint32_t kContactsFetched = 8, kJointsFetched = 8;
 
 Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
@@ -68,7 +68,7 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
     fetch_joint(w.joints, slot + kJointsFetched);
     if (!w.joints.ids.live(slot) || !may_act(w, slot)) return false;
     const JointRecord& joint = w.joints.records[slot];
-    // As numbers without a sign, kNoBody is kNoIndex.
+    // As an unsigned number, kNoBody is kNoIndex.
     return add_edge(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_edges[slot]);
   };
   const FilteredList contacts = parallel_filter_among(tasks, arena, manifolds, w.contacts.with_manifolds,
@@ -77,8 +77,8 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
   return {contacts.list, joints.list, contact_edges, joint_edges, contacts.size + joints.size};
 }
 
-// Sets of bodies; the root of an island is its lowest body. A kinematic body belongs to the islands that it touches: it moves from
-// sub-step to sub-step, and all must see it where it is.
+// Disjoint sets of bodies; the root of an island is its lowest body. A kinematic body belongs to the islands that it touches, because it
+// moves in each sub-step and they must see its pose.
 class BatchIslands {
  public:
   BatchIslands(const RigidWorld& w, const Constraints& constraints, std::span<std::uint32_t> room)
@@ -94,10 +94,10 @@ class BatchIslands {
   DisjointSets sets_;
 };
 
-// Weights are in quarters of a constraint: each body is one.
+// Weights are in quarters of a constraint; a body weighs one.
 constexpr std::uint32_t kConstraint = 4;
 
-// How much the islands are, by root.
+// Returns the weights of islands by root.
 std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constraints& constraints,
                                              const BatchIslands& islands, std::size_t bodies, Arena& arena) {
   const std::span<std::uint32_t> weights = arena.make<std::uint32_t>(bodies);
@@ -108,17 +108,17 @@ std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constrai
   return weights;
 }
 
-// BatchIslands that weigh the same and follow each other are mostly alike (a crowd), so what is in them is solved side by side: their
-// batch ends where lanes are full, if they would not be again. Such a batch is more than half of what it may be.
+// Consecutive islands of equal weight are mostly alike (a crowd) and are solved in lanes. Their batch ends where lanes are full, if it
+// is too small to fill them once more. Such a batch is more than half full.
 constexpr std::uint32_t kIslandLanes = 8;
 
-// Gives each island its batch, written for all its bodies to `batch_of`: small ones fill one after the other, those that have more than
-// `most` are alone in theirs. Returns the weights of the batches.
+// Assigns a batch to each island, written to `batch_of` for all its bodies. Small islands fill one batch after the other; an island above
+// `most` is alone. Returns the weights of the batches.
 std::span<std::uint32_t> part_islands(const RigidWorld& w, const BatchIslands& islands,
                                       std::span<const std::uint32_t> weights, std::uint32_t most,
                                       Arena& arena, std::span<std::uint32_t> batch_of) {
   const std::span<std::uint32_t> filled = arena.make<std::uint32_t>(w.bodies.awake.size());
-  // `open`: the batch that others may join; `alike`: how many islands, the last of it, weigh `last` each.
+  // `open`: the batch that others may join; `alike`: how many of its last islands weigh `last` each.
   std::uint32_t count = 0, open = kNoIndex, alike = 0, last = 0;
   const auto begin_batch = [&] {
     filled[count] = 0;
@@ -147,8 +147,7 @@ std::span<std::uint32_t> part_islands(const RigidWorld& w, const BatchIslands& i
   return filled.first(count);
 }
 
-// Where few batches are beside islands that have more than `most`, the largest of these takes them in. Returns the weights of those that
-// are left.
+// If few batches are beside those above `most`, merges them into the largest of these. Returns the weights of the remaining batches.
 std::span<std::uint32_t> join_few(const RigidWorld& w, std::span<std::uint32_t> weights, std::uint32_t most,
                                   std::uint32_t fewest, Arena& arena, std::span<std::uint32_t> batch_of) {
   const auto is_small = [most](std::uint32_t weight) { return weight <= most; };
@@ -170,7 +169,7 @@ std::span<std::uint32_t> join_few(const RigidWorld& w, std::span<std::uint32_t> 
   return weights.first(left);
 }
 
-// Room for all that find_batches() returns, before it is known how much that is.
+// Memory for the result of find_batches(), whose size is not known yet.
 struct BatchRoom {
   std::span<std::uint32_t> local_index, bodies, contacts, joints;
   std::span<IslandBatch> batches;
@@ -182,7 +181,7 @@ struct BatchRoom {
     bodies = arena.make<std::uint32_t>(awake);
     contacts = arena.make<std::uint32_t>(with_manifolds);
     joints = arena.make<std::uint32_t>(w.joints.ids.capacity());
-    // An island alone is more than a batch may be, and of the others a batch and the next one together are.
+    // An island that is alone exceeds the size of a batch, and so does each other batch together with the next one.
     const std::uint32_t worth = size.shares == 1 ? size.most : min(size.most, kWorthSharing);
     const std::size_t weight = kConstraint * (manifolds + joints.size()) + awake;
     batches = arena.make<IslandBatch>(2 * weight / (kConstraint * worth) + 1);
@@ -198,7 +197,7 @@ std::span<const std::uint32_t> copy_to(std::span<std::uint32_t> room, std::span<
 
 IslandBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, BatchSize size) {
   const std::span<const std::uint32_t> awake = w.bodies.awake;
-  // What is returned comes first: the rest is not needed while batches are solved.
+  // Results are allocated first. The rest is released before batches are solved.
   const BatchRoom room(w, arena, size);
   const std::span<std::uint32_t> local_index = room.local_index;
   const ArenaScope scope(arena);

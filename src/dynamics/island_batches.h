@@ -1,9 +1,8 @@
 // Divides the work of a step into batches of whole islands, so no body that moves is in two batches. Batches are solved one after the
-// other, and the memory of one (contacts side by side, colours, trees) serves the next. A batch is small enough to stay in a core's cache.
+// other, and each reuses the memory of the one before (contact blocks, colours, trees). A batch is small enough to stay in a core's cache.
 //
-// docs/decisions/memory.md has the measurements.
-// In: contacts, joints and bodies that are awake. Out: lists of them by batch, each ascending. The batch of an island never changes a bit
-// of its result.
+// docs/decisions/memory.md has the measurements. In: awake contacts, joints and bodies. Out: lists of them by batch, each ascending. The
+// batch of an island never changes a bit of its result.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -12,17 +11,17 @@
 
 namespace gyre {
 
-// How much is in a batch. An island that has more than `most` is a batch of its own, and so is what is more than a share of all
-// where `shares` says in how many it is to be parted at least. Where there are fewer than `fewest` others beside such an island, they
-// go along with it: what is alike fills the same lanes, and no worker waits for another's batch.
+// Limits for the size of batches. An island larger than `most`, or than 1/`shares` of the total, gets its own batch. If fewer than `fewest`
+// other batches are beside such an island, they are merged into its batch: similar constraints fill the same lanes, and no worker waits for
+// another's batch.
 struct BatchSize {
   std::uint32_t most = 0;  // manifolds and joints, and a quarter of one for each body
   std::uint32_t shares = 1;
   std::uint32_t fewest = 0;
 };
 
-// Alone a worker is as fast with twice as much, but a batch's memory stays. Workers that solve batches in parallel come out even
-// if there are some for each; those that meet after each colour of one need more of it to do in between.
+// A single worker is as fast with twice the size, but the memory of a batch stays. Workers that solve batches in parallel finish together
+// if each has some. Workers that share a batch meet after each colour, and need a larger one.
 constexpr BatchSize batch_size(int workers, bool in_parallel) {
   if (workers == 1) return {512, 1, 2};
   const std::uint32_t count = std::uint32_t(workers);
@@ -30,16 +29,16 @@ constexpr BatchSize batch_size(int workers, bool in_parallel) {
 }
 
 struct IslandBatch : SolveBatch {
-  bool is_small = false;  // not more than a batch is to be, and one of several
+  bool is_small = false;  // no larger than a batch shall be, and one of several
 };
 
 struct IslandBatches {
   std::span<const IslandBatch> batches;
-  // By body: its index in its batch's list of bodies; meaningless for those that are in none.
+  // By body: its index in its batch's list; undefined for bodies in no batch.
   std::span<const std::uint32_t> local_index;
 };
 
-// All lists are of `arena`.
+// All lists are allocated in `arena`.
 IslandBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, BatchSize size);
 
 }  // namespace gyre

@@ -1,5 +1,4 @@
-// Batches against what they promise: each body, joint and island is in one of them, few go along with a large one, and the large
-// ones are found.
+// Each body, joint and island is in one batch, few small islands join a large one, and large batches are marked.
 #include "dynamics/island_batches.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,7 @@ namespace {
 
 class ChainsInBatches : public ::testing::Test {
  protected:
-  // Bodies that lie beside each other in memory, joined one to the next: weighs 5 quarters a body, less 4.
+  // Adds bodies that are adjacent in memory, each joined to the next: 5 quarters a body, less 4.
   void add_chain(std::uint32_t bodies) {
     for (std::uint32_t i = 0; i < bodies; ++i) {
       const std::uint32_t body = add_body_slot(w_.bodies).index;
@@ -73,7 +72,7 @@ class ChainsInBatches : public ::testing::Test {
 TEST_F(ChainsInBatches, AreFilledInTheirOrder) {
   for (int i = 0; i < 40; ++i) add_chain(17);  // 81 quarters each
   const Found found = find({.most = 64, .shares = 1, .fewest = 2});
-  // Three of them are 243 of 256, four would be more.
+  // Three of them weigh 243 of 256; four would exceed it.
   for (std::uint32_t chain = 0; chain < 40; ++chain) EXPECT_EQ(found.batch_of_chain[chain], chain / 3);
   for (const bool is_small : found.is_small) EXPECT_TRUE(is_small);
 }
@@ -81,7 +80,7 @@ TEST_F(ChainsInBatches, AreFilledInTheirOrder) {
 TEST_F(ChainsInBatches, EndWhereLanesAreFull) {
   for (int i = 0; i < 100; ++i) add_chain(2);  // 6 quarters each
   const Found found = find({.most = 64, .shares = 1, .fewest = 2});
-  // Forty-two of them would be 252 of 256, and the last two alone in their lanes.
+  // Forty-two of them would weigh 252 of 256, but the last two would be alone in their lanes.
   for (std::uint32_t chain = 0; chain < 100; ++chain) EXPECT_EQ(found.batch_of_chain[chain], chain / 40);
 }
 
@@ -95,11 +94,11 @@ TEST_F(ChainsInBatches, FewGoAlongWithTheLargest) {
   Found found = find(few);
   EXPECT_EQ(found.batch_of_chain, (std::vector<std::uint32_t>{1, 0, 1, 1, 1}));
   EXPECT_EQ(found.is_small, (std::vector<bool>{false, false}));
-  // Alone in its batch the small ones are when any number is enough.
+  // Small islands get a batch of their own if any number of batches is enough.
   found = find({.most = 64, .shares = 1, .fewest = 1});
   EXPECT_EQ(found.batch_of_chain, (std::vector<std::uint32_t>{0, 1, 0, 2, 0}));
   EXPECT_EQ(found.is_small, (std::vector<bool>{true, false, false}));
-  // And when there are more batches of them.
+  // They also do if there are more batches of them.
   for (int i = 0; i < 3; ++i) add_chain(17);
   found = find(few);
   EXPECT_EQ(found.is_small, (std::vector<bool>{true, false, false, true}));

@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// At most: what stands once in the program, and what each half-step adds beside a line for each colour.
+// Upper bounds for the lines that stand once in the program, and for those of a half-step beside a line for each colour.
 constexpr std::size_t kLinesOnce = 24, kLinesPerHalfStep = 48;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Builds the program of a batch (task/program.h) line by line. A line is a stage: a function of a context and of blocks [begin, end), for all
-// blocks of one kind. A kind of which the batch has none gets no line.
+// Builds the program of a batch (task/program.h) line by line. A line is a stage: a function of a context and of blocks [begin, end), for
+// all blocks of one kind. A kind without blocks gets no line.
 #pragma once
 
 #include "base/check.h"
@@ -13,7 +13,7 @@
 
 namespace gyre {
 
-// A function of a context as a stage.
+// Adapts a function of a context to a stage.
 template <auto stage, class Context>
 void run_stage(void* context, int begin, int end, int worker) {
   if constexpr (std::is_invocable_v<decltype(stage), Context&, int, int, int>)
@@ -26,8 +26,8 @@ class ProgramBuilder {
  public:
   ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena);
 
-  // Bodies that constraints act on; of these the ones whose velocity change by contacts is measured; those whose rotation the kernels leave
-  // alone; and all of them again, for orientations.
+  // Add lines for constrained bodies: all; those whose contact change is measured; those that the kernels do not rotate; and all again, for
+  // orientations.
   template <auto stage>
   void bodies() {
     add(run_stage<stage, BodyMotionSolve>, &batch_.motion, bodies_, kBodyBlocksPerClaim, batch_.moved_bounds);
@@ -45,7 +45,7 @@ class ProgramBuilder {
   void orientations() {
     add(run_stage<stage, BodyMotionSolve>, &batch_.motion, orientations_);
   }
-  // Bodies that no constraint acts on; systems of these that springs couple, and the springs to what constraints act on.
+  // Add lines for free bodies, for systems of these that springs couple, and for the springs to constrained bodies.
   template <auto stage>
   void free_bodies() {
     add(run_stage<stage, BodyMotionSolve>, &batch_.motion, free_bodies_);
@@ -62,13 +62,13 @@ class ProgramBuilder {
   void coupling_springs() {
     if (batch_.motion.smooth.any_carried) add(run_stage<stage, SmoothMotion>, &batch_.motion.smooth, 1);
   }
-  // Bodies on which fields act.
+  // Adds a line for bodies on which fields act.
   template <auto stage>
   void field_bodies() {
     add(run_stage<stage, FieldSolve>, &batch_.motion.fields, fields_);
   }
 
-  // Contacts: colour by colour; all blocks; those that bounce; islands at rest.
+  // Add lines for contacts: by colour; for all blocks; for those with restitution; for resting islands.
   template <auto stage>
   void contacts() {
     for (ContactGroup& group : batch_.contact_groups)
@@ -91,7 +91,7 @@ class ProgramBuilder {
     add(run_stage<stage, ContactSolve>, &batch_.contacts, structures_);
   }
 
-  // Joints that are solved iteratively, colour by colour, or all colours at once where each writes what is its own.
+  // Add lines for iterative joints: by colour, or for all colours at once if each joint writes only its own data.
   template <auto stage>
   void joints() {
     for (JointGroup& group : batch_.joints.groups)
@@ -102,7 +102,7 @@ class ProgramBuilder {
   void all_joints() {
     add(run_stage<in_joint_slices<stage>, JointSolve>, &batch_.joints, joint_slices_, kSlicesPerClaim);
   }
-  // Articulations, each by itself; and those that are alike, side by side.
+  // Add lines for scalar articulations, and for bundles of grouped ones.
   template <auto stage>
   void articulations() {
     add(run_stage<for_articulations<stage>, JointSolve>, &batch_.joints, articulations_);
@@ -115,7 +115,7 @@ class ProgramBuilder {
   void simd_articulation_lanes() {
     add(run_stage<stage, JointSolve>, &batch_.joints, simd_articulations_);
   }
-  // What joints do to the energy of their islands; bodies whose inertia is raised against joints.
+  // Add lines for the energy limiter's islands, and for bodies with geometric stiffness.
   template <auto stage>
   void joint_islands() {
     add(run_stage<stage, JointSolve>, &batch_.joints, joint_islands_);
@@ -125,13 +125,13 @@ class ProgramBuilder {
     add(run_stage<stage, JointSolve>, &batch_.joints, stiffened_);
   }
 
-  // Islands whose constraints are solved as rows.
+  // Adds a line for islands whose constraints are solved as rows.
   template <auto stage>
   void row_islands() {
     add(run_stage<stage, RowSolve>, batch_.rows, row_islands_);
   }
 
-  // Several stages of articulations and their bodies as one line, run by run.
+  // Adds several stages of articulations and their bodies as one line, run by run.
   template <void (FusedRun::*... stages)() const>
   void fused() {
     for (FusedRuns& line : batch_.fused_runs)
@@ -142,7 +142,7 @@ class ProgramBuilder {
   bool has_swept_joints() const { return joint_slices_ > 0; }
   bool has_joints() const { return articulations_ > 0 || simd_articulations_ > 0 || has_swept_joints(); }
   bool has_fields() const { return fields_ > 0; }
-  // Nothing comes between forces and the warm start of bodies.
+  // True if no stage comes between forces and the warm start of bodies.
   bool can_warm_start_with_forces() const {
     return impacts_ == 0 && articulations_ == 0 && !has_swept_joints();
   }
@@ -153,21 +153,21 @@ class ProgramBuilder {
   static constexpr int kBodyBlocksPerClaim = 4, kContactBlocksPerClaim = 2, kJointBlocksPerClaim = 2,
                        kSlicesPerClaim = 2, kTreesPerClaim = 8;
 
-  // (Out of line: it is called in fifty places.)
+  // (Out of line, because fifty places call it.)
   GYRE_COLD void add(void (*kernel)(void*, int, int, int), void* context, int blocks, int per_claim = 1,
                      const int* bounds = nullptr) {
     if (blocks == 0) return;
     GYRE_ASSERT(used_ < room_.size(), "the program has more stages than were counted");
     room_[used_++] = {kernel, context, blocks, per_claim, bounds};
   }
-  // What shares bodies goes in one claim.
+  // Overflow groups, whose blocks share bodies, run in one claim.
   template <class Group>
   void add_group(void (*kernel)(void*, int, int, int), Group& group, int blocks, int per_claim) {
     add(kernel, &group, blocks, group.serial ? blocks : per_claim, group.bounds);
   }
 
   BatchContext& batch_;
-  // How many blocks each kind has.
+  // Numbers of blocks of each kind.
   int bodies_, fast_spinning_, orientations_, free_bodies_, fields_;
   int contact_blocks_ = 0, impacts_, trees_, structures_;
   int joint_slices_, articulations_, simd_articulations_, joint_islands_, stiffened_;

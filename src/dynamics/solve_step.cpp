@@ -14,30 +14,30 @@ namespace gyre {
 
 namespace {
 
-// Contacts begin as soft springs and stiffen as they age, with this time to half; these are the rate at which a new one
-// asks overlap back and that at which it gives way (1/s). docs/decisions/contact-softness.md tells how they were found.
+// Soft contacts: the rate (1/s) at which a new contact removes penetration, the rate (1/s) at which its impulse yields, and the half-life
+// (s) of its softness. docs/decisions/contact-softness.md tells how they were found.
 constexpr float kContactRate = 9.0f;
 constexpr float kContactLeak = 44.0f;
 constexpr float kContactAging = 0.25f;
-// A sub-step is solved in half-steps: one iteration over the constraints, then everything moves. Two short ones hold four times
-// as stiff as two sweeps in one place.
+// A sub-step is solved in half-steps: one iteration over the constraints, then all bodies move. Two short ones are four times as stiff as
+// two iterations at one pose.
 constexpr int kHalfStepsPerSubstep = 2;
-// Joints: errors are taken back at this rate (1/s), and impulses give way at this one, a little more than half of it, as
-// sweeps that lag behind need (the same page). Neither depends on the sub-step.
+// Joints: the rate (1/s) at which errors are removed, and the rate (1/s) at which impulses yield. The second is a little more than half of
+// the first, because iterations lag behind (the same page). Neither depends on the sub-step.
 constexpr float kJointRate = 40.0f;
 constexpr float kJointLeak = 22.0f;
-// Those of articulations are solved exactly; rows give way by this share of what would move them freely, enough to decide among
-// redundant ones (docs/decisions/joint-trees.md).
+// Compliance of articulations as a share of the effective inverse mass. They are solved exactly, so this need only decide among redundant
+// rows (docs/decisions/articulations.md).
 constexpr float kArticulationCompliance = 1.0e-4f;
-// Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
+// Least closing speed for restitution, in speeds that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;
 
-// By how much impulses grow at most from one part of an adaptive step to the next.
+// Largest factor by which impulses grow from one piece of an adaptive step to the next.
 constexpr float kMaxWarm = 4.0f;
 
 // ------------------------------------------------------------------------------------------------------- islands at rest
 
-// Whether all that is in contact hangs on joints. None of these islands counts as one at rest.
+// True if every contact has a jointed body. Then no island counts as resting.
 bool all_contacts_are_jointed(const BatchContext& batch, Arena& arena) {
   const JointSolve& joints = batch.joints;
   if (joints.edges.empty()) return false;
@@ -53,7 +53,7 @@ bool all_contacts_are_jointed(const BatchContext& batch, Arena& arena) {
     if (!is_jointed(pair.a) && !is_jointed(pair.b)) return false;
   return true;
 }
-// The islands at rest, which are solved directly.
+// Finds the resting islands, which are solved directly.
 void find_resting(BatchContext& batch, Arena& arena) {
   ContactSolve& contacts = batch.contacts;
   contacts.forest = {};
@@ -82,7 +82,7 @@ void lay_out_resting(ContactSolve& s, Arena& arena) {
 
 // ---------------------------------------------------------------------------------------------------------------- joints
 
-// By index in the batch: 1 of bodies on which contacts act.
+// By index in the batch: 1 for bodies in contact.
 std::span<const std::uint8_t> find_bodies_in_contact(const BatchContext& batch, Arena& arena) {
   const std::span<const ColoringPair> pairs = batch.scratch.contacts.pairs;
   if (pairs.empty() || batch.joints.edges.empty()) return {};
@@ -95,8 +95,8 @@ std::span<const std::uint8_t> find_bodies_in_contact(const BatchContext& batch, 
   return in_contact;
 }
 
-// Joints, and which of them are in articulations. Most of those, and of a net that is known to be solved iteratively, need no work but a
-// lane.
+// Begins the joints and finds the articulations. Joints in lanes need no JointConstraint: most joints of articulations, and those of a
+// graph that is known to be iterative.
 void begin_joints(BatchContext& batch, Arena& arena) {
   JointSolve& s = batch.joints;
   DenseGraphCache& nets = s.lists.dense_graphs;
@@ -130,7 +130,7 @@ void color(const BatchContext& batch, std::span<const ColoringPair> pairs,
   color_constraints(pairs, names, std::uint32_t(batch.members.bodies.size()), {}, kColoringOptions, colors);
 }
 
-// Who is between whom, and which worker begins with what.
+// Gathers the constraints, their pairs, and the workers' shares.
 void gather_constraints(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   gather_contacts(batch, arena, tasks);
   gather_joint_edges(batch, arena, tasks);
@@ -140,8 +140,8 @@ void gather_constraints(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
                                      tasks.worker_count(), arena);
 }
 
-// How constraints will be solved: directly or iteratively, in which colours, and contacts in which lanes. Joints and islands at rest are
-// found beside the contacts.
+// Chooses how constraints are solved: directly or iteratively, in which colours, and contacts in which lanes. Joints and resting islands
+// are found in parallel to contacts.
 void color_constraints(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   BatchScratch& scratch = batch.scratch;
   const std::span<ContactGroup> room = arena.make<ContactGroup>(kMaxGroups);
@@ -161,7 +161,7 @@ void color_constraints(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
       });
 }
 
-// Each of these asks for what those before it found.
+// Each function uses the results of those before it.
 void prepare_batch(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   BodyMotionSolve& motion = batch.motion;
   JointSolve& joints = batch.joints;
@@ -204,7 +204,7 @@ void solve_batch(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
 
 // ------------------------------------------------------------------------------------------------------ a batch, as rows
 
-// Rows look at their bodies' positions in each half-step.
+// Marks the bodies as read: rows read their poses in each half-step.
 void show_bodies(const BatchContext& batch) {
   RigidWorld& w = batch.w;
   for (const std::uint32_t slot : batch.members.joints) {
@@ -218,7 +218,7 @@ void show_bodies(const BatchContext& batch) {
   }
 }
 
-// With the solvers that see constraints as rows: no colours, and each island is solved by one worker.
+// Solves a batch with the row solvers: without colours, and each island by one worker.
 void solve_batch_as_rows(BatchContext& batch, const SolverSettings& settings, Arena& arena,
                          TaskSystem& tasks) {
   const ArenaScope scope(arena);
@@ -236,7 +236,7 @@ void solve_batch_as_rows(BatchContext& batch, const SolverSettings& settings, Ar
   run_substeps(batch, arena, tasks);
   finish_row_solve(rows, scratch.rows);
   finish_joints(batch.w, batch.members, {}, joints.works.work);
-  // Rows have no colours: what says so looks at these.
+  // Rows have no colours, and empty pairs tell later code so.
   scratch.contacts.pairs.clear();
   scratch.joints.pairs.clear();
   find_hits(batch.w, scratch.contacts, scratch.hits, arena, tasks);
@@ -246,10 +246,10 @@ void solve_batch_as_rows(BatchContext& batch, const SolverSettings& settings, Ar
 
 // ---------------------------------------------------------------------------------------------------------------- a step
 
-// How the half-steps of a step are.
+// The half-steps of a step.
 struct HalfStepping {
   int count = 0;
-  float h = 0.0f;  // s, of each
+  float h = 0.0f;  // s, duration of each
   float warm_scale = 0.0f;
 };
 
@@ -258,7 +258,7 @@ HalfStepping plan_half_steps(RigidWorld& w, float seconds, bool by_rows) {
   plan.count = by_rows ? w.settings.substeps : kHalfStepsPerSubstep * w.settings.substeps;
   plan.h = seconds / float(plan.count);
   plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
-  // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
+  // Pieces of a step up to an impact may be very short. What one of these leaves is mostly rounding.
   if (!w.inactive_contacts.empty()) plan.warm_scale = min(plan.warm_scale, kMaxWarm);
   w.settings.last_substep = plan.h;
   w.settings.last_step = seconds;
@@ -275,13 +275,13 @@ ContactSettings contact_settings(const RigidWorld& w, float seconds, const HalfS
           .warm_scale = plan.warm_scale,
           .up = gravity > 0.0f ? (-1.0f / gravity) * w.settings.gravity : Vec3{}};
 }
-// Long half-steps take back no more than the whole error and give way by less than the whole impulse.
+// A long half-step removes at most the whole error and yields by less than the whole impulse.
 JointSettings joint_settings(const RigidWorld& w, float h) {
   const float compliance = kJointLeak * h / (1.0f + kJointLeak * h);
   return {h, {min(kJointRate, 0.8f / h), 1.0f - compliance, compliance}, row_solver_of(w) == nullptr};
 }
 
-// What is known of a batch before it is gathered.
+// The context of a batch before it is gathered.
 BatchContext describe_batch(RigidWorld& w, BatchScratch& scratch, const SolverKernels& kernels,
                             const SolveBatch& members, std::span<const std::uint32_t> local_index,
                             float seconds, const HalfStepping& plan) {
@@ -332,15 +332,15 @@ void begin_scratch(BatchScratch& scratch) {
   scratch.rows = {};
 }
 
-// What constraints moved has its velocity from them.
+// Constrained bodies have their velocities from the constraints, so their last moves are forgotten.
 void forget_moves(RigidWorld& w) {
   for (const std::uint32_t body : w.bodies.awake) {
     if (w.bodies.flags[body].constraint_use != kNotConstrained) w.bodies.last_moves[body] = {};
   }
 }
 
-// Whether workers may solve batches in parallel: what fields, other solvers and other schemes tell of a step is put together by
-// one only.
+// True if workers may solve batches in parallel. Only one worker may combine the results of fields, of other solvers and of other
+// integration schemes.
 bool may_share_batches(const RigidWorld& w, const TaskSystem& tasks) {
   return tasks.worker_count() > 1 && w.fields.empty() && w.motion_settings.empty() &&
          row_solver_of(w) == nullptr;
@@ -363,8 +363,8 @@ void make_as_roomy(WorkerContext& worker, const WorkerContext& other) {
   worker.arena.expect(other.arena.peak());
 }
 
-// Which worker solves which batch is chance: all have room for what any of them had, so that a world at its working size no
-// longer allocates.
+// Chance decides which worker solves a batch. Each worker gets as much memory as any of them needed, so a world of constant size does not
+// allocate.
 void begin_workers(SolveScratch& scratch, std::size_t count) {
   while (scratch.workers.size() > count) scratch.workers.pop_back();
   while (scratch.workers.size() < count) scratch.workers.push_back(std::make_unique<WorkerContext>());
@@ -372,14 +372,14 @@ void begin_workers(SolveScratch& scratch, std::size_t count) {
     make_as_roomy(*scratch.workers[0], *each);
   for (const std::unique_ptr<WorkerContext>& each : scratch.workers)
     make_as_roomy(*each, *scratch.workers[0]);
-  // After all have heard of it: an arena that starts over forgets what it needed.
+  // The arenas start over after all workers have been compared, because an arena that starts over forgets its need.
   for (const std::unique_ptr<WorkerContext>& each : scratch.workers) {
     begin_scratch(each->scratch);
     each->arena.reset();
   }
 }
 
-// Of all batches together.
+// Adds up the results of all batches.
 void sum_up(SolveScratch& scratch) {
   scratch.hits.clear();
   scratch.counts = {};

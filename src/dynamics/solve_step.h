@@ -12,7 +12,7 @@
 
 namespace gyre {
 
-// What a worker needs that solves batches by itself.
+// The memory of a worker that solves batches by itself.
 struct WorkerContext {
   BatchScratch scratch;
   Arena arena;
@@ -20,20 +20,21 @@ struct WorkerContext {
 };
 
 struct SolveScratch {
-  BatchScratch together;                                // of batches that all workers solve together
-  std::vector<std::unique_ptr<WorkerContext>> workers;  // none where there is one worker
+  BatchScratch together;                                // for batches that all workers solve together
+  std::vector<std::unique_ptr<WorkerContext>> workers;  // empty if there is one worker
   Array<SlotHit> hits;
-  SolveCounts counts;  // of all batches
+  SolveCounts counts;  // sums over all batches
   StepStats report;
   RowStats rows;
   int colors = 0;
 };
 
-// How constraints are shared among groups.
+// The options of graph colouring.
 constexpr ColoringOptions kColoringOptions{.max_colors = 32, .statics_last = true};
 static_assert(kColoringOptions.max_colors < 64, "colors_used has a bit for each, and one for the rest");
 
-// Solves one step of `seconds`: velocities, `moved`, `turned` and orientations of awake bodies, impulses in manifolds and joints.
+// Solves one step of `seconds`. Writes velocities, delta positions, delta rotations and orientations of awake bodies, and impulses in
+// manifolds and joints.
 void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
                 const SolverKernels& kernels, float seconds);
 

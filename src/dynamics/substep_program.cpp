@@ -1,4 +1,4 @@
-// The order of a step, as the lines of a program. See substep_program.h.
+// Writes the order of a step as the lines of a program. See substep_program.h.
 #include "dynamics/substep_program.h"
 
 #include "dynamics/program_builder.h"
@@ -12,7 +12,7 @@ namespace {
 
 using Simd = ArticulationKernels;
 
-// Once, before all half-steps: free bodies move for the whole step; everything else is made ready where it stands.
+// Runs once before all half-steps: free bodies move for the whole step, and all else is prepared.
 void add_preparation(ProgramBuilder& p) {
   p.free_bodies<move_free_bodies>();
   p.spring_systems<move_spring_systems>();
@@ -28,7 +28,7 @@ void add_preparation(ProgramBuilder& p) {
   p.row_islands<prepare_row_joints>();
 }
 
-// Where no joint was relaxed since, they are prepared in the same line, while their rows are in the cache.
+// If no joint was relaxed since, joints are prepared in the same line, while their rows are in the cache.
 void add_relaxation_of_simd(ProgramBuilder& p, bool are_prepared, bool last) {
   if (are_prepared && !last) p.simd_articulations<&Simd::end_half_step>();
   if (are_prepared && last) p.simd_articulations<&Simd::end_step>();
@@ -36,8 +36,8 @@ void add_relaxation_of_simd(ProgramBuilder& p, bool are_prepared, bool last) {
   if (!are_prepared && last) p.simd_articulations<&Simd::prepare, &Simd::end_step>();
 }
 
-// One half-step: forces, warm start, joints, contacts, positions, relaxation. What a batch does not have is no line. In a fused batch all
-// that is between the contacts of two half-steps is one line, run by run (dynamics/fused_stages.h).
+// One half-step: forces, warm start, joints, contacts, positions, relaxation. Kinds without blocks get no line. In a fused batch all stages
+// from the contacts of one half-step to those of the next are one line, run by run (dynamics/fused_stages.h).
 void add_half_step(ProgramBuilder& p, bool first, bool last) {
   const bool fused = p.is_fused(), has_swept = p.has_swept_joints(), has_joints = p.has_joints();
   const bool warm_start_with_forces = !first && p.can_warm_start_with_forces();
@@ -48,7 +48,7 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
     p.fused<&FusedRun::add_first_contact_change, &FusedRun::solve_joints_first>();
   }
   if (!fused) {
-    // Forces, and bounces of what meets in this half-step.
+    // Forces, and restitution of points that meet in this half-step.
     p.field_bodies<record_field_velocities>();
     p.impacts<record_contact_approach>();
     p.coupled_spring_systems<move_coupled_spring_systems>();
@@ -56,18 +56,18 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
     if (warm_start_with_forces) p.bodies<apply_forces_and_warm_start>();
     if (!warm_start_with_forces) p.bodies<apply_forces>();
     p.impacts<apply_contact_restitution>();
-    // Warm start. Joints come before contacts, so that what joints give counts as none of the velocity change by contacts.
+    // Warm start. Joints come before contacts, so that their impulses are not counted as contact change.
     p.all_joints<compute_second_order_bias>();
     p.joint_islands<begin_warm_start_energy>();
     p.articulations<warm_start_articulation>();
-    if (first) p.simd_articulations<&Simd::compute_bias>();  // later: as the half-step before ended
+    if (first) p.simd_articulations<&Simd::compute_bias>();  // later ones: at the end of the half-step before
     p.joints<warm_start_joints>();
     p.joint_islands<limit_energy_gain>();
     if (!first && !warm_start_with_forces) p.measured_bodies<warm_start_bodies>();
     if (first) p.measured_bodies<start_contact_change>();
     if (first) p.contacts<warm_start_contacts>();
     if (first) p.measured_bodies<add_contact_change>();
-    // Fields, after what contacts and joints gave in the last half-step: a stream pulls at what really moves.
+    // Fields come after the warm start, because a stream acts on the true velocity.
     p.field_bodies<apply_field_forces>();
     if (p.has_fields()) p.measured_bodies<start_contact_change>();
     // Joints.
@@ -78,8 +78,8 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
     p.joint_islands<limit_energy_gain>();
     if (has_joints) p.measured_bodies<start_contact_change>();
   }
-  // Contacts, or all constraints as rows. Islands at rest are solved directly in the first half-step, which gives them the loads of this
-  // step, and in the last, which leaves them at rest: in between nothing is left to change.
+  // Contacts, or all constraints as rows. Resting islands are solved directly in the first half-step, for the loads of this step, and in
+  // the last, so that they end at rest. No change is left in between.
   if (first) p.row_islands<solve_row_islands_first>();
   if (!first) p.row_islands<solve_row_islands>();
   p.contacts<solve_contacts>();
@@ -94,18 +94,18 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
     return p.fused<&FusedRun::add_contact_change, &FusedRun::solve_joints_after_contacts,
                    &FusedRun::integrate_positions, &FusedRun::prepare_joints, &FusedRun::relax_joints,
                    &FusedRun::apply_forces_and_warm_start, &FusedRun::solve_joints>();
-  // Articulations again: they have the last word.
+  // Articulations are solved again, so that their joints come last.
   if (has_joints) p.measured_bodies<add_contact_change>();
   p.joint_islands<begin_energy_gain>();
   p.articulations<solve_articulation_after_contacts>();
   p.simd_articulations<&Simd::solve_after_contacts>();
   p.joint_islands<limit_energy_gain>();
-  // Positions, and bounces of what had to be set down first.
+  // Positions, and delayed restitution.
   if (has_joints) p.bodies<integrate_positions>();
   if (!has_joints) p.bodies<add_contact_change_and_integrate>();
   p.spinning_bodies<integrate_fast_spinning>();
   p.impacts<apply_delayed_contact_restitution>();
-  // Relaxation of joints where bodies are now: no velocity stays that came from taking errors back.
+  // Joints are relaxed at the present poses, so that no velocity stays from the bias.
   p.stiffened_bodies<stiffen_bodies>();
   p.all_joints<prepare_other_joints>();
   p.articulations<prepare_articulation>();
@@ -119,8 +119,8 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
   p.row_islands<sum_row_joints>();
 }
 
-// Once, after all half-steps: contacts without their springs, so that no velocity that came from these stays under load; overlap pushed
-// apart without velocity; and what was gathered goes back to where it is stored.
+// Runs once after all half-steps: contacts without springs, so that no velocity from these stays under load; pushout, which leaves
+// velocities; and the return of gathered data to its stores.
 void add_completion(ProgramBuilder& p) {
   p.contacts<relax_contacts>();
   p.bodies<begin_projection>();
@@ -134,8 +134,8 @@ void add_completion(ProgramBuilder& p) {
   p.all_joints<finish_ball_joints>();
 }
 
-// Of how many bodies, the first, somebody asks for the velocity change by contacts: where there may be any. (The look clears negative zeros
-// away, too, which joints that are not in lanes leave.)
+// Returns the number of first bodies whose contact change is measured: those that contacts may act on. (Measuring also clears negative
+// zeros, which joints outside of lanes leave.)
 std::size_t count_measured(const BatchContext& batch) {
   const JointSolve& joints = batch.joints;
   const bool has_contacts = !batch.contact_groups.empty(), has_lanes = !joints.bundles.bundles.empty(),

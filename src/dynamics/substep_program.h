@@ -1,7 +1,8 @@
-// The program of a batch: its sub-steps as a table of stages (task/program.h).
+// Builds the program of a batch: its sub-steps as a table of stages (task/program.h). A sub-step of the settings is two half-steps, each of
+// which is solved once; add_half_step in the source is their order.
 //
-// In: a batch, gathered and laid out (dynamics/batch_context.h). Out: velocities, `moved`, `turned` and orientations of its bodies, impulses
-// of its manifolds and joints.
+// In: a gathered and laid out batch (dynamics/batch_context.h). Out: velocities, delta positions, delta rotations and orientations of its
+// bodies, impulses of its manifolds and joints.
 #pragma once
 
 #include "dynamics/batch_context.h"

@@ -1,4 +1,4 @@
-// Where the work of a batch is cut between workers. See worker_partition.h.
+// Divides a batch between workers. See worker_partition.h.
 #include "dynamics/worker_partition.h"
 
 namespace gyre {
@@ -6,7 +6,7 @@ namespace gyre {
 WorkerPartition partition_bodies(std::span<const ColoringPair> pairs, std::size_t bodies, int workers,
                                  Arena& arena) {
   static_assert(kMaxShares <= 256, "shares are bytes");
-  constexpr std::size_t kFewest = 256;  // with fewer contacts it is not worth while
+  constexpr std::size_t kFewest = 256;  // fewest contacts that are worth dividing
   if (kMaxShares == 1 || workers == 1 || pairs.size() < kFewest) return {};
   const std::span<std::uint8_t> shares = arena.make<std::uint8_t>(bodies);
   const ArenaScope scope(arena);
@@ -18,7 +18,7 @@ WorkerPartition partition_bodies(std::span<const ColoringPair> pairs, std::size_
     shares[i] = std::uint8_t(before * std::size_t(workers) / pairs.size());
     before += contacts[i];
   }
-  // Behind the last contact.
+  // Bodies after the last contact join the last share.
   for (std::size_t i = bodies; i-- > 0 && int(shares[i]) == workers;) shares[i] = std::uint8_t(workers - 1);
   return {workers, shares};
 }

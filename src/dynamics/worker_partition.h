@@ -1,11 +1,11 @@
-// Says which worker begins with which bodies and contacts of a batch. Data that one core has written comes slowly to another. Contacts
-// are solved and bodies are moved many times in a step, so the same bodies go to the same worker, and contacts to the worker of their
-// second body.
+// Decides which worker begins with which bodies and contacts of a batch. Data that one core has written comes slowly to another. Contacts
+// are solved and bodies move many times in a step, so the same bodies go to the same worker, and contacts to the worker of their second
+// body.
 //
-// Bodies are divided by their numbers, not by their positions: a core fetches ahead the memory behind its own, and takes it from the
-// other core wherever the two meet. Divided by position, they would meet everywhere.
+// Bodies are divided by index, not by position. A core prefetches the memory after its own, and takes it from another core where their
+// ranges meet. With a division by position they would meet everywhere.
 //
-// In: the pairs of bodies in contact. Out: for each body the number of a worker. Only the time of a step depends on it.
+// In: the pairs of bodies in contact. Out: the number of a worker for each body. Only the time of a step depends on it.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -18,12 +18,12 @@
 
 namespace gyre {
 
-// Without threads there is one, which compilers see.
+// Without threads this is a compile-time 1.
 constexpr int kMaxShares = GYRE_HAS_THREADS ? TaskSystem::kMaxWorkers : 1;
 
 struct WorkerPartition {
   int workers = 1;
-  // By index in the batch, ascending. Empty where there is one share only.
+  // By index in the batch, ascending; empty if there is one share.
   std::span<const std::uint8_t> of_body;
 
   int count() const { return kMaxShares == 1 ? 1 : workers; }
@@ -34,11 +34,11 @@ struct WorkerPartition {
   }
 };
 
-// Runs of bodies with about as many contacts each.
+// Divides the bodies into consecutive ranges with about as many contacts each.
 WorkerPartition partition_bodies(std::span<const ColoringPair> pairs, std::size_t bodies, int workers,
                                  Arena& arena);
 
-// The first block of each share among blocks of `width` items, and then the number of blocks: Stage::bounds. `starts`: the first
+// Writes the first block of each share among blocks of `width` items, and then the number of blocks: Stage::bounds. `starts`: the first
 // item of each share.
 void find_share_bounds(std::span<const std::uint32_t> starts, std::uint32_t items, std::uint32_t width,
                        int* bounds);

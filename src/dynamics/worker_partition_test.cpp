@@ -1,4 +1,4 @@
-// WorkerPartition are runs of bodies with as many contacts each, whatever hangs together.
+// Shares are consecutive ranges of bodies with about as many contacts each, whatever the islands.
 #include "dynamics/worker_partition.h"
 
 #include "task/task_system.h"
@@ -34,7 +34,7 @@ TEST(PartitionOfBodies, AreRunsOfBodiesWithAsManyContacts) {
     std::vector<ColoringPair> pairs;
     std::vector<int> of_body(bodies, 0);
     for (std::uint32_t i = 0; i < contacts; ++i) {
-      // More of the first bodies; some on the ground, or under what is fixed.
+      // The first bodies get more contacts. Some contacts have one immovable body, as A or as B.
       const std::uint32_t a = below(bodies), b = below(a + 1), kind = below(5);
       pairs.push_back({kind == 0 ? kNone : a, kind == 1 ? kNone : b});
       ++of_body[WorkerPartition::second_of(pairs.back())];

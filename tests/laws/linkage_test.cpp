@@ -1,5 +1,5 @@
 // Things made of many joints: chains, bridges, linkages with more joints than they need, loops. They must not stretch, must
-// not gain energy, and must keep their momentum. docs/decisions/joint-trees.md has the figures.
+// not gain energy, and must keep their momentum. docs/decisions/articulations.md has the figures.
 #include "laws/assembly.h"
 
 #include <gyre/debug.h>

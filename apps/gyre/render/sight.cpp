@@ -28,7 +28,10 @@ void look_at_links(const World& world, const Scene* scene, Sight& out) {
     constexpr float kNoEnd = 1e29f;
     if (joints.has_limits[i] && joints.limits[2 * i + 1] < kNoEnd) link.length = joints.limits[2 * i + 1];
     const std::size_t index = joints.ids[i].index;
-    if (scene && index < scene->joints.size()) link.spring = scene->joints[index].def.stiffness.has_value();
+    if (scene && index < scene->joints.size()) {
+      const auto* const distance = std::get_if<DistanceDef>(&scene->joints[index].def);
+      link.spring = distance != nullptr && distance->stiffness.has_value();
+    }
     out.links.push_back(link);
   }
 }

@@ -5,7 +5,7 @@
 #include "base/prefetch.h"
 #include "collision/contact/contact_apart_lanes.h"
 #include "collision/contact/contact_lanes.h"
-#include "collision/contact/match_manifold.h"
+#include "collision/contact/anchor_frame.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {

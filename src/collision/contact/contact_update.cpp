@@ -3,7 +3,7 @@
 
 #include "collision/broadphase/fat_box.h"
 #include "collision/contact/contact_apart_lanes.h"
-#include "collision/contact/match_manifold.h"
+#include "collision/contact/anchor_frame.h"
 #include "geometry/manifold/manifold_box.h"
 #include "geometry/manifold/manifold_layout.h"
 #include "geometry/manifold_mesh/manifold_mesh.h"

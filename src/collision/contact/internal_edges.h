@@ -1,5 +1,5 @@
 // Internal edges: separate bodies laid flush are one surface, and a body that slides across must not catch on the edge
-// between them (ghost collisions).
+// between them (ghost collisions). Edges within one mesh are the work of geometry/manifold_mesh/mesh_axis.h.
 //
 // In: contacts that were just updated. Out: the same contacts without the points that the union of the bodies would not
 // produce.

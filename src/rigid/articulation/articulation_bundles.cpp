@@ -54,7 +54,7 @@ ArticulationBundle make_bundle(const ArticulationTopology& topology, const Artic
   return b;
 }
 
-// 1/kg: mobility of a body at a joint, averaged over all directions.
+// The mobility (1/kg) of a body at a joint, averaged over all directions.
 float mobility(const BodyMass& mass, Vec3 arm) {
   const Sym3& i = mass.inverse_inertia;
   const float angular = (i.xx + i.yy + i.zz) * length_squared(arm) - dot(arm, i * arm);
@@ -82,7 +82,7 @@ BundleSolve lay_out_bundles(const Articulations& articulations, const SolverKern
   BundleSolve result{{}, arrays, settings};
   const std::size_t count = articulations.grouped.size();
   if (count == 0) return result;
-  // Sorted by topology, and for equal topology in the order of their first joints.
+  // The articulations are sorted by topology, and then by their first joints.
   const std::span<const GroupedArticulation*> sorted = arena.make<const GroupedArticulation*>(count);
   const std::span<std::size_t> ends = arena.make<std::size_t>(articulations.topologies.size() + 1);
   for (std::size_t& end : ends) end = 0;
@@ -119,7 +119,7 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWo
     bundle.lanes.kernels->begin(bundle.lanes);
     for (int lane = 0; lane < bundle.lanes.kernels->width; ++lane)
       bundle.lanes.has_extreme_mass_ratio[lane] = 0.0f;
-    // Joint by joint, because its lanes share cache lines.
+    // Lanes are filled joint by joint, because the lanes of a joint share cache lines.
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
       const LaneNode& node = bundle.lanes.nodes[n];
       for (std::size_t lane = 0; lane < bundle.articulations.size(); ++lane) {

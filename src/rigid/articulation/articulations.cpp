@@ -329,7 +329,7 @@ class ArticulationBuilder {
     return std::uint32_t(topology_count_++);
   }
 
-  // Joint after joint, forwards and backwards, until all bodies are reached.
+  // Visits joint after joint, forwards and backwards, until all bodies are reached.
   void find_traversal(ArticulationTopology& topology) const {
     topology.traversal = arena_.make<TraversalStep>(topology.body_count - 1);
     const std::span<std::uint8_t> is_reached = arena_.make<std::uint8_t>(topology.body_count);

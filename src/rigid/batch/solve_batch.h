@@ -5,21 +5,20 @@
 
 namespace gyre {
 
-// All lists ascend.
+// All lists are in ascending order.
 struct SolveBatch {
-  std::span<const std::uint32_t> bodies;  // awake: dynamic, and kinematic ones
-  std::span<const std::uint32_t>
-      contacts;                           // slots; with manifolds, and one of the two bodies is moved by them
+  std::span<const std::uint32_t> bodies;    // awake dynamic and kinematic bodies
+  std::span<const std::uint32_t> contacts;  // slots; each has a manifold and a body that it moves
   std::span<const std::uint32_t> joints;  // slots
 };
 
-// Whether constraints move the body: dynamic, awake, not frozen.
+// True if constraints move the body: it is dynamic, awake and not frozen.
 inline bool is_active(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   return flags.awake != 0 && is_movable(flags);
 }
 
-// Whether it would be a constraint between bodies that are active.
+// True if the contact is a constraint once one of its bodies is active.
 inline bool may_act(const Contact& contact) {
   return contact.manifold_room != 0 && contact.manifold_count != 0 && contact.sensor == 0;
 }
@@ -27,7 +26,7 @@ inline bool may_act(const RigidWorld& w, std::uint32_t joint) {
   const JointDetail* const detail = detail_of(w.joints, joint);
   return detail == nullptr || !detail->disabled;
 }
-// Whether it is one.
+// True if the contact is a constraint now.
 bool is_solved(const RigidWorld& w, const Contact& contact);
 bool is_joint_solved(const RigidWorld& w, std::uint32_t slot);
 

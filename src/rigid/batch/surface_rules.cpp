@@ -7,12 +7,12 @@ namespace gyre {
 
 namespace {
 
-// Normals within this cosine of the direction of a one-way surface are held.
+// Least cosine of the angle between normal and surface direction at which a one-way surface stops a body.
 constexpr float kHolds = 0.5f;
-// In sizes of what passes: what lies deeper is on its way through. A body that goes farther in a step is swept, so that none
-// that comes from the other side gets so deep.
+// In sizes of the passing body. A deeper body is passing through. A body that goes farther in a step is fast and is swept, so none from the
+// other side gets so deep.
 constexpr float kPassingDepth = 0.5f;
-// Of the speed of a fall by its size: what overlaps and leaves faster is on its way through.
+// As a share of the speed of a fall by the body's size. A body that overlaps and leaves faster is passing through.
 constexpr float kLeaving = 0.05f;
 
 const SurfaceRule* find_rule(const RigidWorld& w, std::uint16_t id) {
@@ -27,7 +27,7 @@ Pose pose_of_shape(const RigidWorld& w, std::uint32_t shape) {
   return origin_pose(w.bodies, w.shapes.bodies[shape]) * w.shapes.body_from_shape[shape];
 }
 
-// The triangle of a mesh or height field nearest to a place, as the user numbers it.
+// Returns the triangle of a mesh or height field nearest to a point, as the user numbers it.
 std::uint32_t nearest_triangle(const RigidWorld& w, std::uint32_t shape, DVec3 place) {
   const Pose pose = pose_of_shape(w, shape);
   const DQuat orientation = normalized(to_double(pose.orientation));
@@ -51,7 +51,7 @@ DVec3 deepest_place(const RigidWorld& w, const Contact& contact, const Manifold&
 struct Side {
   const SurfaceRule* rule = nullptr;
   const Material* material = nullptr;
-  bool of_triangle = false;  // the material is not the shape's own
+  bool of_triangle = false;  // the triangle has its own material
 };
 
 Side side_of(const RigidWorld& w, std::uint32_t shape, const Contact& contact, const Manifold& manifold) {
@@ -78,8 +78,8 @@ float size_of(const RigidWorld& w, std::uint32_t shape, const Contact& contact) 
   return size > 0.0f && size < kUnbounded ? size : contact.size;
 }
 
-// Whether a one-way surface holds what touches it. `direction`: of the surface, world axes; `outward`: the manifold's normal,
-// out of the surface; `leaving`: the other body's velocity against it; `size`: of the other shape.
+// True if a one-way surface stops the other body. `direction`: of the surface, world axes; `outward`: the manifold's normal, out of the
+// surface; `leaving`: the other body's relative velocity; `size`: of the other shape.
 bool holds(const Manifold& manifold, Vec3 direction, Vec3 outward, Vec3 leaving, float size) {
   const Vec3 along = normalized(direction);
   if (dot(along, outward) < kHolds) return false;
@@ -129,7 +129,7 @@ bool apply_surface_rules(const RigidWorld& w, const Contact& contact, Manifold& 
     }
     running -= turn_to_world(w, contact.body_b, b.rule->velocity);
   }
-  // B rests on A when it goes with A's surface, and its own surface does not run.
+  // B rests on A if it moves with A's surface while its own surface does not run.
   constraint.surface_velocity = running - dot(running, manifold.normal) * manifold.normal;
   if (a.of_triangle || b.of_triangle) {
     const ContactSurface surface = combine_materials(w, *a.material, *b.material);

@@ -1,7 +1,7 @@
 // The integrators, on a system of smooth forces (rigid/integrate/smooth_forces.h).
 //
 //   explicit_euler       x += h v, then v += h a;  q by exp(h w), then L += h T
-//   semi_implicit_euler  v += h a, then x += h v;  L += h T, then the exact turn at constant L (rigid/integrate/free_rotation.h)
+//   semi_implicit_euler  v += h a, then x += h v;  L += h T, then the exact turn at constant L (solver/motion/torque_free_rotation.h)
 //   rk4                  Kutta's four stages on (x, v, q, L), weights 1, 2, 2, 1; q scaled back to length 1
 //   verlet               from the last two poses: V+ = (x - x-) / h- + a (h + h-) / 2, x += h V+, which keeps order 2 where the
 //                        step changes. Orientation alike: L at the middle of the last turn is I(q_mid) (turn / h-), T moves it on

@@ -2,7 +2,7 @@
 
 #include "solver/joint/joint_axis.h"
 #include "solver/joint/joint_blocks.h"
-#include "solver/joint/joint_drive.h"
+#include "solver/joint/pose_drive.h"
 
 namespace gyre {
 
@@ -14,7 +14,7 @@ bool can_do_work(const JointAxisRecord& axis) {
 
 bool is_listed(const AxisConstraint& x) { return x.in_articulation || can_do_work(x.axis); }
 
-// Dry friction only takes.
+// Dry friction only removes energy, so its impulse is left out.
 float worked_impulse(const JointAxisRecord& axis) {
   const float stops = axis.limit_frequency > 0.0f ? axis.low_impulse - axis.high_impulse : 0.0f;
   return axis.spring_impulse + axis.motor_impulse + stops;

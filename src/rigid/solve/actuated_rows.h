@@ -1,14 +1,14 @@
-// Rows of joints that may do work: springs, motors, drives to a pose, stops that give way. What all rows of an island changed of its kinetic
-// energy is the sum over them of impulse times mean speed, so what these did can be told from what the rest did, which should do none
-// (rigid/solve/energy_limiter.h).
+// Actuated rows may do work: springs, motors, drives to a pose and soft limits. The kinetic energy that all rows of an island add is the
+// sum over the rows of impulse times mean speed. So the work of actuated rows is measured apart from that of the passive rows, which should
+// do none (rigid/solve/energy_limiter.h).
 #pragma once
 
 #include "rigid/solve/joint_solve.h"
 
 namespace gyre {
 
-// What a row had given as a stage began, and what it saw. Of an axis the numbers stand in x of the first two; of one that is solved with the
-// equations of its linkage (solver/articulation/articulation_drives.h), which knows what it did, in `worked`.
+// The impulse and the speed of a row when a stage begins. An axis uses x of the first two vectors. An axis that is solved with the
+// equations of its articulation (solver/articulation/articulation_drives.h) knows its work and stores it in `worked`.
 struct RowState {
   Vec3 push, speed;    // N s, m/s (or N m s, rad/s)
   Vec3 turn, turning;  // N m s, rad/s: of drives
@@ -16,20 +16,21 @@ struct RowState {
 };
 
 struct ActuatedRow {
-  std::uint32_t place = 0;  // of the joint in the batch
-  std::int32_t axis = 0;    // in JointConstraint::axes; kDriveRow: the drive
+  std::uint32_t place = 0;  // index of the joint in the batch
+  std::int32_t axis = 0;    // index in JointConstraint::axes; kDriveRow: the drive
   RowState begun;
 };
 constexpr std::int32_t kDriveRow = -1;
 
-// Whether any row of a joint may.
+// True if any row of the joint is actuated.
 bool can_do_work(const JointRecord& joint, const JointDetail* detail);
 
-// How many of a joint's rows may; and these, into as much room.
+// Counts the actuated rows of a joint, and writes them to as many elements of `rows`.
 std::size_t count_actuated_rows(const JointSolve& solve, std::uint32_t place);
 void list_actuated_rows(const JointSolve& solve, std::uint32_t place, std::span<ActuatedRow> rows);
 
-// Before and after a stage in which impulses change; is_warm: in which all of each impulse is given once more. The work in J.
+// Called before and after a stage that changes impulses. `is_warm`: the stage applies the whole of each impulse again. Returns the work
+// (J).
 void begin_actuated_rows(const JointSolve& solve, std::span<ActuatedRow> rows, bool is_warm);
 double actuated_work(const JointSolve& solve, std::span<const ActuatedRow> rows);
 

@@ -1,5 +1,5 @@
-// What the stages that move bodies (rigid/solve/motion_stages.h) work on: the bodies of a batch, those that constraints act on as the
-// kernels want them.
+// The context of the stages that move bodies (rigid/solve/motion_stages.h): the bodies of a batch, and blocks of the constrained ones for
+// the kernels.
 #pragma once
 
 #include "rigid/field/fields.h"
@@ -14,15 +14,15 @@ struct BodyMotionSolve {
   const SolverKernels& kernels;
   Motions motions{};
   MotionArrays arrays{};
-  std::span<MovedBody> moved{};  // the batch's bodies that constraints act on,
-  void* blocks = nullptr;        // the same for the kernels,
-  std::span<Vec3> pushes{};      // and how overlap turned them
-  int measured_blocks = 0;       // the first: of these somebody asks for the velocity change by contacts
-  std::span<std::uint32_t> fast_spinning{};         // those whose rotation the kernels leave alone
+  std::span<MovedBody> moved{};                     // the constrained bodies of the batch
+  void* blocks = nullptr;                           // the same bodies in blocks for the kernels
+  std::span<Vec3> pushes{};                         // rotation of each by pushout
+  int measured_blocks = 0;                          // the contact change is measured in the first blocks only
+  std::span<std::uint32_t> fast_spinning{};         // bodies that the kernels do not rotate
   std::span<std::uint32_t> fast_spinning_starts{};  // by block of moved bodies: its first; one more
-  std::span<std::uint32_t> free_bodies{};           // no constraint acts on them
+  std::span<std::uint32_t> free_bodies{};           // bodies without constraints
   FieldSolve fields{};
-  bool is_smooth = false;  // free bodies are moved by the schemes of rigid/integrate/smooth_schemes.h
+  bool is_smooth = false;  // schemes of rigid/integrate/smooth_schemes.h move free bodies
   SmoothMotion smooth{};
 };
 

@@ -1,4 +1,4 @@
-// The contacts of a batch as constraints.
+// Lists of the contacts of a batch, as constraints.
 #pragma once
 
 #include "base/container/array.h"
@@ -10,13 +10,13 @@
 
 namespace gyre {
 
-// Kept from step to step only for its memory.
+// The lists persist between steps only to reuse their memory.
 struct ContactLists {
   Array<ContactConstraint> constraints;
   Array<std::uint32_t> slots;    // contact of each constraint
-  Array<ColoringPair> pairs;     // between which bodies each is: indices in the batch, as far as they move
-  Array<ImpactContact> impacts;  // of those with restitution
-  Array<std::uint32_t> order;    // constraints, W a block
+  Array<ColoringPair> pairs;     // movable bodies of each: indices in the batch
+  Array<ImpactContact> impacts;  // contacts with restitution
+  Array<std::uint32_t> order;    // constraints, W in each block
 };
 
 }  // namespace gyre

@@ -6,10 +6,10 @@ namespace gyre {
 
 namespace {
 
-// Of the widest kernels.
+// Lanes of the widest kernels.
 constexpr int kMaxLanes = 16;
 
-// Calls fn(rolling, block, lane) for those contacts of the blocks that roll, which are few.
+// Calls fn(rolling, block, lane) for the rolling contacts of the blocks. They are few.
 template <class Fn>
 void for_each_rolling(const ContactGroup& group, int begin, int end, Fn&& fn) {
   const ContactSolve& s = *group.solve;
@@ -22,7 +22,8 @@ void for_each_rolling(const ContactGroup& group, int begin, int end, Fn&& fn) {
   }
 }
 
-// Advances their points to the middle of the sub-step, and their bodies to the velocities there, until these contacts are solved.
+// Advances the points of rolling contacts to the middle of the sub-step, and their bodies to the velocities there, until these contacts are
+// solved.
 void advance_contact_points(const ContactGroup& group, int begin, int end) {
   const ContactSolve& s = *group.solve;
   AdvancedArmsLane lanes[kMaxLanes];
@@ -74,7 +75,7 @@ void warm_start_contacts(const ContactGroup& group, int begin, int end) {
 }
 void solve_contacts(const ContactGroup& group, int begin, int end) {
   const ContactSolve& s = *group.solve;
-  // What is left over when the colours are used up shares bodies: each of them goes to its middle once.
+  // Blocks of the overflow group share bodies, so each block is advanced, solved and restored by itself.
   const int blocks = group.serial && !s.rolling.contacts.empty() ? 1 : end - begin;
   for (; begin < end; begin += blocks) {
     advance_contact_points(group, begin, begin + blocks);

@@ -11,7 +11,7 @@ namespace gyre {
 
 namespace {
 
-// What motion of all together the rows of a kind see nothing of.
+// The motions that the rows of a joint kind cannot see.
 IslandFrame frame_of(JointKind kind) {
   switch (kind) {
     case JointKind::gear:
@@ -28,8 +28,7 @@ bool turns_far(const BodyMotion& motion, float h) {
   return square(h) * length_squared(motion.angular_velocity) > square(kSlowRotation);
 }
 
-// Calls fn(place in the batch's list) for the joints that are looked at: those that are swept, of articulations solved alone, and of those
-// side by side.
+// Calls fn(index in the batch's list) for the iterative joints, and then for those of scalar and of grouped articulations.
 template <class Fn>
 void for_each_swept(const JointSolve& solve, Fn&& fn) {
   for (const std::uint32_t place : solve.lists.swept) fn(place);
@@ -43,13 +42,12 @@ void for_each_joint(const JointSolve& solve, Fn&& fn) {
     for (const ArticulationJoint& joint : articulation.joints) fn(joint.index);
 }
 
-// What is known of an island while it is gathered, at its lowest place.
+// The data of an island under construction, stored at its lowest body index.
 struct Draft {
   bool has_joints = false, is_swept = false, is_alone = false, is_fast = false;
-  bool is_untold =
-      false;  // what works on it is not known: several that move, axes of the world, drives in lanes
+  bool is_untold = false;  // its work is unknown: several moving carriers, locked axes, drives in lanes
   bool is_in_equilibrium = false, is_pushed = false;
-  std::int32_t carrier = kNoBody;  // the first that holds it
+  std::int32_t carrier = kNoBody;  // first body that carries it
   IslandFrame frame = IslandFrame::rigid;
   std::uint32_t bodies = 0, joints = 0, worked = 0;
   JointIsland* island = nullptr;
@@ -128,7 +126,7 @@ class IslandFinder {
       if (flags.locked_linear != 0 || flags.locked_angular != 0) draft.is_untold = true;
     }
   }
-  // Seen from what moves by itself it does no work, if that is one body and nothing asks for more than motion against it.
+  // In its own frame a carrier does no work. This holds for one carrier, and for rows that depend only on motion relative to it.
   void hold(Draft& draft, std::int32_t body) const {
     if (draft.is_in_equilibrium && body != draft.carrier && (moves(body) || moves(draft.carrier)))
       draft.is_untold = true;
@@ -151,8 +149,8 @@ class IslandFinder {
 
   std::span<JointIsland> list() {
     for (Draft& draft : drafts_) end_hold(draft);
-    // What it costs to watch a linkage that is solved alone is little of what it costs to solve it. What is in lanes by itself is watched
-    // there.
+    // Scalar articulations are always watched, because that costs little of their solve. Kernels watch islands of grouped articulations
+    // only.
     const auto is_watched = [](const Draft& draft) {
       return draft.bodies > 0 && (draft.is_alone || (draft.is_swept && draft.is_fast)) && !draft.is_untold;
     };
@@ -167,7 +165,7 @@ class IslandFinder {
     fill();
     return islands;
   }
-  // With room for all that belongs to it.
+  // Makes an island with memory for its bodies, joints and rows.
   void begin_island(Draft& draft, JointIsland& island) {
     island = {arena_.make<std::uint32_t>(draft.bodies),
               arena_.make<std::uint32_t>(draft.joints),
@@ -203,20 +201,20 @@ class IslandFinder {
   const RigidWorld& w_;
   Arena& arena_;
   std::span<const std::uint8_t> in_lanes_;
-  DisjointSets sets_;  // of places in the batch
+  DisjointSets sets_;  // sets of body indices in the batch
   std::span<Draft> drafts_;
 };
 
-// Share of an angular momentum below which it counts as kept.
+// Share of an angular momentum below which a change is rounding.
 constexpr double kSpinRounding = 1.0e-4;
 
-// World axes.
+// The inertia of a body in world axes.
 Sym3 inertia_of(const BodyStore& bodies, std::uint32_t body) {
   const BodyMass& mass = bodies.masses[body];
   return mass.isotropic != 0 ? mass.inertia : rotate_inertia(bodies.orientations[body], mass.inertia);
 }
 
-// The inertia times a turning, in world axes: cheaper than the matrix.
+// The inertia times an angular velocity, in world axes. This is cheaper than the matrix.
 Vec3 spin_of(const BodyStore& bodies, std::uint32_t body, Vec3 turning) {
   const BodyMass& mass = bodies.masses[body];
   if (mass.isotropic != 0) return mass.inertia * turning;
@@ -228,7 +226,7 @@ DVec3 center_of(const BodyStore& bodies, std::uint32_t body) {
   return bodies.poses[body].center + DVec3(bodies.motion[body].delta_position);
 }
 
-// The motion of what holds an island, as that of all its bodies: none, if it does not move.
+// The motion of the carrier of an island, as a rigid motion of all its bodies; zero if it does not move.
 struct CarrierMotion {
   DVec3 center;
   Vec3 linear, angular;
@@ -240,7 +238,7 @@ CarrierMotion carriage_of(const BodyStore& bodies, const JointIsland& island) {
   return {center_of(bodies, std::uint32_t(island.carrier)), motion.linear_velocity, motion.angular_velocity};
 }
 
-// J, as seen from what holds the island.
+// The kinetic energy (J) in the carrier frame.
 double kinetic_energy(const BodyStore& bodies, const JointIsland& island) {
   const CarrierMotion carriage = carriage_of(bodies, island);
   double twice = 0.0;
@@ -257,7 +255,7 @@ double kinetic_energy(const BodyStore& bodies, const JointIsland& island) {
   return 0.5 * twice;
 }
 
-// kg m^2/s, about a point.
+// The angular momentum (kg m^2/s) about a point.
 DVec3 angular_momentum(const BodyStore& bodies, const JointIsland& island, DVec3 point) {
   DVec3 sum;
   for (const std::uint32_t body : island.bodies) {
@@ -296,7 +294,7 @@ RigidBody as_one(const BodyStore& bodies, const JointIsland& island) {
   return one;
 }
 
-// The motion that it would have as one, with the momenta that it has, as far as joints see nothing of it.
+// The rigid motion of an island with its present momenta, as far as its joints cannot see that motion.
 struct RigidMotion {
   DVec3 center;
   Vec3 linear, angular;
@@ -322,8 +320,8 @@ RigidMotion rigid_motion(const BodyStore& bodies, const JointIsland& island) {
   return rigid;
 }
 
-// What joints give each other they take from each other. Where inertia against them is raised (solver/articulation/articulation.cpp), a spin is less than what
-// was given; the rest goes to all together, as to one rigid body.
+// Joint impulses on an island sum to zero. With geometric stiffness (solver/articulation/articulation.cpp) bodies take up less angular
+// momentum than that; the island gets the rest as one rigid body.
 void keep_angular_momentum(BodyStore& bodies, const JointIsland& island) {
   const DVec3 lost = island.spin - angular_momentum(bodies, island, center_of(bodies, island.bodies[0]));
   if (!(length_squared(lost) > square(kSpinRounding) * length_squared(island.spin))) return;
@@ -336,7 +334,7 @@ void keep_angular_momentum(BodyStore& bodies, const JointIsland& island) {
   }
 }
 
-// Takes so much (J) of inner motion away.
+// Removes `taken` (J) from the inner motion.
 void slow_down(BodyStore& bodies, const JointIsland& island, double energy, double taken) {
   const RigidMotion rigid = rigid_motion(bodies, island);
   const double inner = energy - rigid.energy;
@@ -351,8 +349,8 @@ void slow_down(BodyStore& bodies, const JointIsland& island, double energy, doub
   }
 }
 
-// J: with which all bodies go back to where joints would have them, if they are far off; and of what turns with a holder, what its way bends
-// by in a sub-step of `h`.
+// The energy (J) with which all bodies return from large joint errors. In a rotating carrier frame it includes the curvature of the path in
+// a sub-step of `h`.
 double energy_of_errors(const BodyStore& bodies, const JointIsland& island, float rate, float h) {
   const CarrierMotion carriage = carriage_of(bodies, island);
   double sum = 0.0, bent = 0.0;
@@ -369,8 +367,8 @@ double energy_of_errors(const BodyStore& bodies, const JointIsland& island, floa
   return 0.5 * (square(double(rate)) * sum + bent);
 }
 
-// Where joints have given more than `most` of what there was, or of `least`: leaves them what `left` says of that, takes the rest away,
-// and says so.
+// Limits a gain that exceeds `most` times the energy before it, which counts as `least` or more. Then the island keeps `left` times that
+// energy of its gain, and the rest is removed. True if the gain was limited.
 bool bound_gain(BodyStore& bodies, JointIsland& island, float most, float left, double least = 0.0) {
   if (!(island.energy_gain > 0.0)) return false;
   const double energy = kinetic_energy(bodies, island), before = max(energy - island.energy_gain, least);
@@ -385,8 +383,8 @@ void clear_impulses(JointAxisRecord& axis) {
   axis.low_impulse = axis.high_impulse = axis.motor_impulse = axis.spring_impulse = axis.friction_impulse =
       0.0f;
 }
-// What follows does not begin with the impulses that gave too much, nor with those of springs and motors that they answered. In the middle
-// of a step axes are in the joints' work, as it ends in what persists.
+// Clears the impulses that gave too much energy, and the spring and motor impulses that they answered, so that no warm start uses them. The
+// axes are in the joint constraints within a step, and in the stored records at its end.
 void clear_impulses(const JointSolve& solve, const JointIsland& island) {
   JointStore& joints = solve.w.joints;
   const std::span<const std::uint8_t> in_lanes = prepared_in_simd(solve);
@@ -465,8 +463,8 @@ void limit_energy_gain(const JointSolve& solve, int begin, int end) {
 void remove_energy_gain(const JointSolve& solve, int begin, int end) {
   for (JointIsland& island : solve.islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
     end_work(solve, island);
-    // What bears a joint's load may take away between two stages what seems to be given in one: at rest on the ground that would be all
-    // there is. Beside what turns far it is little.
+    // A contact that carries a joint's load may remove between two stages the energy that seems to be added in one. At rest on the ground
+    // this would be the whole gain. Beside fast rotation it is little.
     if (!island.is_pushed || island.is_bounded || any_turns_far(solve, island))
       bound_gain(solve.w.bodies, island, kMaxEnergyGain, 0.0f);
     island.energy_gain = 0.0;

@@ -1,9 +1,10 @@
-// What joints that are swept, or in articulations that are solved alone, give of energy and of angular momentum. Joints that only connect do no work;
-// where bodies turn far within a sub-step their rows, linear in what turns, do all the same, and what they give in one they give again in
-// the next: nets of rods went faster without end; where a light body with long arms strikes a stop between heavy ones, at once. As
-// solver/articulation/articulation_energy_kernel.h does it for articulations side by side, what joints have given in a sub-step is taken away as it ends,
-// by slowing all inner motion alike. And where inertia against joints is raised (solver/articulation/articulation.cpp, rigid/solve/geometric_stiffness.h) a body does not
-// take all of a turn that others gave: what hangs on nothing gets it back, as one rigid body (docs/decisions/joint-trees.md).
+// Limits the kinetic energy and keeps the angular momentum of islands with iterative joints or scalar articulations. Passive joints do no
+// work. Their linearised rows do when bodies rotate far within a sub-step, and the gain repeats in the next one: nets of rods gained speed
+// without end, and a light body with long arms at a limit between heavy ones did so at once. As
+// solver/articulation/articulation_energy_kernel.h does for bundles, this unit measures the gain of a sub-step and removes it at the end by
+// slowing all inner motion alike. Geometric stiffness (solver/articulation/articulation.cpp, rigid/solve/geometric_stiffness.h) makes a
+// body take less angular momentum than its impulses carry; an island that nothing holds gets it back as one rigid body
+// (docs/decisions/articulations.md).
 #pragma once
 
 #include "rigid/field/fields.h"
@@ -13,44 +14,45 @@ namespace gyre {
 
 struct ActuatedRow;
 
-// What motion of all bodies together the joints of an island see nothing of.
+// The common motions of an island that leave all joint errors unchanged.
 enum class IslandFrame : std::uint8_t {
-  rigid,     // any as one rigid body
-  parallel,  // any without turning: gears and racks count turns
-  held,      // none but that of what holds them
+  rigid,     // any rigid motion
+  parallel,  // translations: gears and racks count turns
+  held,      // only the motion of the carrier
 };
 
-// Bodies that hang together by joints that should do no work, but for some of their rows (rigid/solve/energy_limiter.h).
+// Bodies connected by joints, whose passive rows should do no work.
 struct JointIsland {
   std::span<std::uint32_t> bodies;
   std::span<std::uint32_t> joints;  // indices in the batch
   std::span<ActuatedRow> worked;
   IslandFrame frame = IslandFrame::rigid;
-  std::int32_t carrier = kNoBody;  // what holds them, if that moves
-  bool is_pushed = false;          // contacts or fields act on it between what joints do
-  bool is_bounded = false;         // joints gave more than is borne before bodies move
-  double energy_gain = 0.0;        // J, in this sub-step, by what rows that do no work changed of velocities,
-  double before = 0.0;             // and what there was before they last did;
-  DVec3 spin{};  // kg m^2/s: the angular momentum then, about the first body's centre of mass
+  std::int32_t carrier = kNoBody;  // the body that holds them, if it moves
+  bool is_pushed = false;          // contacts or fields act between the stages of joints
+  bool is_bounded = false;         // the gain was limited before bodies moved
+  double energy_gain = 0.0;        // J, by passive rows in this sub-step
+  double before = 0.0;             // J, before the present stage of joints
+  DVec3 spin{};                    // kg m^2/s: angular momentum then, about the first body's centre of mass
 };
 
-// Those of the batch: bodies that hang together by joints, some of them swept or in articulations that are solved alone; of those that are
-// swept, where a body turns far. What springs, motors and drives do is told apart (rigid/solve/actuated_rows.h). What a
-// kinematic body holds is seen from that. Not where several that move hold it, where a body is bound to axes of the world, or where a linkage
-// in lanes is driven. Where contacts or fields act, gains are taken away only beside what turns far: they may answer between two stages what
-// joints seem to give in one.
-// `contacts`: of the batch, as the colouring knows them. `fields`: the batch's bodies on which fields act.
+// Finds the islands of the batch to watch: those with scalar articulations, and those with iterative joints and a body that rotates far.
+// The work of springs, motors and drives is measured apart (rigid/solve/actuated_rows.h). An island on a kinematic body is watched in the
+// frame of that carrier. An island is left out if several moving bodies hold it, if a body is locked to world axes, or if a grouped
+// articulation has drives. Where contacts or fields act, gains are removed only beside fast rotation, because contacts may remove between
+// two stages the energy that joints seem to add in one.
+//
+// `contacts`: pairs of the batch, as for graph colouring. `fields`: the batch's bodies on which fields act.
 std::span<JointIsland> find_joint_islands(const JointSolve& solve, std::span<const ColoringPair> contacts,
                                           std::span<const FieldBody> fields, Arena& arena);
 
-// Stages, whose blocks are islands. Before what joints change of velocities; warm start: where impulses are given once more.
+// Stages; each block is an island. They run before joints change velocities; the first is for warm starts, which apply impulses again.
 void begin_warm_start_energy(const JointSolve& solve, int begin, int end);
 void begin_energy_gain(const JointSolve& solve, int begin, int end);
-// After it: before bodies move, and as the sub-step ends.
+// They run after joints changed velocities: the first before bodies move, the second at the end of the sub-step.
 void limit_energy_gain(const JointSolve& solve, int begin, int end);
 void remove_energy_gain(const JointSolve& solve, int begin, int end);
 
-// As the step ends: where speeds were bounded before bodies moved, the next one does not begin with the impulses that gave them.
+// Runs at the end of the step. Where a gain was limited before bodies moved, the next step starts without the impulses that gave it.
 void forget_limited_impulses(const JointSolve& solve);
 
 }  // namespace gyre

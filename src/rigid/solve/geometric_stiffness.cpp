@@ -6,14 +6,14 @@ namespace gyre {
 
 namespace {
 
-// h^2 k / I up to which pull is left alone: kick and drift are stable up to 4, and what pulls grows in a step.
+// The value of h^2 k / I up to which inertia is not raised. Semi-implicit Euler is stable up to 4, but the pull grows within a step.
 constexpr float kMaxGeometricStiffness = 0.1f;
-// Of bodies whose turning other joints hold, too: less than anything adds up to.
+// Marks bodies whose rotation other joints hold, too. No sum of stiffnesses reaches zero from here.
 constexpr float kNeverStiffened = -1.0e30f;
 
-// How stiffly joints hold each body of the batch back as it turns, or drive it on (N m/rad), by its place. A force f at arm r turns with
-// the body like a spring of stiffness (r . f) 1 - sym(r f^T); of forces along their arms the sum of r . f is as much about every axis, or
-// more. Where arms are pressed together it is less than nothing, and what it drives grows as fast as a pull would swing.
+// Sums the stiffness (N m/rad) with which joints hold or drive the rotation of each body, by index in the batch. A force f at arm r acts on
+// the rotation like a spring of stiffness (r . f) 1 - sym(r f^T). For forces along their arms the sum of r . f is the stiffness about every
+// axis, or more. Compressed arms have a negative stiffness, whose motion grows as fast as that under tension swings.
 std::span<const float> add_up_pulls(const JointSolve& solve, Arena& arena) {
   const BodyStore& bodies = solve.w.bodies;
   const std::span<float> pulls = arena.make<float>(solve.batch.bodies.size());
@@ -35,7 +35,7 @@ std::span<const float> add_up_pulls(const JointSolve& solve, Arena& arena) {
       leave_out(joint.body_a), leave_out(joint.body_b);
       continue;
     }
-    // As it will be begun with: some batches have scaled it by now, and others scale it in their lanes.
+    // The impulse of the warm start: some batches have scaled it by now, others scale it in their lanes.
     const bool is_scaled = !(solve.all_iterative && solve.ball_lanes[i] != 0);
     const Vec3 impulse =
         is_scaled ? joint.linear_impulse : solve.lane_start.warm_scale * joint.linear_impulse;
@@ -52,7 +52,7 @@ std::span<const StiffenedBody> find_stiffened_bodies(const JointSolve& solve, Ar
   if (solve.lists.swept.empty()) return {};
   const BodyStore& bodies = solve.w.bodies;
   const std::span<const float> pulls = add_up_pulls(solve, arena);
-  // Of the axis about which the body turns most easily.
+  // h^2 k / I about the axis with the least inertia.
   const auto unresolved = [&](std::uint32_t place) {
     const Sym3& inverse = bodies.inertia[solve.batch.bodies[place]].inverse;
     return square(solve.settings.substep) * pulls[place] * max(inverse.xx, max(inverse.yy, inverse.zz));

@@ -1,10 +1,10 @@
-// Bodies that swept joints pull at more than a sub-step resolves: knots of loaded nets that are light for their arms.
+// Geometric stiffness: raises the inertia of bodies that iterative joints pull too hard for a sub-step, as knots of loaded nets are.
 //
-// Forces at their arms hold them back like springs as they turn; springs that a sub-step does not resolve, h^2 k > I, make them flutter
-// ever more, until the net is torn apart. So their inertia is raised towards h^2 k for the step, as if the turning of forces were
-// implicit (M. Tournier, M. Nesme, B. Gilles, F. Faure, "Stable Constrained Dynamics", 2015; S. Andrews, M. Teichmann, P. Kry, "Geometric
-// Stiffness for Real-Time Constrained Multibody Dynamics", 2017). What nothing pulls like that stays as it is, to the bit.
-// Linkages do the same with theirs (solver/articulation/articulation.cpp), axis by axis.
+// Forces at the arms of a rotating body act like springs. Springs with h^2 k > I, which a sub-step does not resolve, make the body flutter
+// ever more until the net tears. Inertia raised towards h^2 k for the step acts like an implicit rotation of the forces (M. Tournier, M.
+// Nesme, B. Gilles, F. Faure, "Stable Constrained Dynamics", 2015; S. Andrews, M. Teichmann, P. Kry, "Geometric Stiffness for Real-Time
+// Constrained Multibody Dynamics", 2017). Other bodies keep their bits. Articulations raise their inertia axis by axis
+// (solver/articulation/articulation.cpp).
 #pragma once
 
 #include "rigid/solve/joint_solve.h"
@@ -12,16 +12,15 @@
 
 namespace gyre {
 
-// Of the batch's swept ball joints, by the impulses that they begin with.
+// Finds the bodies from the first impulses of the batch's iterative ball joints.
 std::span<const StiffenedBody> find_stiffened_bodies(const JointSolve& solve, Arena& arena);
 
-// Of the bodies that will be moved these get no gyroscopic torque: joints take it back with an inertia that it knows nothing of, many times
-// over.
+// Disables the gyroscopic torque of stiffened bodies among `moved`. Joints would take it back many times over, with another inertia.
 void disable_gyroscopic_torque(const JointSolve& solve, std::span<MovedBody> moved, Arena& arena);
-// Raises their inertia, as they are turned now: before joints and contacts read it, and again whenever they have turned.
-// A stage of one block.
+// Raises the inertia at the present orientations. It runs before joints and contacts read the inertia, and after each rotation. A stage of
+// one block.
 void stiffen_bodies(const JointSolve& solve, int begin, int end);
-// Gives it back, after the last part of the step.
+// Restores the inertia after the last half-step.
 void restore_inertia(const JointSolve& solve);
 
 }  // namespace gyre

@@ -8,7 +8,7 @@ namespace gyre {
 
 namespace {
 
-// A contact is reported as a hit when it closes faster than this share of sqrt(9.81 m/s^2 * size).
+// A contact is reported as a hit if it closes faster than this share of sqrt(9.81 m/s^2 * size).
 constexpr float kHitShare = 0.3f;
 
 float hit_speed(const Contact& contact) { return kHitShare * std::sqrt(9.81f * contact.size); }

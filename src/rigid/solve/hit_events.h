@@ -1,5 +1,5 @@
-// Hits: contacts that are struck hard in a step. How fast their points close is looked at before the solve, whether they
-// met is known after it.
+// Finds hit events: contacts with a hard impact in a step. Approach speeds are recorded before the solve, which then decides whether the
+// points met.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -9,21 +9,20 @@
 
 namespace gyre {
 
-// A hit, before those of all batches are put into the order of their contacts.
+// A hit event with the slot of its contact, by which the events of all batches are sorted.
 struct SlotHit {
   std::uint32_t slot = 0;
   ContactHit hit;
 };
 
-// How fast points that bore nothing yet are closing as the step begins: should they meet in it, that is the hit. Returns whether
-// one of them is fast enough to be told.
+// Records the approach speeds of points without load as the step begins. True if one exceeds the hit speed.
 bool record_hit_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold);
-// Those contacts of a batch that were struck hard in this step.
+// Finds the hits among the contacts of a batch in this step.
 void find_hits(const RigidWorld& w, const ContactLists& contacts, Array<SlotHit>& hits, Arena& arena,
                TaskSystem& tasks);
-// A blow outside of the solve, whose points' approach was noted before it.
+// Reports an impact outside of the solve. The approach of its points was recorded before.
 void report_hit(RigidWorld& w, const Contact& contact, const Manifold& manifold, float impulse);
-// The events of all batches, in contact order.
+// Reports the hits of all batches in contact order.
 void report_hits(RigidWorld& w, std::span<SlotHit> hits, Arena& arena);
 
 }  // namespace gyre

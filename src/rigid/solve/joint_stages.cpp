@@ -14,7 +14,7 @@ void for_members(const JointGroup& g, int begin, int end, Fn&& fn) {
   for (std::uint32_t n = std::uint32_t(begin * kJointsPerBlock); n < last; ++n)
     fn(s.lists.swept[s.order[g.first + n]]);
 }
-// Calls fn(record, work, places) for them.
+// Calls fn(record, work, places) for the same joints.
 template <class Fn>
 void for_joints(const JointGroup& g, int begin, int end, Fn&& fn) {
   const JointSolve& s = *g.solve;
@@ -22,7 +22,7 @@ void for_joints(const JointGroup& g, int begin, int end, Fn&& fn) {
     fn(s.w.joints.records[s.batch.joints[i]], s.works.work[i], s.works.places[i]);
   });
 }
-// The blocks of a group whose joints are solved side by side.
+// The blocks of a group whose joints are solved in lanes.
 struct Balls {
   const BallKernels& kernels;
   void* blocks;
@@ -41,15 +41,14 @@ Balls balls_of(const JointGroup& g, int begin, int end) {
           g.ball_block + begin * kJointsPerBlock / width,
           g.ball_block + count_blocks(joints, width)};
 }
-// Records of joints are large, and lie in the order of their slots, not of colours: what is needed of them comes while others are
-// worked on.
+// Records of joints are large and ordered by slot, not by colour. They are fetched ahead, while others are in use.
 constexpr int kJointsAhead = 6;
 void fetch_ahead(const JointRecord& joint) {
   __builtin_prefetch(&joint);
   __builtin_prefetch(&joint.linear_impulse);
   __builtin_prefetch(&joint.total_linear);
 }
-// Calls fn(block, lane, slot) for the joints of such a group.
+// Calls fn(block, lane, slot) for the joints of a group in lanes.
 template <class Fn>
 void for_balls(const JointGroup& g, int begin, int end, Fn&& fn) {
   const JointSolve& s = *g.solve;
@@ -68,7 +67,7 @@ void for_balls(const JointGroup& g, int begin, int end, Fn&& fn) {
 void begin_ball_joints(const JointGroup& g, int begin, int end) {
   if (g.ball_block < 0) return;
   const Balls balls = balls_of(g, begin, end);
-  // Lanes without a joint join nothing.
+  // Lanes without a joint stay cleared and connect no bodies.
   if (int(g.count) % balls.kernels.width != 0) clear_balls(balls.kernels, balls.blocks, balls.end - 1);
   const JointSolve& s = *g.solve;
   const float warm_scale = s.all_iterative ? s.lane_start.warm_scale : 1.0f;

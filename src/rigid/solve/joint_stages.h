@@ -1,6 +1,6 @@
-// The stages of joints. Each works on blocks [begin, end) of what it names.
+// The stages of joints. Each works on blocks [begin, end) of its kind.
 //
-// In: joints, laid out (rigid/solve/joint_solve.h). Out: velocities of bodies; at the end impulses in the joints.
+// In: joints, laid out (rigid/solve/joint_solve.h). Out: velocities of bodies; at the end, impulses in the joints.
 #pragma once
 
 #include "rigid/solve/joint_solve.h"
@@ -10,22 +10,22 @@ namespace gyre {
 
 constexpr int kJointsPerBlock = 16;  // whole blocks of lanes at every width
 
-// Joints of one colour: where they are, soft rows, and no speed along rigid rows.
+// Prepares the joints of one colour: their present geometry, their soft rows, and rigid rows with zero target speed.
 void prepare_joints(const JointGroup& group, int begin, int end);
-// How joints turn within the sub-step.
+// Computes the bias from the rotation within the sub-step.
 void compute_second_order_bias(const JointGroup& group, int begin, int end);
 void warm_start_joints(const JointGroup& group, int begin, int end);
 void solve_joints(const JointGroup& group, int begin, int end);
-// Ball joints are prepared here, while they are in the cache: nothing that one colour gives changes where the next one stands, and no
-// articulation has their bodies. The others are by prepare_other_joints.
+// Also prepares ball joints while they are in the cache. This is safe: the impulses of a colour do not change the poses that the next one
+// reads, and no articulation has their bodies. prepare_other_joints prepares all others.
 void relax_joints(const JointGroup& group, int begin, int end);
 void prepare_other_joints(const JointGroup& group, int begin, int end);
-// Ball joints into their lanes, and what they gave back into the joints.
+// Copies ball joints into their lanes, and their impulses back to the joints.
 void begin_ball_joints(const JointGroup& group, int begin, int end);
 void finish_ball_joints(const JointGroup& group, int begin, int end);
 
-// Of all colours in one stage: for stages that write nothing but what is a joint's own. A slice is the same share of each colour, so that
-// workers keep to the bodies that they have in the colours' own stages.
+// Runs a stage for all colours at once, if it writes only data of its own joint. A slice is the same share of each colour, so that workers
+// keep to the bodies that they have in the stages of the colours.
 constexpr int kJointSlices = 32;
 template <void (*stage)(const JointGroup&, int, int)>
 void in_joint_slices(const JointSolve& s, int begin, int end) {
@@ -36,7 +36,7 @@ void in_joint_slices(const JointSolve& s, int begin, int end) {
   }
 }
 
-// Articulations [begin, end), each solved by itself (solver/articulation/articulation.h).
+// Runs a stage for scalar articulations [begin, end) (solver/articulation/articulation.h).
 template <void (*stage)(const Articulation&, const ArticulationSolve&)>
 void for_articulations(const JointSolve& s, int begin, int end, int worker) {
   ArticulationSolve own = s.articulation_solve;
@@ -44,7 +44,7 @@ void for_articulations(const JointSolve& s, int begin, int end, int worker) {
   for (int i = begin; i < end; ++i) stage(s.articulations.scalar[std::size_t(i)], own);
 }
 
-// Articulations that hang together alike, side by side (solver/articulation/linkage_lanes.h).
+// Runs kernels for bundles [begin, end) of grouped articulations (solver/articulation/articulation_lanes.h).
 template <BundleKernel... stages>
 void for_simd_articulations(const JointSolve& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {

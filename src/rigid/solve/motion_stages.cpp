@@ -4,14 +4,14 @@ namespace gyre {
 
 namespace {
 
-// Bodies [begin, end) of a list in blocks of `size`.
+// Returns the bodies of blocks [begin, end) of a list, with `size` in each block.
 template <class T>
 std::span<T> block_of(std::span<T> list, int begin, int end, int size) {
   const std::size_t first = std::size_t(begin) * std::size_t(size);
   return list.subspan(first, min(std::size_t(end) * std::size_t(size), list.size()) - first);
 }
 
-// Calls run(first, last, whether they are measured) for blocks [begin, end) of bodies.
+// Calls run(first, last, is_measured) for blocks [begin, end) of bodies.
 template <class Run>
 void part_measured(const BodyMotionSolve& s, int begin, int end, Run&& run) {
   const int middle = max(begin, min(end, s.measured_blocks));

@@ -11,22 +11,22 @@ namespace {
 
 constexpr int kRollersPerBlock = 32;
 
-// A contact whose bodies turn against each other by less than this in a step (rad) stays where it is.
+// Least relative rotation in a step (rad) for which the point is advanced.
 constexpr float kMinTurn = 1.0e-4f;
-// Half a sub-step's turn (rad) beyond which the change of the axis is not followed to the full.
+// Rotation in half a sub-step (rad) up to which the change of the rotation axis is fully computed.
 constexpr float kLargestTurn = 0.2f;
-// How far a contact may run round its rim in a step (rad) to be taken along once.
+// Largest path of a contact round its rim in a step (rad) for a single advance.
 constexpr float kMaxRound = 0.3f;
-// How far a contact may run in a sub-step, as a share of its arm, before it loses energy on its way.
+// Path of a contact in a sub-step, as a share of its arm, above which it loses energy.
 constexpr float kMaxRun = 0.02f;
-// A body that turns by more than this in a step (rad) takes the points of its contacts along whatever its shape.
+// Rotation in a step (rad) above which all contacts of a body are advanced, whatever its shape.
 constexpr float kFastSpin = 0.5f;
-// Not beside something kinematic that turns by more than this (rad).
+// Rotation (rad) of a kinematic neighbour above which a body does not count as fast-spinning.
 constexpr float kCarried = 0.05f;
 // Mean distance of the load from the middle of a ball's patch, as a share of the radius.
 constexpr float kBallPatch = 5.0e-3f;
-// A point belongs to the rim where it lies in the direction of the lowest one (cosine), as far out as the surface is (share of
-// the radius), and where the axis leans from the normal by more than this (sine): below it the lowest point is noise.
+// A point is on the rim if it lies in the direction of the lowest point (cosine) and at the radius of the surface (share of the radius),
+// and if the axis leans from the normal by more than kMinLean (sine). Below that the lowest point is noise.
 constexpr float kSameDirection = 0.9999f, kSameRadius = 0.01f, kMinLean = 1.0e-3f;
 
 bool is_flat(const Shape& shape) {
@@ -34,13 +34,13 @@ bool is_flat(const Shape& shape) {
          (shape.kind == ShapeKind::box && shape.radius == 0.0f);
 }
 
-// Radius of the surface at a height over the middle of the shape.
+// Returns the radius of the surface at a height above the middle of the shape.
 float radius_at(const Shape& shape, float height) {
   if (shape.kind == ShapeKind::cylinder) return shape.radius;
   return shape.radius * clamp(0.5f * (1.0f - height / shape.extents.y), 0.0f, 1.0f);
 }
 
-// The unit vector towards the other shape at a right angle to the axis, and the sine of the angle between the two.
+// The unit vector towards the other shape at a right angle to the axis, and the sine of the angle between axis and outward normal.
 struct Lowest {
   Vec3 direction;
   float lean;
@@ -86,7 +86,7 @@ RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Q
   return point;
 }
 
-// Whether it runs so far round a rim in a step that the middle of its way says little of the rest.
+// True if the point runs so far round a rim in a step that one advance to its middle is too coarse.
 bool runs_far(const RigidWorld& w, const ColliderShape& collider, const RollingSides& rolling, Vec3 outward,
               float seconds) {
   if (core_radius(collider.shape) > 0.0f) return false;
@@ -99,19 +99,19 @@ bool runs_far(const RigidWorld& w, const ColliderShape& collider, const RollingS
   return seconds * tilting > kMaxRound * Lowest(outward, axis).lean;
 }
 
-// Whether it matters where the contact goes.
+// True if motion of the contact point matters.
 bool rolls(const RigidWorld& w, const Shape& shape, const RollingSides& rolling, float seconds) {
   const Vec3 spin = w.bodies.motion[std::size_t(rolling.body)].angular_velocity;
   const Vec3 other_spin =
       rolling.other == kNoBody ? Vec3{} : w.bodies.motion[std::size_t(rolling.other)].angular_velocity;
   if (!(seconds * length(spin - other_spin) > kMinTurn)) return false;
   if (shape.kind != ShapeKind::sphere || rolling.center != Vec3{}) return true;
-  // Below a ball's centre it stays, and only what it rolls on can notice.
+  // Below a ball's centre the point is fixed for the ball, so only the other body can be affected.
   return rolling.other != kNoBody &&
          (other_spin != Vec3{} || w.bodies.inertia[std::size_t(rolling.other)].inverse_mass > 0.0f);
 }
 
-// Whether it bore load in the last step, or lies on already.
+// True if the contact carried load in the last step, or touches already.
 bool may_bear(const Manifold& manifold) {
   for (int k = 0; k < manifold.count; ++k) {
     if (manifold.points[k].normal_impulse > 0.0f || manifold.points[k].separation <= 0.0f) return true;
@@ -119,11 +119,11 @@ bool may_bear(const Manifold& manifold) {
   return false;
 }
 
-// Whether a contact is all that bears a body: it alone bore load in the last step, or none did and there is no other. What is
-// held from several sides does not run round its rim, and there may be thousands of those.
+// Tells if a contact alone carries a body: it is the only one with load in the last step, or the only one at all. A body held from several
+// sides does not roll on its rim, and there may be thousands.
 class Bearers {
  public:
-  // `pairs`: the places of the constraints' bodies in the batch, which has so many.
+  // `pairs`: indices of the constraints' bodies in the batch. `bodies`: the number of bodies in it.
   Bearers(std::span<const ContactConstraint> constraints, std::span<const ColoringPair> pairs,
           std::size_t bodies, Arena& arena)
       : counts_(arena.make<Count>(bodies)) {
@@ -145,13 +145,13 @@ class Bearers {
 
  private:
   struct Count {
-    std::uint8_t all = 0, loaded = 0;  // constraints, at most 2
+    std::uint8_t all = 0, loaded = 0;  // numbers of constraints, at most 2
   };
   std::span<Count> counts_;
 };
 
-// Which bodies of a batch whirl, by their places. Not those beside something kinematic that turns: it sweeps them along, and its surface
-// is not where it was.
+// Finds the fast-spinning bodies of a batch, by index. A body beside a rotating kinematic one is left out: that one carries it along, and
+// its surface moves.
 class FastSpinningContacts {
  public:
   FastSpinningContacts(const RigidWorld& w, const ContactLists& lists, std::span<const std::uint32_t> bodies,
@@ -187,7 +187,7 @@ class FastSpinningContacts {
   bool any_ = false;
 };
 
-// The one of the two bodies that takes the points along. Returns its shape.
+// Sets the body that moves the points, and returns its shape.
 const ColliderShape& set_sides(const RigidWorld& w, const Contact& contact,
                                const ContactConstraint& constraint, bool is_b, RollingSides& rolling) {
   rolling.body = is_b ? constraint.body_b : constraint.body_a;
@@ -198,7 +198,7 @@ const ColliderShape& set_sides(const RigidWorld& w, const Contact& contact,
   return collider;
 }
 
-// Of two that whirl the faster one, if it matters. What is round on a flat one that whirls rolls there, as on any other.
+// Chooses the faster of two fast-spinning bodies, if its motion matters. A round body on a flat fast-spinning one rolls as on any other.
 bool choose_fast_spinning(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
                           ColoringPair places, const FastSpinningContacts& is_fast_spinning, float seconds,
                           RollingSides& rolling) {
@@ -211,7 +211,7 @@ bool choose_fast_spinning(const RigidWorld& w, const Contact& contact, const Con
   return rolls(w, set_sides(w, contact, constraint, is_b, rolling).shape, rolling, seconds);
 }
 
-// Which of the two bodies rolls, if one does.
+// Chooses the body that rolls; false if none does.
 bool choose_rolling(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
                     ColoringPair places, const Bearers& bearers, float seconds, RollingSides& rolling) {
   const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
@@ -246,8 +246,8 @@ Quat turned_on(Quat q, Vec3 turn) {
   return normalized(Quat{0.5f * turn.x, 0.5f * turn.y, 0.5f * turn.z, 1.0f} * q);
 }
 
-// How much the angular velocity of a free body changes in a time, as its momentum stays: to the first order, and of turns that
-// are not too large for that.
+// The change of a free body's angular velocity in a time at constant angular momentum, to first order, for rotations that are not too large
+// for that.
 Vec3 free_change(const RigidWorld& w, std::size_t body, Quat orientation, float seconds) {
   const BodyMass& mass = w.bodies.masses[body];
   if (mass.isotropic != 0 || w.bodies.flags[body].locked_angular != 0 || mass.inverse_mass == 0.0f) return {};
@@ -257,7 +257,7 @@ Vec3 free_change(const RigidWorld& w, std::size_t body, Quat orientation, float 
   return rotate(orientation, (share * seconds) * (mass.inverse_inertia * cross(mass.inertia * spin, spin)));
 }
 
-// A contact's points at an orientation of the curved body.
+// The points of a contact at an orientation of the curved body.
 struct PointsPlace {
   const RollingContact& rolling;
   Quat orientation;
@@ -272,8 +272,8 @@ struct PointsPlace {
   }
 };
 
-// How far towards the middle of the sub-step impulses act. Where the contact runs far in a sub-step the leapfrog scheme would gain
-// energy at times; impulses that act where speeds are taken lose it.
+// The share of the path to the middle of the sub-step at which impulses act. The leapfrog scheme at times gains energy if the contact runs
+// far in a sub-step. Impulses at the place where speeds are taken lose energy.
 float share_of_run(Vec3 arm, Vec3 middle_arm) {
   const float run = 2.0f * length(middle_arm - arm), most = kMaxRun * length(arm);
   return run > most ? min(run / most - 1.0f, 1.0f) : 0.0f;
@@ -287,7 +287,7 @@ float contact_patch_spin_friction(const RigidWorld& w, const Contact& contact,
   const float a = core_radius(w.shapes.colliders[contact.shape_a].shape);
   const float b = core_radius(w.shapes.colliders[contact.shape_b].shape);
   if (a == 0.0f && b == 0.0f) return 0.0f;
-  // Two balls touch as one of the combined curvature does on a plane.
+  // Two balls touch like one ball of the combined curvature on a plane.
   const float radius = a == 0.0f ? b : b == 0.0f ? a : a * (b / (a + b));
   return constraint.dynamic_friction * kBallPatch * radius;
 }
@@ -357,7 +357,7 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const ContactLists& lists,
   return all;
 }
 
-// All that is asked of the manifold stands in the contact by now: manifolds lie far apart.
+// Reads no manifold, because manifolds are far apart in memory. The rolling contact holds all data by now.
 void advance_contact_point(const RigidWorld& w, RollingContact& rolling, float ahead) {
   const std::size_t body = std::size_t(rolling.body);
   const BodyMotion still;
@@ -381,7 +381,7 @@ void advance_contact_point(const RigidWorld& w, RollingContact& rolling, float a
     const float share = rolling.once ? 1.0f : share_of_run(arm, middle_arm);
     put(arms.now, k, arm + share * (middle_arm - arm), offset + share * (middle_offset - offset));
     put(arms.middle, k, middle_arm, middle_offset);
-    // Surfaces come nearer by what the arm grows outward; what turning the body makes of it is taken off again.
+    // The surfaces approach by the outward growth of the arm, less the part that is due to the rotation of the body.
     arms.separation[k] = point.first_separation - dot(arm - point.first_arm, rolling.outward) +
                          dot(cross(motion.delta_rotation, middle_arm), rolling.outward);
   }

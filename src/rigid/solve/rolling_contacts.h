@@ -1,22 +1,22 @@
-// Where the points of contacts that roll are within a step.
+// Moves the points of rolling contacts within a step.
 //
-// Manifolds are found once a step. Until the next one a ball's point of contact stays below its centre, that of a disc runs
-// round its rim, and the point on what they roll on goes with it: neither stays where it was, nor goes with the material. To
-// leave them behind is an error of the first order in the step, which tilts a coin that rolls in a circle and slows or speeds
-// what rolls on something that turns.
+// Manifolds are found once a step. Until the next one the contact point of a ball stays below its centre, that of a disc runs round its
+// rim, and the point on the other shape goes with it: neither stays where it was, nor moves with the material. Fixed points are an error of
+// first order in the step, which tilts a coin that rolls in a circle, and changes the speed of a body that rolls on a rotating one.
 //
 // A point of a curved shape is, from its body's centre of mass,
 //   r = R core + reach u + rest
-// with R core fixed in the body (a ball's centre, a point of a capsule's segment or of a cylinder's axis), and u the unit vector
-// towards the other shape: the normal, or for cylinders and cones the part of it at a right angle to their axis. All of it is
-// exact on a plane, however far the body turns. Speeds are taken in the middle of a sub-step, separations at its beginning.
+// R core is fixed in the body (a ball's centre, a point of a capsule's segment or of a cylinder's axis), and u is the unit vector towards
+// the other shape: the normal, or for cylinders and cones its component at a right angle to their axis. This is exact on a plane for any
+// rotation. Speeds are taken in the middle of a sub-step, separations at its beginning.
 //
-// What one contact bears alone is followed in each part of a step: there every share of its energy counts, for a coin rolls on for
-// minutes. What is held from several sides, and there may be thousands of those, is taken along once, to where its contact is in
-// the middle of the step: of the second order too, at an eighth of the cost. To leave these where they were keeps heaps awake.
-// What whirls, by a good part of a turn in a step, is followed in each part whatever its shape: a corner goes with the body, and the inertia
-// that it meets is that of by then. Where the step began, both were another body's, and what stopped it there could speed it up.
-// Source of the idea: the rolling equations of D. Montana, "The kinematics of contact and grasp", 1988.
+// A contact that carries a body alone is advanced in each half-step, where every share of its energy counts: a coin rolls on for minutes. A
+// body held from several sides has its contacts advanced once, to the middle of the step. This is of second order, too, at an eighth of the
+// cost, for there may be thousands. Fixed points would keep heaps awake.
+//
+// A fast-spinning body, which rotates by a large angle in a step, has its contacts advanced in each half-step whatever its shape: a corner
+// moves with the body, and meets the inertia of that moment. With arms and inertia from the start of the step, an impulse that should stop
+// the point could speed it up. Source of the idea: the rolling equations of D. Montana, "The kinematics of contact and grasp", 1988.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -27,36 +27,35 @@
 namespace gyre {
 
 struct RollingPoint {
-  Vec3 first_arm;                 // m, as the step began: of the curved body,
-  float first_separation = 0.0f;  // and how far the point was from the other one
+  Vec3 first_arm;                 // m, of the curved body as the step began
+  float first_separation = 0.0f;  // separation of the point then
   Vec3 core;                      // m, body frame
   float reach = 0.0f;
-  Vec3 rest;  // m, world axes: half the gap, and rounding
+  Vec3 rest;  // m, world axes: half the separation, and rounding
   bool on_rim = false;
 };
 
-// Who rolls on whom in a contact of a curved shape with a flat one, or whirls beside what.
+// The bodies of a contact of a curved shape with a flat one, or of a fast-spinning body.
 struct RollingSides {
   std::uint32_t constraint = 0;
-  std::int32_t body = kNoBody;  // that is curved, or whirls
+  std::int32_t body = kNoBody;  // the curved or fast-spinning one
   std::int32_t other = kNoBody;
   float side = 1.0f;  // 1 if it is the constraint's b, else -1
-  bool once = false;  // held from several sides: it stays where it is in the middle of the step
-  Vec3 center;        // of the shape from the body's centre of mass, body frame
+  bool once = false;  // held from several sides: the point is set once, to the middle of the step
+  Vec3 center;        // shape's centre from the body's centre of mass, body frame
 };
 struct RollingContact : RollingSides {
-  Vec3 axis;     // body frame, unit: of symmetry
+  Vec3 axis;     // body frame, unit: axis of symmetry
   Vec3 outward;  // world axes: the normal, out of the curved shape
   Vec3 offset;   // m, from the other body's centre of mass to the curved one's, as the step began
   RollingPoint points[kMaxManifoldPoints];
-  int count = 0;        // of them
-  bool on_rim = false;  // some of them
-  AdvancedArms arms;    // as last followed
-  Vec3
-      drift;  // rad/s: what free rotation adds to the body's angular velocity until the middle of the sub-step
+  int count = 0;        // of points
+  bool on_rim = false;  // any point on the rim
+  AdvancedArms arms;    // at the last advance
+  Vec3 drift;  // rad/s: change of the angular velocity by free rotation until the middle of the sub-step
 };
 
-// Whose the constraint's two sides are.
+// The bodies of the constraint's two sides.
 inline std::int32_t body_a_of(const RollingSides& rolling) {
   return rolling.side > 0.0f ? rolling.other : rolling.body;
 }
@@ -66,28 +65,27 @@ inline std::int32_t body_b_of(const RollingSides& rolling) {
 
 struct RollingContacts {
   std::span<RollingContact> contacts;
-  std::span<std::uint32_t> of_constraint;  // its place among them; kNotRolling
+  std::span<std::uint32_t> of_constraint;  // index in `contacts`, or kNotRolling
 };
 constexpr std::uint32_t kNotRolling = 0xffffffffu;
 
-// What a ball's patch of contact adds to the spinning friction (m), as a ball's load is never borne by a point: otherwise it
-// would spin for ever, and friction against sliding would not know that the ball spins (a tippe top would not turn over).
-// 0 where more than one point or no ball touches. After P. Contensou, "Couplage entre frottement de glissement et frottement
-// de pivotement dans la theorie de la toupie", 1963.
+// The lever arm (m) that a ball's contact patch adds to spinning friction, because no point carries a ball's load. Without it a ball would
+// spin for ever, and sliding friction would not know its spin (a tippe top would not turn over). 0 if several points or no ball touch.
+// After P. Contensou, "Couplage entre frottement de glissement et frottement de pivotement dans la theorie de la toupie", 1963.
 float contact_patch_spin_friction(const RigidWorld& w, const Contact& contact,
                                   const ContactConstraint& constraint);
 
-// Whether one of the two shapes is round and the other flat, and what holds them apart is looked at anew: of what is flat all
-// through no contact is, and nothing more is asked. `constraint` has its bodies and its manifold.
+// True if one of the two shapes is round and the other flat, the contact may carry load, and its manifold is not recycled. Contacts of two
+// flat shapes cost no more than that test. `constraint` has its bodies and its manifold.
 bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint);
 
-// Those among the constraints of the batch, which has these bodies, that may roll and whose bodies turn against each other, and all of what
-// whirls. Marks these bodies as ones whose place others look at.
+// Finds the rolling contacts of the batch whose bodies rotate against each other, and all contacts of its fast-spinning bodies. `bodies`:
+// those of the batch. Marks the bodies as read in each sub-step.
 RollingContacts find_rolling_contacts(RigidWorld& w, const ContactLists& lists,
                                       std::span<const std::uint32_t> bodies, float seconds, Arena& arena,
                                       TaskSystem& tasks);
 
-// Into its arms: where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
+// Advances rolling.arms to a sub-step that begins now; its middle is `ahead` seconds away.
 void advance_contact_point(const RigidWorld& w, RollingContact& rolling, float ahead);
 
 }  // namespace gyre

@@ -1,7 +1,7 @@
-// Parts the constraints of a batch into islands for the solvers that see an island's rows as one problem (solver/rows/row.h).
+// Divides the constraints of a batch into islands for the solvers that treat an island's rows as one problem (solver/rows/row.h).
 //
-// In: a batch, its constraints and joints as gathered. Out: islands in the order of their lowest body; the bodies of each
-// ascending, its joints and contacts in the order of their slots. Who works on an island, and when, changes no bit of it.
+// In: a batch with its gathered constraints and joints. Out: islands in the order of their lowest body. Bodies ascend; joints and contacts
+// are in the order of their slots. No bit depends on which worker solves an island, or when.
 #pragma once
 
 #include "math/block_ldlt.h"
@@ -12,19 +12,19 @@
 namespace gyre {
 
 struct RowIsland {
-  std::span<const std::uint32_t> bodies;       // slots of those that rows move
-  std::span<const std::uint32_t> constraints;  // indices of the batch's
+  std::span<const std::uint32_t> bodies;       // slots of bodies that rows move
+  std::span<const std::uint32_t> constraints;  // indices in the batch
   std::span<const std::uint32_t> joints;       // indices in the batch's list
-  DirectSize size;                             // of its rows, at most
-  BlockPlan plan;                              // of its bodies, a node for each; empty if not planned
+  DirectSize size;                             // upper bounds for its rows
+  BlockPlan plan;                              // a node for each body; empty if not planned
 };
 
 struct RowIslands {
   std::span<RowIsland> islands;
-  std::span<const std::int32_t> place;  // by body: in its island's list; kNoRowBody if no row moves it
+  std::span<const std::int32_t> place;  // by body: index in its island; kNoRowBody if no row moves it
 };
 
-// The pattern of an island's bodies, for Newton's method: planned where a factorisation takes at most `max_work` multiplications.
+// Plans the elimination of each island's bodies for Newton's method, if a factorisation takes at most `max_work` multiplications.
 void plan_row_islands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
                       const SolveBatch& batch, std::uint64_t max_work, Arena& arena, RowIslands& islands);
 

@@ -9,20 +9,20 @@ namespace gyre {
 
 namespace {
 
-// Sides of the polygon by which pivoting leads to Coulomb's disc.
+// Sides of the polygon from which pivoting approaches Coulomb's disc.
 constexpr int kLeadingSides = 8;
-// Impulses are found to this share of the largest that stops a row alone, and to this many N s where that is less.
+// Accuracy of impulses: this share of the largest that stops a row alone, or this many N s if that is less.
 constexpr double kDirectShare = 1.0e-7, kDirectImpulse = 1.0e-7, kRoundedImpulse = 1.0e-11;
-constexpr double kAccepted = 5.0;  // what Newton's method may leave of these where it gets no further
+constexpr double kAccepted = 5.0;  // errors, in these units, that Newton's method may leave at last
 constexpr double kNncgShare = 1.0e-5;
-// Newton's steps from where the impulses stand, and from where so many sweeps lead where that does not end; rows up to
-// which the longer ones are tried, and up to which pivoting is tried where that does not end either.
+// Steps of Newton's method, and the numbers of iterations after which it is tried again if it does not end. The last two are the largest
+// numbers of rows for the longer tries and for pivoting after them.
 constexpr int kNewtonSteps = 30, kLeadingSweeps[] = {0, 64, 256, 1024}, kMaxLedFar = 1500,
               kMaxPivotRows = 100;
-// Multiplications of a factorisation above which an island is left to NNCG: about a tenth of a second.
+// Multiplications of a factorisation above which NNCG solves the island: about a tenth of a second.
 constexpr std::uint64_t kMaxFactorWork = 100'000'000;
 
-// The rows of a sub-step of one island, and who they came from.
+// The rows of one island in a sub-step, and their sources.
 struct IslandRows {
   const RowIsland& island;
   RowWorkerRoom& room;
@@ -86,7 +86,7 @@ double direct_tolerance(double scale) {
   return max(kRoundedImpulse * scale, min(kDirectImpulse, kDirectShare * scale));
 }
 
-// False if it left more than it should; the rows' impulses are then the best that it found.
+// False if the error is too large. Then the rows hold the best impulses found.
 bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRoom room, DirectMethod method,
                            double scale, RowStats& report) {
   const std::span<Row> rows = island.rows();
@@ -110,7 +110,7 @@ bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRo
   return true;
 }
 
-// Newton's method; false if it does not end. The rows' impulses are then the best that it found.
+// Runs Newton's method; false if it does not end. Then the rows hold the best impulses found.
 bool solve_island_by_newton(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
                             RowStats& report) {
   const std::span<Row> rows = island.rows();
@@ -127,7 +127,7 @@ bool solve_island_by_newton(const RowSolve& s, const IslandRows& island, NumberR
   return true;
 }
 
-// Newton's method from where the impulses stand; where it does not end, from where some sweeps lead.
+// Runs Newton's method from the present impulses; if it does not end, again after some iterations.
 bool solve_island_by_all_means(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
                                RowStats& report) {
   const std::span<Row> rows = island.rows();
@@ -226,7 +226,7 @@ void solve_islands(const RowSolve& s, bool first, int begin, int end, int worker
   }
 }
 
-// Room for the largest island, for each worker: whoever comes to it.
+// Each worker gets memory for the largest island, because any worker may solve it.
 void make_rooms(RowSolve& s, Arena& arena, std::size_t workers) {
   std::size_t rows = 0, bodies = 0, owners = 0, numbers = 0;
   for (const RowIsland& island : s.islands.islands) {
@@ -237,7 +237,7 @@ void make_rooms(RowSolve& s, Arena& arena, std::size_t workers) {
     std::size_t own = nncg_room(n);
     if (s.settings.kind == SolverKind::lcp && s.settings.options.lcp_method != LcpMethod::nncg) {
       if (!island.plan.columns.empty()) own = max(own, n + body_newton_room(n, island.plan));
-      // Fewer rows than were counted may come within what pivoting takes.
+      // The final number of rows may be below the count, and then small enough for pivoting.
       const LcpMethod method = s.settings.options.lcp_method;
       int most = s.settings.options.direct_rows;
       if (!pivots(method)) most = method == LcpMethod::automatic ? min(most, kMaxPivotRows) : 0;
@@ -295,7 +295,7 @@ void push_row_islands_apart(const RowSolve& s, int begin, int end, int worker) {
     for (const std::uint32_t j : island.island.joints)
       add_joint_equations(joints.w.joints.records[joints.batch.joints[j]], joints.works.work[j], island.frame,
                           island.list);
-    RowStats unheard;  // of displacements, not impulses
+    RowStats unheard;  // statistics of displacements are dropped
     solve_island(s, island, unheard);
     store_velocities(s, island);
   }

@@ -1,8 +1,8 @@
-// The stages of the solvers that see constraints as rows (solver/rows/row.h): sequential impulses, and the complementarity problem of
-// each island. Bodies, forces, fields, bounces and moves are those of the default solver; between forces and moves each island is solved by
-// one worker: rows, solve, velocities. When the step is over overlap is pushed apart in displacements, by the same solver.
+// The stages of the solvers that treat constraints as rows (solver/rows/row.h): sequential impulses, and the complementarity problem of
+// each island. Bodies, forces, fields, restitution and positions use the stages of the default solver. Between forces and positions one
+// worker builds, solves and applies the rows of an island. At the end of the step the same solver removes penetration by displacements.
 //
-// In: contacts and joints of a batch, gathered and begun. Out: velocities of bodies, impulses in manifolds and joints.
+// In: gathered and begun contacts and joints of a batch. Out: velocities of bodies, impulses in manifolds and joints.
 #pragma once
 
 #include "rigid/solve/contact_solve.h"
@@ -15,12 +15,12 @@
 
 namespace gyre {
 
-// The settings of the world's solver; null: the default one.
+// The settings of the world's row solver; null if the world uses the default solver.
 inline const SolverSettings* row_solver_of(const RigidWorld& w) {
   return w.solver.empty() ? nullptr : &w.solver[0];
 }
 
-// What one worker needs for the island that it is at.
+// The memory of one worker for the island that it solves.
 struct RowWorkerRoom {
   std::span<Row> rows;
   std::span<float*> kept;
@@ -44,14 +44,14 @@ struct RowSolve {
 RowSolve begin_row_solve(const ContactSolve& contacts, const JointSolve& joints,
                          const SolverSettings& settings, std::size_t workers, Arena& arena);
 
-// Stages, whose blocks are islands. In the first half-step impulses are those of the last step, scaled.
+// Stages; each block is an island. The first half-step starts from the scaled impulses of the last step.
 void solve_row_islands_first(const RowSolve& s, int begin, int end, int worker);
 void solve_row_islands(const RowSolve& s, int begin, int end, int worker);
 void prepare_row_joints(const RowSolve& s, int begin, int end);
 void sum_row_joints(const RowSolve& s, int begin, int end);
 void push_row_islands_apart(const RowSolve& s, int begin, int end, int worker);
 
-// Ages of contacts; adds what the islands had to say to the report.
+// Updates the load ages of contacts, and adds the statistics of the islands to the report.
 void finish_row_solve(const RowSolve& s, RowStats& report);
 
 }  // namespace gyre

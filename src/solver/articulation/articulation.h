@@ -6,7 +6,7 @@
 // to the root. Springs, motors and limits are solved after the equations, along their responses
 // (solver/articulation/articulation_drives.h, articulation_limits.h). Pose drives are iterated before. Rows
 // are those of solver/joint/joint.h, softness excepted. docs/derive/joints.md has the equations,
-// docs/decisions/joint-trees.md the figures.
+// docs/decisions/articulations.md the figures.
 //
 // Sources: D. Baraff, "Linear-Time Dynamics using Lagrange Multipliers", SIGGRAPH 1996; R. Featherstone,
 // "Rigid Body Dynamics Algorithms", 2008, chapter 8.

@@ -1,5 +1,5 @@
 // Drives, motors and dry friction of a bundle of articulations (solver/articulation/articulation_lanes.h), as
-// solver/joint/joint_drive.h for a single joint, and for hinges as solver/joint/joint_axis.h. They are
+// solver/joint/pose_drive.h for a single joint, and for hinges as solver/joint/joint_axis.h. They are
 // iterated joint by joint before the equations.
 #pragma once
 

@@ -4,7 +4,7 @@
 // thousands of times with more bias. So the energy added in a sub-step, beyond forces and contacts, is
 // removed at its end, and gain beyond the existing energy at once, by scaling all inner motion. Velocities
 // between two that satisfy the rows satisfy them too, and a free articulation keeps its momentum and angular
-// momentum. docs/decisions/joint-trees.md has the figures.
+// momentum. docs/decisions/articulations.md has the figures.
 #pragma once
 
 #include "solver/articulation/articulation_block.h"

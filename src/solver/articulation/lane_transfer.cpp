@@ -1,6 +1,6 @@
 #include "solver/articulation/lane_transfer.h"
 
-#include "solver/joint/joint_drive.h"
+#include "solver/joint/pose_drive.h"
 
 #include <cstring>
 

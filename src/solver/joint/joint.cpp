@@ -1,7 +1,7 @@
 #include "solver/joint/joint.h"
 
 #include "solver/joint/joint_blocks.h"
-#include "solver/joint/joint_drive.h"
+#include "solver/joint/pose_drive.h"
 #include "solver/joint/joint_kinds.h"
 
 namespace gyre {

@@ -1,7 +1,7 @@
 // Direct solution of stacks at rest.
 //
 // Iteration over contacts cannot carry a tall tower: after a few iterations its joints are as stiff as a soft
-// spring, and a slender column of soft springs buckles (docs/decisions/contact-trees.md has the figures). But
+// spring, and a slender column of soft springs buckles (docs/decisions/resting-trees.md has the figures). But
 // where the contacts of an island form a tree rooted at the static world, it is statically determinate: at
 // rest, the impulse in each contact is the one that stops everything beyond it. So momenta are summed from
 // the leaves to the root, and every contact is tested for this wrench (centre of pressure inside the patch,

@@ -1,7 +1,7 @@
 // Rows of joints; rows of contacts are in contact_rows.cpp.
 #include "solver/rows/constraint_rows.h"
 #include "solver/rows/constraint_rows_common.h"
-#include "solver/joint/joint_drive.h"
+#include "solver/joint/pose_drive.h"
 #include "solver/joint/joint_equations.h"
 
 namespace gyre {

@@ -1,4 +1,4 @@
-#include "solver/joint/joint_drive.h"
+#include "solver/joint/pose_drive.h"
 
 #include "solver/joint/joint_blocks.h"
 
