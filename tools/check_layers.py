@@ -78,6 +78,12 @@ ROOMS = {
         "continuous": ["", "articulation"],
         "time": ["solve"],
     },
+    "soft": {
+        "body": [],
+        "elements": ["body"],
+        "kernels": ["body"],
+        "solver": ["elements", "kernels"],
+    },
     "io": {
         "codec": [],
         "snapshot": ["codec"],

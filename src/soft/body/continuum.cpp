@@ -1,0 +1,196 @@
+#include "soft/body/continuum.h"
+
+#include "math/dense.h"
+
+#include <utility>
+
+namespace gyre {
+
+namespace {
+
+constexpr int kPair[kTetEdges][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+void sort_corners(std::uint32_t (&corner)[4]) {
+  for (int i = 1; i < 4; ++i) {
+    for (int j = i; j > 0 && corner[j - 1] > corner[j]; --j) std::swap(corner[j - 1], corner[j]);
+  }
+}
+
+std::uint32_t find_edge(const NeighbourLists& lists, std::uint32_t low, std::uint32_t high) {
+  std::uint32_t begin = lists.begin[low], end = lists.begin[low + 1];
+  while (end - begin > 1) {
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    (lists.other[middle] <= high ? begin : end) = middle;
+  }
+  return begin;
+}
+
+// Numbers the edges: those of the lower particles first. `number` becomes that of each neighbour, in the order of the lists.
+int number_edges(const NeighbourLists& lists, Array<std::int32_t>& number) {
+  number.resize(lists.other.size());
+  int edges = 0;
+  for (int row = 0; row < lists.rows(); ++row) {
+    for (std::uint32_t k = lists.begin[row]; k < lists.begin[row + 1]; ++k) {
+      if (lists.other[k] > std::uint32_t(row)) number[k] = edges++;
+    }
+  }
+  for (int row = 0; row < lists.rows(); ++row) {
+    for (std::uint32_t k = lists.begin[row]; k < lists.begin[row + 1]; ++k) {
+      if (lists.other[k] < std::uint32_t(row))
+        number[k] = number[find_edge(lists, lists.other[k], std::uint32_t(row))];
+    }
+  }
+  return edges;
+}
+
+void set_shape(TetBlock& block, int lane, const std::uint32_t (&corner)[4], std::span<const DVec3> places) {
+  double matrix[9], inverse[9];
+  for (int c = 0; c < 3; ++c) {
+    const DVec3 edge = places[corner[c + 1]] - places[corner[0]];
+    matrix[3 * c] = edge.x, matrix[3 * c + 1] = edge.y, matrix[3 * c + 2] = edge.z;
+  }
+  const DVec3 a{matrix[0], matrix[1], matrix[2]}, b{matrix[3], matrix[4], matrix[5]},
+      d{matrix[6], matrix[7], matrix[8]};
+  if (!invert_3x3(matrix, inverse)) return;
+  block.volume[lane] = float(absolute(dot(a, cross(b, d))) / 6.0);
+  for (int k = 0; k < 9; ++k) block.inverse[k][lane] = float(inverse[k]);
+}
+
+// The lowest colour that no chunk with a common particle has, chunk by chunk.
+template <class Block>
+ColoredChunks color_chunks(const Array<Block>& blocks, int particles) {
+  const int count = int(blocks.size()), chunks = (count + kChunkBlocks - 1) / kChunkBlocks;
+  Array<std::uint64_t> taken;  // colours of the chunks at a particle
+  taken.resize(std::size_t(particles));
+  Array<std::int32_t> color;
+  color.resize(std::size_t(chunks));
+  int colors = 0;
+  const auto each_corner = [&](int chunk, auto&& what) {
+    for (int block = chunk * kChunkBlocks; block < min((chunk + 1) * kChunkBlocks, count); ++block) {
+      for (const auto& corner : blocks[block].corner) {
+        for (const std::int32_t particle : corner) what(taken[particle]);
+      }
+    }
+  };
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    std::uint64_t near = 0;
+    each_corner(chunk, [&](std::uint64_t here) { near |= here; });
+    int own = 0;
+    while (own < kLastChunkColor && (near >> own & 1u) != 0) ++own;
+    color[chunk] = own;
+    each_corner(chunk, [&](std::uint64_t& here) { here |= std::uint64_t{1} << own; });
+    colors = max(colors, own + 1);
+  }
+  ColoredChunks out;
+  for (int one = 0; one < colors; ++one) {
+    out.begin.push_back(std::int32_t(out.chunks.size()));
+    for (int chunk = 0; chunk < chunks; ++chunk) {
+      if (color[chunk] == one) out.chunks.push_back(chunk);
+    }
+  }
+  out.begin.push_back(std::int32_t(out.chunks.size()));
+  return out;
+}
+
+// The pattern of elements of `size` corners each.
+struct Pattern {
+  NeighbourLists lists;
+  Array<std::int32_t> number;  // of the edge to each neighbour
+
+  std::int32_t edge(std::uint32_t low, std::uint32_t high) const {
+    return number[find_edge(lists, low, high)];
+  }
+};
+
+Pattern make_pattern(std::span<const std::uint32_t> corners, std::size_t size, int particles,
+                     Continuum& continuum) {
+  Array<MatrixEntry> entries;
+  for (std::size_t first = 0; first < corners.size(); first += size) {
+    for (std::size_t a = 0; a < size; ++a) {
+      for (std::size_t b = 0; b < size; ++b) entries.push_back({corners[first + a], corners[first + b], 0.0});
+    }
+  }
+  merge_entries(entries);
+  Pattern pattern;
+  pattern.lists = list_neighbours(entries, particles);
+  continuum.edges = number_edges(pattern.lists, pattern.number);
+  Array<std::int32_t> place;
+  continuum.rows = slice_rows(pattern.lists, place);
+  continuum.edge_of_place.assign(continuum.rows.places(), -1);
+  for (int row = 0; row < particles; ++row) {
+    for (std::uint32_t k = pattern.lists.begin[row]; k < pattern.lists.begin[row + 1]; ++k) {
+      const int side = pattern.lists.other[k] < std::uint32_t(row) ? 1 : 0;
+      continuum.edge_of_place[place[k]] = 2 * pattern.number[k] + side;
+    }
+  }
+  return pattern;
+}
+
+// Empty lanes, whose corners are the particle that the block's first lane names.
+template <class Block>
+void fill_up(Array<Block>& blocks, std::size_t elements, int edges) {
+  for (std::size_t t = elements; t < blocks.size() * kTetLanes; ++t) {
+    Block& block = blocks[t / kTetLanes];
+    for (auto& corner : block.corner) corner[t % kTetLanes] = block.corner[0][0];
+    for (auto& edge : block.edge) edge[t % kTetLanes] = edges;  // a block that nobody reads
+  }
+}
+
+}  // namespace
+
+Continuum make_continuum(std::span<const std::uint32_t> corners, std::span<const DVec3> places) {
+  Continuum continuum;
+  const Pattern pattern = make_pattern(corners, 4, int(places.size()), continuum);
+  const std::size_t count = corners.size() / 4;
+  continuum.tetrahedra.resize((count + kTetLanes - 1) / kTetLanes);
+  for (std::size_t t = 0; t < count; ++t) {
+    std::uint32_t corner[4];
+    for (std::size_t a = 0; a < 4; ++a) corner[a] = corners[4 * t + a];
+    sort_corners(corner);
+    TetBlock& block = continuum.tetrahedra[t / kTetLanes];
+    const int lane = int(t % kTetLanes);
+    for (int a = 0; a < 4; ++a) block.corner[a][lane] = std::int32_t(corner[a]);
+    for (int e = 0; e < kTetEdges; ++e)
+      block.edge[e][lane] = pattern.edge(corner[kPair[e][0]], corner[kPair[e][1]]);
+    set_shape(block, lane, corner, places);
+  }
+  fill_up(continuum.tetrahedra, count, continuum.edges);
+  continuum.tetrahedron_chunks = color_chunks(continuum.tetrahedra, int(places.size()));
+  return continuum;
+}
+
+Continuum make_membrane(std::span<const SheetTriangle> triangles, int particles) {
+  Continuum continuum;
+  Array<std::uint32_t> corners;
+  for (const SheetTriangle& one : triangles) corners.append(one.corner);
+  const Pattern pattern = make_pattern(corners, 3, particles, continuum);
+  continuum.triangles.resize((triangles.size() + kTetLanes - 1) / kTetLanes);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    int order[3] = {0, 1, 2};  // by particle, ascending
+    const SheetTriangle& one = triangles[t];
+    for (int i = 1; i < 3; ++i) {
+      for (int j = i; j > 0 && one.corner[order[j - 1]] > one.corner[order[j]]; --j)
+        std::swap(order[j - 1], order[j]);
+    }
+    TriangleBlock& block = continuum.triangles[t / kTetLanes];
+    const int lane = int(t % kTetLanes);
+    double side[2][2];
+    for (int k = 0; k < 2; ++k) {
+      for (int c = 0; c < 2; ++c) side[k][c] = one.place[order[k + 1]][c] - one.place[order[0]][c];
+    }
+    const double twice = side[0][0] * side[1][1] - side[0][1] * side[1][0];
+    for (int a = 0; a < 3; ++a) block.corner[a][lane] = std::int32_t(one.corner[order[a]]);
+    block.edge[0][lane] = pattern.edge(one.corner[order[0]], one.corner[order[1]]);
+    block.edge[1][lane] = pattern.edge(one.corner[order[0]], one.corner[order[2]]);
+    block.edge[2][lane] = pattern.edge(one.corner[order[1]], one.corner[order[2]]);
+    block.area[lane] = float(0.5 * absolute(twice));
+    const double inverse[4] = {side[1][1] / twice, -side[0][1] / twice, -side[1][0] / twice,
+                               side[0][0] / twice};
+    for (int k = 0; k < 4; ++k) block.inverse[k][lane] = float(inverse[k]);
+  }
+  fill_up(continuum.triangles, triangles.size(), continuum.edges);
+  continuum.triangle_chunks = color_chunks(continuum.triangles, particles);
+  return continuum;
+}
+
+}  // namespace gyre

@@ -1,0 +1,76 @@
+#include "soft/body/soft_body.h"
+
+namespace gyre {
+
+void Particles::resize(int particles) {
+  count = particles;
+  const std::size_t rows = std::size_t(padded_rows(particles));
+  for (Array<double>* const column : {&x, &y, &z}) column->resize(rows);
+  for (Array<float>* const column : {&vx, &vy, &vz, &fx, &fy, &fz, &mass, &loose}) column->resize(rows);
+  for (int i = 0; i < particles; ++i) loose[i] = 1.0f;
+}
+
+void add_quadratic(Array<MatrixEntry>& entries, std::span<const std::uint32_t> particles,
+                   std::span<const double> signs, double weight) {
+  for (std::size_t a = 0; a < particles.size(); ++a) {
+    for (std::size_t b = 0; b < particles.size(); ++b) {
+      entries.push_back({particles[a], particles[b], weight * signs[a] * signs[b]});
+    }
+  }
+}
+
+void set_springs(SoftBody& body, std::span<const Spring> springs) {
+  // Springs of the same two particles act as one with the sum of their stiffness and the mean of their lengths, weighted by it.
+  Array<MatrixEntry> stiffness, tension;
+  for (const Spring& spring : springs) {
+    const double k = double(spring.stiffness), pull = k * double(spring.rest_length);
+    stiffness.push_back({spring.a, spring.b, k});
+    stiffness.push_back({spring.b, spring.a, k});
+    tension.push_back({spring.a, spring.b, pull});
+    tension.push_back({spring.b, spring.a, pull});
+  }
+  merge_entries(stiffness);
+  merge_entries(tension);
+  Array<std::int32_t> place;
+  SpringRows& rows = body.springs;
+  rows.rows = slice_rows(list_neighbours(stiffness, body.particles.count), place);
+  rows.rest_length.assign(rows.rows.places(), 0.0f);
+  rows.stiffness.assign(rows.rows.places(), 0.0f);
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    rows.stiffness[place[k]] = float(stiffness[k].value);
+    rows.rest_length[place[k]] =
+        stiffness[k].value > 0.0 ? float(tension[k].value / stiffness[k].value) : 0.0f;
+  }
+}
+
+void set_bending(SoftBody& body, Array<MatrixEntry>& entries) {
+  merge_entries(entries);
+  Array<std::int32_t> place;
+  BendRows& rows = body.bend;
+  rows.rows = slice_rows(list_neighbours(entries, body.particles.count), place);
+  rows.stiffness.assign(rows.rows.places(), 0.0f);
+  for (std::size_t k = 0; k < place.size(); ++k) rows.stiffness[place[k]] = float(-entries[k].value);
+}
+
+void hold(SoftBody& body, int particle, DVec3 place) {
+  body.particles.loose[particle] = 0.0f;
+  for (HeldParticle& one : body.held) {
+    if (one.particle == particle) {
+      one.place = place;
+      return;
+    }
+  }
+  body.held.push_back({particle, place});
+}
+
+void let_go(SoftBody& body, int particle) {
+  body.particles.loose[particle] = 1.0f;
+  for (std::size_t k = 0; k < body.held.size(); ++k) {
+    if (body.held[k].particle == particle) {
+      body.held.erase_at(k);
+      return;
+    }
+  }
+}
+
+}  // namespace gyre

@@ -1,0 +1,97 @@
+// SoftBody: particles and what holds them together. Particles are structures of arrays, padded to whole slices of 16 rows
+// (soft/body/sliced_rows.h). Places are double, so that the difference of two neighbours is exact however far from the origin they lie and
+// however large the body is beside their distance; velocities and forces are float.
+//
+// Elements: tetrahedra (soft/body/continuum.h). Springs (Hooke): T = k (l - l0). Bending: a quadratic energy 1/2 sum_e w_e |sum_a s_a x_a|^2, whose
+// matrix is constant and the same for x, y and z; for surfaces and rods that are flat at rest.
+//
+// Sources: D. Baraff, A. Witkin, "Large Steps in Cloth Simulation", 1998; M. Bergou, M. Wardetzky, D. Harmon, D. Zorin, E. Grinspun, "A
+// Quadratic Bending Model for Inextensible Surfaces", 2006.
+#pragma once
+
+#include "base/container/array.h"
+#include "soft/body/continuum.h"
+#include "soft/body/sliced_rows.h"
+
+#include <gyre/math.h>
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+struct Particles {
+  int count = 0;
+  Array<double> x, y, z;    // m
+  Array<float> vx, vy, vz;  // m/s
+  Array<float> fx, fy, fz;  // N, from outside (wind, drag); gravity is added by the step
+  Array<float> mass;        // kg; 0 in rows that fill up the last slice
+  Array<float> loose;       // 1, or 0 where the particle is held or there is none
+  void resize(int particles);
+  DVec3 place(int i) const { return {x[i], y[i], z[i]}; }
+  Vec3 velocity(int i) const { return {vx[i], vy[i], vz[i]}; }
+  void set_place(int i, DVec3 p) { x[i] = p.x, y[i] = p.y, z[i] = p.z; }
+  void set_velocity(int i, Vec3 v) { vx[i] = v.x, vy[i] = v.y, vz[i] = v.z; }
+};
+
+// A particle that goes where it is told: it is at `place` when the sub-step ends, and what hangs on it is pulled along within the sub-step.
+struct HeldParticle {
+  std::int32_t particle = 0;
+  DVec3 place{};
+};
+
+// The spring of two particles, as the builders give it.
+struct Spring {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  float rest_length = 0.0f;  // m
+  float stiffness = 0.0f;    // N/m
+};
+
+// Each spring stands in the rows of both its particles.
+struct SpringRows {
+  SlicedRows rows;
+  Array<float> rest_length;  // by place
+  Array<float> stiffness;
+};
+
+// B_ij of the bending energy, N/m.
+struct BendRows {
+  SlicedRows rows;
+  Array<float> stiffness;  // by place
+};
+
+// A rope: particles 0, 1, 2, ... one after the other. What the exact solve of ropes (soft/solver/rope_step.h) knows beside the particles; the same
+// springs and bending stand in the rows too, for the other solvers.
+struct Chain {
+  Array<double> rest_length;       // m, of each segment; none: not a rope
+  Array<double> tension;           // N, of each segment at the end of the last sub-step
+  double stretch_stiffness = 0.0;  // N: EA; 0 where the segments keep their length
+  double bend_stiffness = 0.0;     // N m^2: EI
+};
+
+struct SoftBody {
+  Particles particles;
+  SpringRows springs;
+  BendRows bend;
+  Continuum continuum;
+  Chain chain;
+  Array<float> pull
+      [3];  // m/s^2: changes of velocity in the last implicit sub-step, where the next begins to look; else empty
+  Array<double>
+      moved[3];  // m, in the last sub-step: what Verlet's scheme knows instead of velocities; else empty
+  Array<HeldParticle> held;
+  float damping = 0.0f;  // s: stress grows by this times its rate of change
+};
+
+// A term 1/2 w |sum_a s_a x_a|^2 of a quadratic energy adds w s_a s_b to the matrix of its particles.
+void add_quadratic(Array<MatrixEntry>& entries, std::span<const std::uint32_t> particles,
+                   std::span<const double> signs, double weight);
+
+void set_springs(SoftBody& body, std::span<const Spring> springs);
+// `entries` is the matrix of the energy, with its diagonal or without.
+void set_bending(SoftBody& body, Array<MatrixEntry>& entries);
+void hold(SoftBody& body, int particle, DVec3 place);
+void let_go(SoftBody& body, int particle);
+
+}  // namespace gyre

@@ -1,0 +1,63 @@
+#include "soft/elements/solid.h"
+
+#include "math/rotation.h"
+
+namespace gyre {
+
+SoftBody tetrahedral_solid(std::span<const DVec3> places, std::span<const std::uint32_t> corners,
+                           const SolidMaterial& material) {
+  SoftBody body;
+  body.damping = material.damping;
+  Particles& particles = body.particles;
+  particles.resize(int(places.size()));
+  for (int i = 0; i < particles.count; ++i) particles.set_place(i, places[std::size_t(i)]);
+  body.continuum = make_continuum(corners, places);
+  const double modulus = double(material.young_modulus), ratio = double(material.poisson_ratio);
+  body.continuum.material.model = material.model;
+  body.continuum.material.mu = float(modulus / (2.0 * (1.0 + ratio)));
+  body.continuum.material.lambda = float(modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio)));
+  Array<double> mass;
+  mass.resize(places.size());
+  for (const TetBlock& block : body.continuum.tetrahedra) {
+    for (int lane = 0; lane < kTetLanes; ++lane) {
+      for (const auto& corner : block.corner)
+        mass[corner[lane]] += 0.25 * double(material.density) * double(block.volume[lane]);
+    }
+  }
+  for (int i = 0; i < particles.count; ++i) particles.mass[i] = float(mass[i]);
+  return body;
+}
+
+SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose,
+                   const SolidMaterial& material) {
+  // H. Freudenthal's cut of a cube along its diagonal: each tetrahedron goes along the three axes in another order. Neighbours fit.
+  constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  const DQuat turn = to_double(pose.orientation);
+  Array<DVec3> places;
+  for (int k = 0; k <= cells[2]; ++k) {
+    for (int j = 0; j <= cells[1]; ++j) {
+      for (int i = 0; i <= cells[0]; ++i) {
+        const DVec3 local{(2.0 * i / cells[0] - 1.0) * double(half_extents.x),
+                          (2.0 * j / cells[1] - 1.0) * double(half_extents.y),
+                          (2.0 * k / cells[2] - 1.0) * double(half_extents.z)};
+        places.push_back(pose.position + rotate(turn, local));
+      }
+    }
+  }
+  const int stride[3] = {1, cells[0] + 1, (cells[0] + 1) * (cells[1] + 1)};
+  Array<std::uint32_t> corners;
+  for (int k = 0; k < cells[2]; ++k) {
+    for (int j = 0; j < cells[1]; ++j) {
+      for (int i = 0; i < cells[0]; ++i) {
+        for (const auto& order : kOrders) {
+          int corner = i * stride[0] + j * stride[1] + k * stride[2];
+          corners.push_back(std::uint32_t(corner));
+          for (const int axis : order) corners.push_back(std::uint32_t(corner += stride[axis]));
+        }
+      }
+    }
+  }
+  return tetrahedral_solid(places, corners, material);
+}
+
+}  // namespace gyre

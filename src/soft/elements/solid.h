@@ -1,0 +1,23 @@
+// Solids as particles with tetrahedra.
+#pragma once
+
+#include "soft/body/soft_body.h"
+
+namespace gyre {
+
+struct SolidMaterial {
+  float density = 1000.0f;       // kg/m^3
+  float young_modulus = 1.0e5f;  // Pa
+  float poisson_ratio = 0.45f;
+  float damping = 0.0f;  // s
+  SolidModel model = SolidModel::neo_hookean;
+};
+
+// A solid of `places` at rest and four corners a tetrahedron.
+SoftBody tetrahedral_solid(std::span<const DVec3> places, std::span<const std::uint32_t> corners,
+                           const SolidMaterial& material);
+
+// A box, its middle at `pose`, in cells of six tetrahedra each. Particle i + (cells[0] + 1) (j + (cells[1] + 1) k) is corner i, j, k.
+SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose, const SolidMaterial& material);
+
+}  // namespace gyre

@@ -1,0 +1,257 @@
+// The kernel of tetrahedra, one template for every width: forces and stiffness of each, added to its particles and edges.
+//
+// With F = R S and S = Q diag(s) Q^T, the second derivative of an isotropic energy is, in the frame of U = R Q on the side of places and
+// Q on that of the rest shape, a 3 x 3 matrix A for the stretches and two numbers for each pair of axes, for their shear (flip) and
+// their turning (twist). Negative ones are left out, so that the stiffness is positive semi-definite (B. Smith, F. de Goes, T. Kim,
+// "Analytic Eigensystems for Isotropic Distortion Energies", 2019). The linear and the corotated law have the same form with Q = 1, the
+// stiffness at rest turned along with the element (M. Mueller, M. Gross, "Interactive Virtual Materials", 2004).
+#pragma once
+
+#include "soft/kernels/polar_lanes.h"
+#include "soft/kernels/row_lanes.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// The second derivative of the energy density in its frame: stretches (xx, yy, zz, xy, xz, yz), and half the sum and half the difference
+// of flip and twist for the pairs yz, xz, xy.
+template <int W>
+struct FrameStiffness {
+  Sym3W<W> stretch;
+  Vec3W<W> sum, difference;
+};
+
+// What one law makes of a deformation gradient.
+template <int W>
+struct ElementResponse {
+  Mat3W<W> stress;  // P
+  Mat3W<W> turn;    // U
+  Mat3W<W> rest;    // Q
+  FrameStiffness<W> stiffness;
+};
+
+template <int W>
+GYRE_INLINE Mat3W<W> unit_matrix() {
+  const Wide<W> one(1.0f), zero(0.0f);
+  return {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+}
+
+template <int W>
+GYRE_INLINE ElementResponse<W> linear_response(const Mat3W<W>& f, bool corotated, float mu_of,
+                                               float lambda_of) {
+  const Wide<W> mu(mu_of), lambda(lambda_of);
+  ElementResponse<W> out;
+  out.rest = unit_matrix<W>();
+  out.turn = corotated ? polar_rotation(f) : unit_matrix<W>();
+  const Mat3W<W> s = transpose(out.turn) * f;
+  const Wide<W> xx = s.x.x - 1.0f, yy = s.y.y - 1.0f, zz = s.z.z - 1.0f;
+  const Wide<W> xy = mu * (s.x.y + s.y.x), xz = mu * (s.x.z + s.z.x), yz = mu * (s.y.z + s.z.y);
+  const Wide<W> pressure = lambda * (xx + yy + zz), two = 2.0f * mu;
+  out.stress =
+      out.turn *
+      Mat3W<W>{{two * xx + pressure, xy, xz}, {xy, two * yy + pressure, yz}, {xz, yz, two * zz + pressure}};
+  out.stiffness.stretch = {two + lambda, two + lambda, two + lambda, lambda, lambda, lambda};
+  out.stiffness.sum = {mu, mu, mu};
+  out.stiffness.difference = {mu, mu, mu};
+  return out;
+}
+
+template <int W>
+GYRE_INLINE Wide<W> positive(Wide<W> a) {
+  return max(a, Wide<W>(0.0f));
+}
+
+template <int W>
+GYRE_INLINE ElementResponse<W> neo_hookean_response(const Mat3W<W>& f, float mu_of, float lambda_of) {
+  const float lambda = lambda_of + mu_of, rest_volume = 1.0f + mu_of / lambda;
+  ElementResponse<W> out;
+  const Mat3W<W> rotation = polar_rotation(f);
+  const Mat3W<W> s = transpose(rotation) * f;
+  const EigenLanes<W> eigen = symmetric_eigen_lanes(
+      Sym3W<W>{s.x.x, s.y.y, s.z.z, 0.5f * (s.x.y + s.y.x), 0.5f * (s.x.z + s.z.x), 0.5f * (s.y.z + s.z.y)});
+  const Vec3W<W> sigma = eigen.values;
+  out.rest = eigen.axes;
+  out.turn = rotation * eigen.axes;
+  const Wide<W> square = dot(sigma, sigma);
+  const Wide<W> mu = Wide<W>(mu_of) * min(2.0f * square, Wide<W>(1.0f));
+  const Vec3W<W> cofactor{sigma.y * sigma.z, sigma.x * sigma.z, sigma.x * sigma.y};
+  const Wide<W> volume = sigma.x * cofactor.x;
+  const Wide<W> pressure = Wide<W>(lambda) * (volume - rest_volume);
+  const Vec3W<W> pull = mu * sigma + pressure * cofactor;
+  out.stress = Mat3W<W>{pull.x * out.turn.x, pull.y * out.turn.y, pull.z * out.turn.z} * transpose(out.rest);
+  const Vec3W<W> scaled = Wide<W>(lambda) * cofactor;
+  const Vec3W<W> across = pressure * sigma;
+  out.stiffness.stretch = without_negative_part(Sym3W<W>{
+      mu + scaled.x * cofactor.x, mu + scaled.y * cofactor.y, mu + scaled.z * cofactor.z,
+      scaled.x * cofactor.y + across.z, scaled.x * cofactor.z + across.y, scaled.y * cofactor.z + across.x});
+  const Vec3W<W> twist{positive(mu + across.x), positive(mu + across.y), positive(mu + across.z)};
+  const Vec3W<W> flip{positive(mu - across.x), positive(mu - across.y), positive(mu - across.z)};
+  out.stiffness.sum = 0.5f * (flip + twist);
+  out.stiffness.difference = 0.5f * (flip - twist);
+  return out;
+}
+
+// V U K' U^T, K'_ij the second derivative along the gradients a and b of two corners in the frame of the rest shape.
+template <int W>
+GYRE_INLINE Mat3W<W> corner_stiffness(const ElementResponse<W>& element, Vec3W<W> a, Vec3W<W> b,
+                                      Wide<W> volume) {
+  const FrameStiffness<W>& k = element.stiffness;
+  const Vec3W<W> ab{a.x * b.x, a.y * b.y, a.z * b.z};
+  const Wide<W> xx = k.stretch.xx * ab.x + k.sum.z * ab.y + k.sum.y * ab.z;
+  const Wide<W> yy = k.stretch.yy * ab.y + k.sum.z * ab.x + k.sum.x * ab.z;
+  const Wide<W> zz = k.stretch.zz * ab.z + k.sum.y * ab.x + k.sum.x * ab.y;
+  const Wide<W> xy = k.stretch.xy * (a.x * b.y) + k.difference.z * (a.y * b.x);  // row x, column y
+  const Wide<W> yx = k.stretch.xy * (a.y * b.x) + k.difference.z * (a.x * b.y);
+  const Wide<W> xz = k.stretch.xz * (a.x * b.z) + k.difference.y * (a.z * b.x);
+  const Wide<W> zx = k.stretch.xz * (a.z * b.x) + k.difference.y * (a.x * b.z);
+  const Wide<W> yz = k.stretch.yz * (a.y * b.z) + k.difference.x * (a.z * b.y);
+  const Wide<W> zy = k.stretch.yz * (a.z * b.y) + k.difference.x * (a.y * b.z);
+  const Mat3W<W> inner{{volume * xx, volume * yx, volume * zx},
+                       {volume * xy, volume * yy, volume * zy},
+                       {volume * xz, volume * yz, volume * zz}};
+  return element.turn * inner * transpose(element.turn);
+}
+
+// What kTetLanes tetrahedra add, before it is added lane by lane.
+struct TetOutput {
+  alignas(64) float force[3][3][kTetLanes];  // on corners 1 to 3
+  alignas(64) float blocks[kTetEdges][9][kTetLanes];
+};
+
+template <int W>
+GYRE_INLINE Vec3W<W> corner_edge(const SoftPass& pass, const TetBlock& block, int corner, int lane) {
+  alignas(64) float edge[3][W];
+  for (int i = 0; i < W; ++i) {
+    const std::int32_t a = block.corner[0][lane + i], b = block.corner[corner][lane + i];
+    edge[0][i] = float(pass.x[b] - pass.x[a]);
+    edge[1][i] = float(pass.y[b] - pass.y[a]);
+    edge[2][i] = float(pass.z[b] - pass.z[a]);
+  }
+  return {Wide<W>::load(edge[0]), Wide<W>::load(edge[1]), Wide<W>::load(edge[2])};
+}
+
+template <int W, bool WithBlocks>
+GYRE_INLINE void respond(const SoftPass& pass, const TetBlock& block, int lane, TetOutput& out) {
+  const auto rest = [&](int k) { return Wide<W>::load(block.inverse[k] + lane); };
+  const Mat3W<W> inverse{
+      {rest(0), rest(1), rest(2)}, {rest(3), rest(4), rest(5)}, {rest(6), rest(7), rest(8)}};
+  const Mat3W<W> edges{corner_edge<W>(pass, block, 1, lane), corner_edge<W>(pass, block, 2, lane),
+                       corner_edge<W>(pass, block, 3, lane)};
+  const Mat3W<W> f = edges * inverse;
+  const ElementMaterial& material = pass.material;
+  const ElementResponse<W> element =
+      material.model == SolidModel::neo_hookean
+          ? neo_hookean_response(f, material.mu, material.lambda)
+          : linear_response(f, material.model == SolidModel::corotated, material.mu, material.lambda);
+  const Wide<W> volume = Wide<W>::load(block.volume + lane);
+  // Rows of Dm^-1 are the gradients of corners 1 to 3.
+  const Mat3W<W> gradients = transpose(inverse);
+  const Vec3W<W> gradient[4] = {-(gradients.x + gradients.y + gradients.z), gradients.x, gradients.y,
+                                gradients.z};
+  GYRE_UNROLL
+  for (int a = 1; a < 4; ++a) {
+    const Vec3W<W> force = -volume * (element.stress * gradient[a]);
+    force.x.store(out.force[a - 1][0] + lane);
+    force.y.store(out.force[a - 1][1] + lane);
+    force.z.store(out.force[a - 1][2] + lane);
+  }
+  if constexpr (WithBlocks) {
+    constexpr int kPair[kTetEdges][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    const Wide<W> scaled = -Wide<W>(pass.material_scale) * volume;
+    Vec3W<W> turned[4];
+    GYRE_UNROLL
+    for (int a = 0; a < 4; ++a) turned[a] = transpose_times(element.rest, gradient[a]);
+    for (int e = 0; e < kTetEdges; ++e) {
+      const Mat3W<W> k = corner_stiffness(element, turned[kPair[e][0]], turned[kPair[e][1]], scaled);
+      const Wide<W> parts[9] = {k.x.x, k.x.y, k.x.z, k.y.x, k.y.y, k.y.z, k.z.x, k.z.y, k.z.z};
+      GYRE_UNROLL
+      for (int part = 0; part < 9; ++part) parts[part].store(out.blocks[e][part] + lane);
+    }
+  }
+}
+
+// Adds the lanes' forces and blocks to their particles and edges, one lane after the other.
+template <bool WithBlocks>
+GYRE_INLINE void add_up(const SoftPass& pass, const TetBlock& block, const TetOutput& out) {
+  for (int lane = 0; lane < kTetLanes; ++lane) {
+    if (block.volume[lane] == 0.0f) continue;
+    float* const first = pass.corner_force + 4 * std::int64_t(block.corner[0][lane]);
+    for (int a = 0; a < 3; ++a) {
+      float* const force = pass.corner_force + 4 * std::int64_t(block.corner[a + 1][lane]);
+      for (int c = 0; c < 3; ++c) {
+        force[c] += out.force[a][c][lane];
+        first[c] -= out.force[a][c][lane];
+      }
+    }
+    if constexpr (WithBlocks) {
+      for (int e = 0; e < kTetEdges; ++e) {
+        float* const edge = pass.edge_blocks + kEdgeFloats * std::int64_t(block.edge[e][lane]);
+        for (int part = 0; part < 9; ++part) edge[part + part / 3] += out.blocks[e][part][lane];
+      }
+    }
+  }
+}
+
+template <int W, bool WithBlocks>
+void add_tetrahedra(const SoftPass& pass, int block_begin, int block_end) {
+  for (int b = block_begin; b < block_end; ++b) {
+    const TetBlock& block = pass.tetrahedra[b];
+    TetOutput out;
+    GYRE_ROLLED
+    for (int lane = 0; lane < kTetLanes; lane += W) respond<W, WithBlocks>(pass, block, lane, out);
+    add_up<WithBlocks>(pass, block, out);
+  }
+}
+
+// Rows of the matrix from its edges, with forces and diagonals.
+template <int W>
+void fill_rows(const SoftPass& pass, int slice_begin, int slice_end) {
+  for (int slice = slice_begin; slice < slice_end; ++slice) {
+    for (int row = slice * kSliceRows; row < (slice + 1) * kSliceRows; ++row) {
+      const float* const force = pass.corner_force + 4 * std::int64_t(row);
+      pass.force.x[row] = force[0], pass.force.y[row] = force[1], pass.force.z[row] = force[2];
+    }
+    alignas(64) float diagonal[9][kSliceRows] = {};
+    for (int slot = pass.full.slot_begin[slice]; slot < pass.full.slot_begin[slice + 1]; ++slot) {
+      float* const to = pass.full_blocks + slot * 9 * kSliceRows;
+      const std::int32_t* const edges = pass.edge_of_place + slot * kSliceRows;
+      for (int lane = 0; lane < kSliceRows; ++lane) {
+        if (edges[lane] < 0) {
+          for (int part = 0; part < 9; ++part) to[part * kSliceRows + lane] = 0.0f;
+          continue;
+        }
+        const float* const edge = pass.edge_blocks + kEdgeFloats * std::int64_t(edges[lane] / 2);
+        const bool higher = (edges[lane] & 1) != 0;
+        for (int c = 0; c < 3; ++c) {
+          for (int r = 0; r < 3; ++r)
+            to[(3 * c + r) * kSliceRows + lane] = edge[higher ? 4 * r + c : 4 * c + r];
+        }
+      }
+      for (int part = 0; part < 9; ++part) {
+        for (int lane = 0; lane < kSliceRows; lane += W) {
+          const Wide<W> sum =
+              Wide<W>::load(diagonal[part] + lane) + Wide<W>::load(to + part * kSliceRows + lane);
+          sum.store(diagonal[part] + lane);
+        }
+      }
+    }
+    constexpr int kPart[6][2] = {{0, 0}, {4, 4}, {8, 8}, {1, 3}, {2, 6}, {5, 7}};
+    for (int part = 0; part < 6; ++part) {
+      for (int lane = 0; lane < kSliceRows; ++lane) {
+        pass.diagonal[part][slice * kSliceRows + lane] =
+            0.5f * (diagonal[kPart[part][0]][lane] + diagonal[kPart[part][1]][lane]);
+      }
+    }
+  }
+}
+
+template <int W>
+void fill_forces(const SoftPass& pass, int slice_begin, int slice_end) {
+  for (int row = slice_begin * kSliceRows; row < slice_end * kSliceRows; ++row) {
+    const float* const force = pass.corner_force + 4 * std::int64_t(row);
+    pass.force.x[row] = force[0], pass.force.y[row] = force[1], pass.force.z[row] = force[2];
+  }
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

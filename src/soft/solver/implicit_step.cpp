@@ -1,0 +1,219 @@
+#include "soft/solver/implicit_step.h"
+
+#include "soft/solver/rigid_modes.h"
+#include "soft/solver/soft_pass.h"
+#include "task/parallel.h"
+
+#include <cmath>
+
+namespace gyre {
+
+namespace {
+
+SoftPass make_pass(SoftBody& body, const ImplicitSettings& settings, Arena& arena) {
+  SoftPass pass = begin_pass(body, arena);
+  const std::size_t rows = std::size_t(padded_rows(body.particles.count));
+  pass.spring_blocks = arena.make<float>(4 * body.springs.rows.places()).data();
+  if (!body.continuum.empty()) {
+    pass.full_blocks = arena.make<float>(9 * body.continuum.rows.places()).data();
+    pass.edge_blocks = arena.make<float>(kEdgeFloats * (std::size_t(body.continuum.edges) + 1)).data();
+  }
+  pass.change = make_vectors(arena, rows);
+  pass.residual = make_vectors(arena, rows);
+  pass.direction = make_vectors(arena, rows);
+  pass.product = make_vectors(arena, rows);
+  for (float*& part : pass.diagonal) part = arena.make<float>(rows).data();
+  for (float*& part : pass.inverse) part = arena.make<float>(rows).data();
+  const float h = settings.step;
+  pass.step = h;
+  pass.gravity = settings.gravity;
+  const bool middle = settings.scheme == ImplicitScheme::midpoint;
+  pass.geometric_scale = middle ? 0.25f * h * h : h * h;
+  pass.material_scale = pass.geometric_scale + (middle ? 0.5f : 1.0f) * h * body.damping;
+  pass.velocity_scale = middle ? 2.0f : 1.0f;
+  pass.move_scale = middle ? 0.5f : 1.0f;
+  return pass;
+}
+
+// The change of velocity that is told beforehand: that of held particles.
+void set_known_change(const SoftBody& body, const ImplicitSettings& settings, const SoftPass& pass) {
+  const Particles& particles = body.particles;
+  for (std::size_t i = 0; i < particles.x.size(); ++i)
+    pass.change.x[i] = pass.change.y[i] = pass.change.z[i] = 0.0f;
+  const double rate = 1.0 / double(settings.step);
+  for (const HeldParticle& one : body.held) {
+    const int i = one.particle;
+    const Vec3 velocity = to_float(rate * (one.place - particles.place(i)));
+    // The midpoint rule moves by the mean of both velocities.
+    const Vec3 told = (1.0f / pass.move_scale) * (velocity - particles.velocity(i));
+    pass.change.x[i] = told.x, pass.change.y[i] = told.y, pass.change.z[i] = told.z;
+  }
+}
+
+// The first direction: the accelerations of the last sub-step, those of free fall in the first one.
+void guess_direction(SoftBody& body, const ImplicitSettings& settings, const SoftPass& pass) {
+  const Particles& particles = body.particles;
+  const std::size_t rows = particles.x.size();
+  const float fall[3] = {settings.gravity.x, settings.gravity.y, settings.gravity.z};
+  float* const direction[3] = {pass.direction.x, pass.direction.y, pass.direction.z};
+  const bool first = body.pull[0].size() != rows;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (first) body.pull[axis].assign(rows, fall[axis]);
+    for (std::size_t i = 0; i < rows; ++i) {
+      direction[axis][i] = particles.loose[i] * settings.step * body.pull[axis][i];
+    }
+  }
+}
+
+void keep_pull(SoftBody& body, const ImplicitSettings& settings, const SoftPass& pass) {
+  const float* const change[3] = {pass.change.x, pass.change.y, pass.change.z};
+  const float rate = 1.0f / settings.step;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < body.pull[axis].size(); ++i) body.pull[axis][i] = rate * change[axis][i];
+  }
+}
+
+// Conjugate gradients on a pass whose residual, first direction and their product `error` are there.
+class Solver {
+ public:
+  Solver(const SoftPass& pass, const SoftKernels& kernels, TaskSystem& tasks)
+      : pass_(pass), kernels_(kernels), tasks_(tasks) {}
+
+  template <class Kernel, class... Rest>
+  void each(Kernel kernel, Rest... rest) {
+    for_blocks(tasks_, pass_.slices, kBlockSlices,
+               [&](int begin, int end, int) { kernel(pass_, rest..., begin, end); });
+  }
+  template <class Kernel, class... Rest>
+  double sum(Kernel kernel, Rest... rest) {
+    return reduce_blocks(
+        tasks_, pass_.slices, kBlockSlices, 0.0,
+        [&](int begin, int end, int) { return kernel(pass_, rest..., begin, end); },
+        [](double a, double b) { return a + b; });
+  }
+
+  // Goes along the direction that is there as far as pays, and begins anew from there. So a bad guess is no worse than none, and the energy
+  // that an early end leaves is at most that of not having solved at all.
+  double go_along_direction(double error) {
+    const double curvature = sum(kernels_.apply), slope = sum(kernels_.match);
+    if (curvature > 0.0 && absolute(slope) > 0.0)
+      error = sum(kernels_.advance, float(slope / curvature));
+    else
+      error = sum(kernels_.advance, 0.0f);
+    each(kernels_.turn, 0.0f);
+    return error;
+  }
+
+  // Until the error is at most `wanted`, within these bounds. Returns the number of iterations; `error` becomes that at the end.
+  int iterate(double& error, double wanted, int least, int most) {
+    int iterations = 0;
+    while (error > 0.0 && iterations < most && (error > wanted || iterations < least)) {
+      const double curvature = sum(kernels_.apply);
+      if (!(curvature > 0.0)) break;
+      const double after = sum(kernels_.advance, float(error / curvature));
+      each(kernels_.turn, float(after / error));
+      error = after;
+      ++iterations;
+    }
+    return iterations;
+  }
+
+ private:
+  const SoftPass& pass_;
+  const SoftKernels& kernels_;
+  TaskSystem& tasks_;
+};
+
+ImplicitReport solve(SoftBody& body, const SoftPass& pass, const ImplicitSettings& settings, double mass,
+                     const SoftKernels& kernels, TaskSystem& tasks) {
+  Solver solver(pass, kernels, tasks);
+  solver.each(kernels.start);
+  double error = solver.sum(kernels.begin);
+  const double start = error;
+  guess_direction(body, settings, pass);
+  error = solver.go_along_direction(error);
+  const double fall = double(settings.step) * double(length(settings.gravity));
+  const double reference = start + mass * fall * fall;
+  const double wanted = double(settings.tolerance) * double(settings.tolerance) * reference;
+  ImplicitReport report;
+  report.iterations = solver.iterate(error, wanted, settings.least_iterations, settings.most_iterations);
+  report.residual = reference > 0.0 ? float(std::sqrt(error / reference)) : 0.0f;
+  return report;
+}
+
+// What gravity and the forces from outside give in the sub-step.
+void find_impulses(const Particles& particles, const ImplicitSettings& settings, const VectorRows& impulses) {
+  const float h = settings.step;
+  for (int i = 0; i < particles.count; ++i) {
+    impulses.x[i] = h * (particles.mass[i] * settings.gravity.x + particles.fx[i]);
+    impulses.y[i] = h * (particles.mass[i] * settings.gravity.y + particles.fy[i]);
+    impulses.z[i] = h * (particles.mass[i] * settings.gravity.z + particles.fz[i]);
+  }
+}
+
+void change_velocities(Particles& particles, const VectorRows& change) {
+  for (int i = 0; i < particles.count; ++i) {
+    particles.vx[i] += change.x[i];
+    particles.vy[i] += change.y[i];
+    particles.vz[i] += change.z[i];
+  }
+}
+
+}  // namespace
+
+ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, const SoftKernels& kernels,
+                            Arena& arena, TaskSystem& tasks) {
+  ImplicitStep step;
+  step.pass = make_pass(body, settings, arena);
+  set_known_change(body, settings, step.pass);
+  linearize(step.pass, body, kernels, tasks);
+  double mass = 0.0;
+  for (int i = 0; i < body.particles.count; ++i) mass += double(body.particles.mass[i]);
+  step.report = solve(body, step.pass, settings, mass, kernels, tasks);
+  if (body.held.empty()) {
+    find_impulses(body.particles, settings, step.pass.product);
+    keep_momentum(body.particles, step.pass.product, step.pass.change);
+  }
+  keep_pull(body, settings, step.pass);
+  change_velocities(body.particles, step.pass.change);
+  return step;
+}
+
+Sym3 inverse_mass(const ImplicitStep& step, int particle) {
+  const auto part = [&](int k) { return step.pass.inverse[k][particle]; };
+  return {part(0), part(1), part(2), part(3), part(4), part(5)};
+}
+
+void add_impulses(SoftBody& body, const ImplicitStep& step, const VectorRows& impulses, int iterations,
+                  const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
+  const ArenaScope scope(arena);
+  SoftPass pass = step.pass;
+  const std::size_t rows = body.particles.x.size();
+  pass.change = make_vectors(arena, rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    pass.change.x[i] = pass.change.y[i] = pass.change.z[i] = 0.0f;
+    pass.residual.x[i] = impulses.x[i], pass.residual.y[i] = impulses.y[i],
+    pass.residual.z[i] = impulses.z[i];
+  }
+  Solver solver(pass, kernels, tasks);
+  double error = solver.sum(kernels.precondition);
+  solver.iterate(error, 0.0, iterations, iterations);
+  if (body.held.empty()) keep_momentum(body.particles, impulses, pass.change);
+  change_velocities(body.particles, pass.change);
+}
+
+void finish_implicit(SoftBody& body, const ImplicitStep& step, const SoftKernels& kernels,
+                     TaskSystem& tasks) {
+  Solver(step.pass, kernels, tasks).each(kernels.finish);
+  place_held(body);
+}
+
+ImplicitReport step_implicit(SoftBody& body, const ImplicitSettings& settings, const SoftKernels& kernels,
+                             Arena& arena, TaskSystem& tasks) {
+  const ArenaScope scope(arena);
+  const ImplicitStep step = begin_implicit(body, settings, kernels, arena, tasks);
+  finish_implicit(body, step, kernels, tasks);
+  return step.report;
+}
+
+}  // namespace gyre

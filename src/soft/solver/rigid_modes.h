@@ -1,0 +1,13 @@
+// What keeps the momentum of a body that nothing holds.
+#pragma once
+
+#include "soft/body/soft_body.h"
+#include "soft/kernels/soft_kernels.h"
+
+namespace gyre {
+
+// Adds to the changes of velocity the rigid motion with which they have the linear and the angular momentum, about the centre of mass, of the
+// impulses from outside.
+void keep_momentum(const Particles& particles, const VectorRows& impulses, const VectorRows& change);
+
+}  // namespace gyre
