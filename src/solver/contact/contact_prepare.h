@@ -6,6 +6,7 @@
 #include "geometry/manifold/manifold_layout.h"
 #include "solver/contact/contact_kernel.h"
 #include "solver/contact/contact_normal_rows.h"
+#include "solver/core/error_bounds.h"
 
 #include <cstddef>
 

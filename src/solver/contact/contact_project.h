@@ -7,6 +7,7 @@
 #pragma once
 
 #include "solver/contact/contact_kernel.h"
+#include "solver/core/error_bounds.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
