@@ -84,7 +84,7 @@ TEST(Ragdoll, SaysWhatIsWrongWithADescription) {
                                "axis",
                                "across",
                                "swing_y is 1 to -1",
-                               "turn is -4 to 4",
+                               "twist is -4 to 4",
                                "friction",
                                "neighbours is 0",
                                "pair 3, 99",
