@@ -42,7 +42,7 @@ Motor read_motor(const Field& field) {
   return motor;
 }
 
-// Whether a kind's definition has a field is asked of the definition itself: `requires { def.limits; }`.
+// The definition of a kind tells whether it has a field: `requires { def.limits; }`.
 template <class Def, class... Some>
 constexpr bool is_among = (std::is_same_v<Def, Some> || ...);
 

@@ -346,7 +346,7 @@ void write_frame(JsonWriter& json, const Def& def) {
   if constexpr (requires { def.anchor_b; }) if_given(json, "anchor_b", def.anchor_b);
 }
 
-// What acts on the axis that a kind's limits are about.
+// Writes limits, motor and friction of the axis that the limits of a kind bound.
 template <class Def>
 void write_forces(JsonWriter& json, const Def& def) {
   if constexpr (requires { def.limits; }) {
@@ -358,7 +358,7 @@ void write_forces(JsonWriter& json, const Def& def) {
   if constexpr (requires { def.friction; }) unless_default(json, "friction", def.friction, 0.0f);
 }
 
-// What some kinds have beside that.
+// Writes the fields that only some kinds have.
 template <class Def>
 void write_special(JsonWriter& json, const Def& def) {
   write_axes(json, def);

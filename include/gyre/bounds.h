@@ -112,7 +112,7 @@ Vec3 k_dop_direction(KDopKind kind, int index);
 Result<KDop> fit_k_dop(std::span<const Vec3> points, KDopKind kind);
 // The smallest k-DOP around both, which must be of one kind.
 KDop merge(const KDop& a, const KDop& b);
-// Whether no plane of their directions separates the two: true for all that overlap, and for some that nearly do.
+// Returns true if no plane of their directions separates the two volumes. Volumes that overlap give true, and some that nearly do.
 bool overlap(const KDop& a, const KDop& b);
 bool contains(const KDop& dop, Vec3 point);
 double volume(const KDop& dop);

@@ -67,7 +67,7 @@ struct JointAxisState {
   float force = 0;     // N or N m along it by limits, motor, spring and friction together, mean over the last step
 };
 
-// Whether the integrator can follow explicit springs (SpringKind::explicit_force). The figures are those of the fastest mode of all of
+// Tells whether the integrator can follow explicit springs (SpringKind::explicit_force). The figures are those of the fastest mode of all of
 // them together. The critical step bounds half a sub-step, since bodies move twice in each.
 struct SpringStability {
   int springs = 0;         // explicit springs of awake bodies

@@ -18,7 +18,7 @@ class ServedRecording {
  public:
   explicit ServedRecording(std::string path) : path_(std::move(path)) {}
 
-  // What there is to see: models, surfaces, how many frames. Reads the file anew; a recording of commands alone is simulated.
+  // Returns the models, the surfaces and the number of frames. Reads the file anew; a recording of commands alone is simulated.
   Result<std::string> scene();
   // One group of frames, with the sets of bodies that occur in it. invalid_argument: there is no such group.
   Result<std::string> frames(std::size_t group);

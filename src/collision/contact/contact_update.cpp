@@ -142,7 +142,7 @@ bool is_beyond(const Found<kRoom>& found, float max_distance) {
   return true;
 }
 
-// What continues of a manifold from before the update, with its points side by side. Missing points are zero.
+// The state that a manifold keeps from before the update, with its points side by side. Missing points are zero.
 struct FormerManifold {
   Vec3 normal, friction_impulse, rolling_impulse;
   float twist_impulse, load_age;

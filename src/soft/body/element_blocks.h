@@ -36,7 +36,7 @@ struct alignas(64) TriangleBlock {
   float area[kTetLanes];            // m^2; 0 in lanes that fill up the last block
 };
 
-// What the laws of the elements ask for.
+// The constants that the laws of the elements need.
 struct ElementMaterial {
   SolidModel model = SolidModel::corotated;
   float mu = 0.0f, lambda = 0.0f;                          // Pa, of tetrahedra

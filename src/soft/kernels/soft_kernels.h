@@ -1,7 +1,7 @@
 // The kernels of the implicit step of a soft body, one table for each kind of processor. A kernel works on a range of slices
 // (soft/body/sliced_rows.h); ranges may be done by several workers at once, since each writes only its own rows. Every width gives the same bits.
 //
-// What is solved, with d = v' - v the change of velocity in the sub-step (soft/solver/implicit_step.h):
+// The kernels solve for d = v' - v, the change of velocity in the sub-step (soft/solver/implicit_step.h):
 //
 //   A d = b,  A = M + sum of the elements' matrices, scaled.
 #pragma once
@@ -26,7 +26,7 @@ struct RowPattern {
   const std::int32_t* columns = nullptr;
 };
 
-// What the kernels of one sub-step of one body read and write.
+// The kernels of one sub-step of one body read and write these arrays.
 struct SoftPass {
   int slices = 0;
   // Springs: B = a 1 + n n^T, four numbers a place, those of 16 places one after the other (n.x of all, n.y, n.z, a).
