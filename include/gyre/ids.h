@@ -20,5 +20,6 @@ using BodyId = Id<struct BodyTag>;
 using ShapeId = Id<struct ShapeTag>;
 using JointId = Id<struct JointTag>;
 using FieldId = Id<struct FieldTag>;
+using SoftId = Id<struct SoftTag>;
 
 }  // namespace gyre

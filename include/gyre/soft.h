@@ -1,0 +1,132 @@
+// Soft matter: ropes, cloths and solids. Each is a set of particles ("vertices") that elements hold together: springs, rods, triangles,
+// tetrahedra. They push rigid bodies and are pushed by them, rest on them, and hang on them. SI units, world frame.
+//
+//   SoftId flag = world.add_cloth({.grid = ClothGrid{.size = {2, 1}, .cells = {40, 20}}, .pose = {{0, 3, 0}}});
+//   world.attach(flag, 0, pole);       // vertex 0 keeps its place in the frame of the pole
+//   world.pin(flag, 40);               // vertex 40 stays where it is
+//   SoftVertices v = world.vertices(flag);  // in place: v.x[i], v.y[i], v.z[i]
+//
+// Stiffness is that of the material (N, N/m, Pa): it does not change with cells, segments, sub-steps or damping. Vertices keep the numbers
+// given here. A vertex that is pinned, or attached to a body that does not yield, has no freedom of its own.
+// docs/soft.md tells which number to change when something is too soft, too slow or jitters; docs/derive/soft.md has the equations.
+#pragma once
+
+#include <gyre/defs.h>
+#include <gyre/ids.h>
+#include <gyre/math.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace gyre {
+
+enum class SoftKind : std::uint8_t { rope, cloth, solid };
+const char* to_string(SoftKind kind);
+
+// How the particles move in a sub-step. Implicit (backward Euler) is stable at any stiffness and damps fast oscillations. The others are
+// explicit, to be compared: on a spring of angular frequency w, explicit Euler gains energy at any step, semi-implicit Euler and Verlet
+// beyond h = 2 / w, RK4 beyond 2.83 / w (E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", 2006).
+enum class SoftIntegrator : std::uint8_t { implicit, explicit_euler, semi_implicit_euler, rk4, verlet };
+const char* to_string(SoftIntegrator integrator);
+
+// What holds neighbours together. springs: Hooke's; rods: edges that keep their length; membrane: triangles of a continuum.
+enum class RopeLinks : std::uint8_t { springs, rods };
+enum class ClothLinks : std::uint8_t { springs, rods, membrane };
+const char* to_string(RopeLinks links);
+const char* to_string(ClothLinks links);
+
+// The law of stress and strain of tetrahedra. linear: for small displacements, does not know rotations; corotated: the same in a frame that
+// turns with the element; neo_hookean: rubber (B. Smith, F. de Goes, T. Kim, "Stable Neo-Hookean Flesh Simulation", 2018).
+enum class SolidModel : std::uint8_t { linear, corotated, neo_hookean };
+const char* to_string(SolidModel model);
+
+// What ropes, cloths and solids have in common.
+struct SoftSettings {
+  SoftIntegrator integrator = SoftIntegrator::implicit;
+  float damping = 0.0f;                 // s: stress grows by damping times its rate of change; rigid motion is never damped
+  float static_friction = 0.4f;         // combined with a shape's as two shapes' are
+  float dynamic_friction = 0.4f;
+  Filter filter{};                      // against the shapes of bodies
+  std::uint64_t user_data = 0;
+  // Where the vertices are at the start and how they move, all of them; the shape at rest stays that of the rest of the definition. Empty:
+  // at rest, still.
+  std::vector<DVec3> positions{};
+  std::vector<Vec3> velocities{};
+};
+
+struct RopeDef {
+  std::vector<DVec3> points{};      // m, at least two
+  // With `segments` 0 or one less than the points, the points are the vertices; else vertices lie evenly along the line.
+  int segments = 0;
+  RopeLinks links = RopeLinks::rods;
+  float radius = 0.02f;             // m
+  float linear_density = 0.1f;      // kg/m
+  float stretch_stiffness = 1.0e4f; // N: EA; rods do not ask for it
+  float bend_stiffness = 0.0f;      // N m^2: EI
+  SoftSettings settings{};
+};
+
+// A rectangle in the x-z plane of its pose, its middle there. Vertex i + j (cells[0] + 1) is at
+// (i size[0] / cells[0] - size[0] / 2, 0, j size[1] / cells[1] - size[1] / 2).
+struct ClothGrid {
+  std::array<float, 2> size{1, 1};  // m
+  std::array<int, 2> cells{10, 10};
+};
+struct ClothDef {
+  std::optional<ClothGrid> grid{};          // or a mesh:
+  std::vector<Vec3> vertices{};             // m, in the frame of the pose
+  std::vector<std::uint32_t> triangles{};   // three indices each
+  Pose pose{};
+  ClothLinks links = ClothLinks::springs;
+  float area_density = 0.2f;                // kg/m^2
+  float stretch_stiffness = 1000.0f;        // N/m: force per width and strain; rods do not ask for it
+  float shear_stiffness = 200.0f;           // N/m: force per width and angle
+  float bend_stiffness = 1.0e-4f;           // N m: moment per width and curvature
+  float thickness = 0.005f;                 // m: surfaces keep half of it from its middle
+  bool self_collision = true;
+  SoftSettings settings{};
+};
+
+// A box, its middle at the pose. Vertex i + (cells[0] + 1) (j + (cells[1] + 1) k) is corner i, j, k of the cells.
+struct SolidBox {
+  Vec3 half_extents{0.5f, 0.5f, 0.5f};  // m
+  std::array<int, 3> cells{4, 4, 4};
+};
+struct SolidDef {
+  std::optional<SolidBox> box{};            // or tetrahedra, used as they are:
+  std::vector<Vec3> vertices{};             // m, in the frame of the pose
+  std::vector<std::uint32_t> tetrahedra{};  // four indices each
+  Pose pose{};
+  SolidModel model = SolidModel::neo_hookean;
+  float density = 1000.0f;                  // kg/m^3
+  float young_modulus = 1.0e5f;             // Pa
+  float poisson_ratio = 0.45f;              // within -1 and 1/2
+  SoftSettings settings{};
+};
+
+// The vertices of one of them, in place: valid until the next change or step of the world.
+struct SoftVertices {
+  std::span<const double> x{}, y{}, z{};    // m
+  std::span<const float> vx{}, vy{}, vz{};  // m/s
+
+  std::size_t size() const { return x.size(); }
+  DVec3 position(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  Vec3 velocity(std::size_t i) const { return {vx[i], vy[i], vz[i]}; }
+};
+
+// What one of them is made of and how it stands.
+struct SoftInfo {
+  SoftKind kind = SoftKind::rope;
+  int vertices = 0;
+  double mass = 0.0;            // kg
+  double kinetic_energy = 0.0;  // J
+  double elastic_energy = 0.0;  // J
+  float radius = 0.0f;          // m: that of a rope, half the thickness of a cloth, 0 of a solid
+  int contacts = 0;             // of its vertices with shapes, in the last step
+  std::uint64_t user_data = 0;
+};
+
+}  // namespace gyre
