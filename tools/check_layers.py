@@ -83,6 +83,7 @@ ROOMS = {
         "elements": ["body"],
         "kernels": ["body"],
         "solver": ["elements", "kernels"],
+        "contact": ["body"],
     },
     "io": {
         "codec": [],

@@ -1,0 +1,232 @@
+#include "soft/contact/surface_contacts.h"
+
+#include <cmath>
+
+namespace gyre {
+
+namespace {
+
+// Vertices are looked for a little further than they move, so that impulses may change their moves.
+constexpr float kLimitOfMove = 1.25f;
+constexpr float kLimitOfRadius = 0.5f;
+constexpr float kMostLimitOfEdge = 1.0f;
+constexpr float kMostPushOfThickness = 0.25f;
+
+// The mean of the moves: surfaces that fly together do not look far.
+DVec3 mean_of(std::span<const PlacedSurface> surfaces, std::span<const DVec3> moves) {
+  DVec3 sum{};
+  double count = 0.0;
+  for (const PlacedSurface& placed : surfaces) {
+    for (int v = 0; v < placed.surface->vertices; ++v) sum += moves[placed.first + std::size_t(v)];
+    count += double(placed.surface->vertices);
+  }
+  return count > 0.0 ? sum / count : DVec3{};
+}
+
+// Limits and pads for these moves.
+void set_reach(std::span<const PlacedSurface> surfaces, std::span<const float> inverse_mass,
+               std::span<const DVec3> moves, std::span<float> limits, std::span<float> pads) {
+  for (const PlacedSurface& placed : surfaces) {
+    const float most = kMostLimitOfEdge * placed.surface->mean_edge;
+    for (int i = 0; i < placed.surface->vertices; ++i) {
+      const std::size_t v = placed.first + std::size_t(i);
+      const float radius = placed.surface->radius[i], far = float(length(moves[v]));
+      limits[v] = inverse_mass[v] > 0.0f
+                      ? min(kLimitOfMove * far + kLimitOfRadius * radius, max(most, radius))
+                      : kLimitOfMove * far;
+      pads[v] = limits[v] + radius;
+    }
+  }
+}
+
+// Impulses of the pairs that were there before; both lists have ascending keys.
+void keep_impulses(std::span<const SurfacePair> before, std::span<const SurfaceImpulse> impulses,
+                   std::span<const SurfacePair> now, Array<SurfaceImpulse>& out) {
+  out.assign(now.size(), SurfaceImpulse{});
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    while (k < before.size() && before[k].key < now[i].key) ++k;
+    if (k < before.size() && before[k].key == now[i].key) out[i] = impulses[k];
+  }
+}
+
+struct Row {
+  Vec3 normal;
+  float per_normal;   // kg: impulse for a change of the normal velocity
+  float per_tangent;  // kg
+  float target;       // m/s: least normal velocity
+  float push_target;  // m: least normal displacement
+  float push;         // kg m: so far
+};
+
+class RowSolver {
+ public:
+  RowSolver(const SurfaceVertices& vertices, SurfaceContacts& contacts, Arena& arena)
+      : vertices_(vertices), contacts_(contacts), rows_(arena.make<Row>(contacts.pairs.size())) {}
+
+  void prepare(const SurfaceContactSettings& settings) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const SurfacePair& pair = contacts_.pairs[i];
+      Row& row = rows_[i];
+      row.normal = to_float(pair.normal);
+      float mobility = 0.0f;
+      for (int k = 0; k < 4; ++k) mobility += square(pair.weight[k]) * vertices_.inverse_mass[pair.vertex[k]];
+      row.per_normal = mobility > 0.0f ? 1.0f / mobility : 0.0f;
+      row.per_tangent = row.per_normal;
+      const float gap = float(pair.distance - double(pair.thickness));
+      row.target = gap > 0.0f ? -gap / settings.step : 0.0f;
+      row.push_target =
+          gap < 0.0f ? min(-settings.pushout * gap, kMostPushOfThickness * pair.thickness) : 0.0f;
+      row.push = 0.0f;
+      SurfaceImpulse& impulse = contacts_.impulses[i];
+      if (row.per_normal == 0.0f) impulse = {};
+      // The plane of friction turns with the normal.
+      impulse.friction -= dot(impulse.friction, row.normal) * row.normal;
+      if (impulse.normal > 0.0f)
+        add(vertices_.velocities, pair, impulse.normal * row.normal + impulse.friction);
+    }
+  }
+
+  void solve(int iterations) {
+    const int count = int(rows_.size());
+    for (int n = 0; n < iterations; ++n) {
+      if (n % 2 == 0) {
+        for (int i = 0; i < count; ++i) solve_row(i);
+      } else {
+        for (int i = count; i-- > 0;) solve_row(i);
+      }
+    }
+  }
+
+  void solve_pushes(int iterations) {
+    for (int n = 0; n < iterations; ++n) {
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        Row& row = rows_[i];
+        if (!(row.push_target > 0.0f) || row.per_normal == 0.0f) continue;
+        const SurfacePair& pair = contacts_.pairs[i];
+        const float now = dot(row.normal, sum(contacts_.pushes, pair));
+        const float push = max(0.0f, row.push + (row.push_target - now) * row.per_normal);
+        add(contacts_.pushes, pair, (push - row.push) * row.normal);
+        row.push = push;
+      }
+    }
+  }
+
+ private:
+  static Vec3 sum(std::span<const Vec3> values, const SurfacePair& pair) {
+    Vec3 out{};
+    for (int k = 0; k < 4; ++k) out += pair.weight[k] * values[pair.vertex[k]];
+    return out;
+  }
+  void add(std::span<Vec3> values, const SurfacePair& pair, Vec3 impulse) const {
+    for (int k = 0; k < 4; ++k) {
+      const std::uint32_t v = pair.vertex[k];
+      values[v] += pair.weight[k] * vertices_.inverse_mass[v] * impulse;
+    }
+  }
+
+  void solve_row(int i) {
+    const Row& row = rows_[i];
+    if (row.per_normal == 0.0f) return;
+    const SurfacePair& pair = contacts_.pairs[i];
+    SurfaceImpulse& impulse = contacts_.impulses[i];
+    const Vec3 velocity = sum(vertices_.velocities, pair);
+    const float along = dot(row.normal, velocity);
+    const float normal = max(0.0f, impulse.normal - (along - row.target) * row.per_normal);
+    if (normal == 0.0f && impulse.normal == 0.0f) return;
+    // Scalar inverse masses: normal and friction do not act on each other within a row.
+    Vec3 friction = impulse.friction - row.per_tangent * (velocity - along * row.normal);
+    const float size = length(friction);
+    if (size > pair.friction[0] * normal) friction = (pair.friction[1] * normal / size) * friction;
+    add(vertices_.velocities, pair, (normal - impulse.normal) * row.normal + (friction - impulse.friction));
+    impulse.normal = normal;
+    impulse.friction = friction;
+  }
+
+  const SurfaceVertices& vertices_;
+  SurfaceContacts& contacts_;
+  std::span<Row> rows_;
+};
+
+}  // namespace
+
+void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
+                           const SurfaceContactSettings& settings, Arena& arena, SurfaceContacts& contacts) {
+  const ArenaScope scope(arena);
+  const std::size_t count = vertices.positions.size();
+  const std::span<DVec3> moves = arena.make<DVec3>(count);
+  const std::span<float> pads = arena.make<float>(count);
+  for (std::size_t v = 0; v < count; ++v) moves[v] = double(settings.step) * DVec3(vertices.velocities[v]);
+  const DVec3 mean = mean_of(surfaces, moves);
+  for (std::size_t v = 0; v < count; ++v) moves[v] = moves[v] - mean;
+  contacts.limits.resize(count);
+  set_reach(surfaces, vertices.inverse_mass, moves, contacts.limits, pads);
+  const std::span<SurfacePair> before = arena.make<SurfacePair>(contacts.pairs.size());
+  const std::span<SurfaceImpulse> impulses = arena.make<SurfaceImpulse>(contacts.impulses.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    before[i] = contacts.pairs[i];
+    impulses[i] = contacts.impulses[i];
+  }
+  find_surface_pairs(surfaces, vertices.positions, pads, arena, contacts.pairs);
+  keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
+}
+
+void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                            Arena& arena, SurfaceContacts& contacts) {
+  const ArenaScope scope(arena);
+  contacts.pushes.assign(vertices.positions.size(), Vec3{});
+  RowSolver solver(vertices, contacts, arena);
+  solver.prepare(settings);
+  solver.solve(settings.iterations);
+  solver.solve_pushes(settings.iterations);
+  contacts.touching = 0;
+  for (const SurfaceImpulse& impulse : contacts.impulses) contacts.touching += impulse.normal > 0.0f;
+}
+
+BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
+                          std::span<const DVec3> targets, const SurfaceContactSettings& settings,
+                          Arena& arena, SurfaceContacts& contacts) {
+  const ArenaScope scope(arena);
+  const std::size_t count = vertices.positions.size();
+  const std::span<DVec3> left = arena.make<DVec3>(count), moves = arena.make<DVec3>(count),
+                         goals = arena.make<DVec3>(count);
+  const std::span<std::uint8_t> held = arena.make<std::uint8_t>(count);
+  const std::span<float> pads = arena.make<float>(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    held[v] = !(vertices.inverse_mass[v] > 0.0f);
+    goals[v] = held[v] != 0 ? targets[v] : targets[v] + contacts.pushes[v];
+    left[v] = goals[v] - vertices.positions[v];
+  }
+  const DVec3 mean = mean_of(surfaces, left);
+  for (std::size_t v = 0; v < count; ++v) left[v] = left[v] - mean;
+  BoundReport report;
+  Array<SurfacePair> found;
+  std::span<const SurfacePair> pairs = contacts.pairs;
+  bool again = true;
+  for (contacts.rounds = 1; again; ++contacts.rounds) {
+    for (std::size_t v = 0; v < count; ++v) moves[v] = left[v];
+    const BoundReport one =
+        bound_moves(pairs, vertices.positions, contacts.limits, held, settings.bounds, moves, arena);
+    report = {one.shortened, report.forced + one.forced, contacts.rounds == 1 ? one.crossed : report.crossed};
+    // Those that would go further than they were looked for go on in another round.
+    again = false;
+    for (std::size_t v = 0; v < count; ++v) {
+      again |= held[v] == 0 && length(left[v]) > double(contacts.limits[v]);
+      vertices.positions[v] += moves[v];
+      left[v] = left[v] - moves[v];
+    }
+    again = again && contacts.rounds < settings.most_rounds;
+    if (!again) break;
+    set_reach(surfaces, vertices.inverse_mass, left, contacts.limits, pads);
+    find_surface_pairs(surfaces, vertices.positions, pads, arena, found);
+    pairs = found;
+  }
+  // All have moved by the mean less than they should.
+  for (std::size_t v = 0; v < count; ++v) {
+    const bool there = held[v] != 0 || left[v] == DVec3{};
+    vertices.positions[v] = there ? goals[v] : vertices.positions[v] + mean;
+  }
+  return report;
+}
+
+}  // namespace gyre
