@@ -33,7 +33,8 @@ void set_radii(SoftSurface& surface, std::span<const DVec3> places, float radius
   }
 }
 
-// Edges by their vertices, each owned by the first triangle that has it.
+// Edges by their vertices, each owned by the first triangle that has it. (Of an edge of three triangles or more, the first two are
+// neighbours.)
 void set_edges(SoftSurface& surface) {
   const std::size_t sides = 3 * surface.triangles.size();
   Array<std::uint64_t> keys, scratch_keys;
@@ -50,6 +51,24 @@ void set_edges(SoftSurface& surface) {
     if (i > 0 && keys[i] == keys[i - 1]) continue;
     surface.triangles[side[i] / 3].owned_edge[side[i] % 3] = std::int32_t(surface.edges.size());
     surface.edges.push_back({std::uint32_t(keys[i] >> 32), std::uint32_t(keys[i])});
+    if (i + 1 == sides || keys[i + 1] != keys[i]) continue;
+    surface.triangles[side[i] / 3].neighbour[side[i] % 3] = std::int32_t(side[i + 1] / 3);
+    surface.triangles[side[i + 1] / 3].neighbour[side[i + 1] % 3] = std::int32_t(side[i] / 3);
+  }
+}
+
+void set_around(SoftSurface& surface) {
+  surface.around_begin.assign(std::size_t(surface.vertices) + 1, 0u);
+  for (const SurfaceEdge& edge : surface.edges) {
+    ++surface.around_begin[edge.a + 1];
+    ++surface.around_begin[edge.b + 1];
+  }
+  for (int v = 0; v < surface.vertices; ++v) surface.around_begin[v + 1] += surface.around_begin[v];
+  surface.around.resize(2 * surface.edges.size());
+  Array<std::uint32_t> next = surface.around_begin;
+  for (const SurfaceEdge& edge : surface.edges) {
+    surface.around[next[edge.a]++] = edge.b;
+    surface.around[next[edge.b]++] = edge.a;
   }
 }
 
@@ -93,6 +112,7 @@ SoftSurface make_surface(std::span<const DVec3> places, std::span<const std::uin
       surface.triangles[i].corner[k] = triangles[3 * surface.tree.items[i] + k];
   }
   set_edges(surface);
+  set_around(surface);
   set_owned_corners(surface);
   set_radii(surface, places, radius);
   double sum = 0.0;

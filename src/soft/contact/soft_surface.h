@@ -25,12 +25,15 @@ struct SurfaceTriangle {
   std::uint32_t corner[3] = {};
   std::int32_t owned_edge[3] = {-1, -1, -1};  // of the edges 01, 12, 20: those that this triangle owns
   std::uint32_t owned_corners = 0;            // bit i: this triangle owns corner i
+  std::int32_t neighbour[3] = {-1, -1, -1};   // across the edges 01, 12, 20; -1: a boundary of the surface
 };
 
 struct SoftSurface {
   int vertices = 0;
   Array<SurfaceTriangle> triangles;  // in the order of the leaves
   Array<SurfaceEdge> edges;
+  // Vertices that share an edge with vertex v: around[around_begin[v]] to around[around_begin[v + 1] - 1].
+  Array<std::uint32_t> around_begin, around;
   Array<float> radius;     // m, by vertex: surfaces keep the sum of their radii apart
   StaticTree tree;         // its items are not used
   float mean_edge = 0.0f;  // m, at rest

@@ -8,8 +8,9 @@ namespace {
 
 // Vertices are looked for a little further than they move, so that impulses may change their moves.
 constexpr float kLimitOfMove = 1.25f;
-constexpr float kLimitOfRadius = 0.5f;
+constexpr float kLimitOfRadius = 0.1f;
 constexpr float kMostLimitOfEdge = 1.0f;
+constexpr float kNearOfThickness = 0.1f;  // pairs nearer than this have rows whatever their velocity
 constexpr float kMostPushOfThickness = 0.25f;
 
 // The mean of the moves: surfaces that fly together do not look far.
@@ -51,9 +52,9 @@ void keep_impulses(std::span<const SurfacePair> before, std::span<const SurfaceI
 }
 
 struct Row {
+  std::uint32_t pair;
   Vec3 normal;
-  float per_normal;   // kg: impulse for a change of the normal velocity
-  float per_tangent;  // kg
+  float mass;         // kg: impulse for a change of the relative velocity
   float target;       // m/s: least normal velocity
   float push_target;  // m: least normal displacement
   float push;         // kg m: so far
@@ -64,26 +65,21 @@ class RowSolver {
   RowSolver(const SurfaceVertices& vertices, SurfaceContacts& contacts, Arena& arena)
       : vertices_(vertices), contacts_(contacts), rows_(arena.make<Row>(contacts.pairs.size())) {}
 
+  // Rows of the pairs that may touch in this half step.
   void prepare(const SurfaceContactSettings& settings) {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const SurfacePair& pair = contacts_.pairs[i];
-      Row& row = rows_[i];
-      row.normal = to_float(pair.normal);
-      float mobility = 0.0f;
-      for (int k = 0; k < 4; ++k) mobility += square(pair.weight[k]) * vertices_.inverse_mass[pair.vertex[k]];
-      row.per_normal = mobility > 0.0f ? 1.0f / mobility : 0.0f;
-      row.per_tangent = row.per_normal;
-      const float gap = float(pair.distance - double(pair.thickness));
-      row.target = gap > 0.0f ? -gap / settings.step : 0.0f;
-      row.push_target =
-          gap < 0.0f ? min(-settings.pushout * gap, kMostPushOfThickness * pair.thickness) : 0.0f;
-      row.push = 0.0f;
-      SurfaceImpulse& impulse = contacts_.impulses[i];
-      if (row.per_normal == 0.0f) impulse = {};
-      // The plane of friction turns with the normal.
-      impulse.friction -= dot(impulse.friction, row.normal) * row.normal;
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < std::uint32_t(contacts_.pairs.size()); ++i) {
+      if (may_touch(contacts_.pairs[i], settings.step))
+        rows_[count++] = make_row(i, settings);
+      else
+        contacts_.impulses[i] = {};
+    }
+    rows_ = rows_.first(count);
+    // Impulses of the last half step, once all rows have seen the velocities without them.
+    for (const Row& row : rows_) {
+      const SurfaceImpulse& impulse = contacts_.impulses[row.pair];
       if (impulse.normal > 0.0f)
-        add(vertices_.velocities, pair, impulse.normal * row.normal + impulse.friction);
+        add(vertices_.velocities, contacts_.pairs[row.pair], impulse.normal * row.normal + impulse.friction);
     }
   }
 
@@ -102,10 +98,10 @@ class RowSolver {
     for (int n = 0; n < iterations; ++n) {
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         Row& row = rows_[i];
-        if (!(row.push_target > 0.0f) || row.per_normal == 0.0f) continue;
-        const SurfacePair& pair = contacts_.pairs[i];
+        if (!(row.push_target > 0.0f)) continue;
+        const SurfacePair& pair = contacts_.pairs[row.pair];
         const float now = dot(row.normal, sum(contacts_.pushes, pair));
-        const float push = max(0.0f, row.push + (row.push_target - now) * row.per_normal);
+        const float push = max(0.0f, row.push + (row.push_target - now) * row.mass);
         add(contacts_.pushes, pair, (push - row.push) * row.normal);
         row.push = push;
       }
@@ -113,6 +109,30 @@ class RowSolver {
   }
 
  private:
+  bool may_touch(const SurfacePair& pair, float step) const {
+    if (!pair.touches) return false;
+    const float gap = float(pair.distance - double(pair.thickness)), near = kNearOfThickness * pair.thickness;
+    if (gap < near) return true;
+    return gap - near < -kLimitOfMove * step * dot(to_float(pair.normal), sum(vertices_.velocities, pair));
+  }
+  Row make_row(std::uint32_t i, const SurfaceContactSettings& settings) {
+    const SurfacePair& pair = contacts_.pairs[i];
+    Row row;
+    row.pair = i;
+    row.normal = to_float(pair.normal);
+    float mobility = 0.0f;
+    for (int k = 0; k < 4; ++k) mobility += square(pair.weight[k]) * vertices_.inverse_mass[pair.vertex[k]];
+    row.mass = mobility > 0.0f ? 1.0f / mobility : 0.0f;
+    const float gap = float(pair.distance - double(pair.thickness));
+    row.target = gap > 0.0f ? -gap / settings.step : 0.0f;
+    row.push_target = gap < 0.0f ? min(-settings.pushout * gap, kMostPushOfThickness * pair.thickness) : 0.0f;
+    row.push = 0.0f;
+    SurfaceImpulse& impulse = contacts_.impulses[i];
+    if (row.mass == 0.0f) impulse = {};
+    // The plane of friction turns with the normal.
+    impulse.friction -= dot(impulse.friction, row.normal) * row.normal;
+    return row;
+  }
   static Vec3 sum(std::span<const Vec3> values, const SurfacePair& pair) {
     Vec3 out{};
     for (int k = 0; k < 4; ++k) out += pair.weight[k] * values[pair.vertex[k]];
@@ -127,15 +147,14 @@ class RowSolver {
 
   void solve_row(int i) {
     const Row& row = rows_[i];
-    if (row.per_normal == 0.0f) return;
-    const SurfacePair& pair = contacts_.pairs[i];
-    SurfaceImpulse& impulse = contacts_.impulses[i];
+    const SurfacePair& pair = contacts_.pairs[row.pair];
+    SurfaceImpulse& impulse = contacts_.impulses[row.pair];
     const Vec3 velocity = sum(vertices_.velocities, pair);
     const float along = dot(row.normal, velocity);
-    const float normal = max(0.0f, impulse.normal - (along - row.target) * row.per_normal);
+    const float normal = max(0.0f, impulse.normal - (along - row.target) * row.mass);
     if (normal == 0.0f && impulse.normal == 0.0f) return;
     // Scalar inverse masses: normal and friction do not act on each other within a row.
-    Vec3 friction = impulse.friction - row.per_tangent * (velocity - along * row.normal);
+    Vec3 friction = impulse.friction - row.mass * (velocity - along * row.normal);
     const float size = length(friction);
     if (size > pair.friction[0] * normal) friction = (pair.friction[1] * normal / size) * friction;
     add(vertices_.velocities, pair, (normal - impulse.normal) * row.normal + (friction - impulse.friction));

@@ -12,6 +12,8 @@ namespace {
 using namespace surface_test;
 
 constexpr float kHalfStep = 1.0f / 480.0f;
+constexpr double kEnergyShare =
+    1.0e-4;  // of the energy that is exchanged: what may come from rounding and pushouts
 
 Pose at(double x, double y, double z) { return {{x, y, z}, {}}; }
 
@@ -31,13 +33,14 @@ TEST(SurfaceContacts, SheetsThatFallOnAPinnedOneStayApart) {
   pin_edge(scene.bodies[0], 0, cells);
   pin_edge(scene.bodies[0], cells, cells);
   double most = scene.energy();
+  const double exchanged = 9.81 * soft_test::mass_of(scene.bodies[0]) * 0.5;
   int touching = 0;
   for (int n = 0; n < 480; ++n) {
     scene.step();
     touching += scene.contacts.touching > 0;
     ASSERT_EQ(scene.crossings(), 0) << n;
     const double energy = scene.energy();
-    EXPECT_LT(energy, most + 1e-4 * std::abs(most)) << n;
+    EXPECT_LT(energy, most + kEnergyShare * exchanged) << n;
     most = min(most, energy);
   }
   EXPECT_GT(touching, 300);
@@ -65,12 +68,13 @@ TEST(SurfaceContacts, AClothFoldedOntoItselfDoesNotCross) {
   scene.add(flat, grid_triangles(cells, cells), 0.01f);
   scene.bodies[0] = sheet;
   double most = scene.energy();
+  const double exchanged = 9.81 * soft_test::mass_of(scene.bodies[0]) * 0.5;
   int touching = 0;
   for (int n = 0; n < 480; ++n) {
     scene.step();
     touching += scene.contacts.touching > 0;
     ASSERT_EQ(scene.crossings(), 0) << n;
-    EXPECT_LT(scene.energy(), most + 1e-4 * std::abs(most)) << n;
+    EXPECT_LT(scene.energy(), most + kEnergyShare * exchanged) << n;
     most = min(most, scene.energy());
   }
   EXPECT_GT(touching, 100);
@@ -117,10 +121,11 @@ TEST(SurfaceContacts, AFreePairKeepsItsMomentum) {
   const DVec3 before = soft_test::momentum(scene.bodies[0]) + soft_test::momentum(scene.bodies[1]);
   const DVec3 own = soft_test::momentum(scene.bodies[0]);
   double most = scene.energy();
+  const double exchanged = most;
   for (int n = 0; n < 240; ++n) {
     scene.step();
     ASSERT_EQ(scene.crossings(), 0) << n;
-    EXPECT_LT(scene.energy(), most * (1.0 + 1e-4)) << n;
+    EXPECT_LT(scene.energy(), most + kEnergyShare * exchanged) << n;
     most = min(most, scene.energy());
   }
   const DVec3 after = soft_test::momentum(scene.bodies[0]) + soft_test::momentum(scene.bodies[1]);

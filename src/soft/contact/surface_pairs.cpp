@@ -16,7 +16,6 @@ struct FeatureBase {
   std::uint32_t triangle = 0, edge = 0;
 };
 
-// The larger of two numbers' pads bounds all points of a feature.
 class PairSearch {
  public:
   PairSearch(std::span<const DVec3> positions, std::span<const float> pads, Array<SurfacePair>& pairs)
@@ -62,9 +61,40 @@ class PairSearch {
         pair.vertex[n + 1] = on[n];
         pair.weight[n + 1] = -float(closest.weights[n]);
       }
+      pair.touches = touches_triangle(p, closest, b, k);
       const DVec3 face = cross(positions_[on[1]] - positions_[on[0]], positions_[on[2]] - positions_[on[0]]);
       finish(pair, -closest.point, face, a, b);
     }
+  }
+
+  // True if no other triangle of b has a point nearer to p than the closest point of triangle k, and k is the first that has it.
+  bool touches_triangle(DVec3 p, const SimplexPoint& closest, const SurfaceBoxes& b, std::uint32_t k) const {
+    const SurfaceTriangle& one = b.surface->triangles[k];
+    const auto at = [&](std::uint32_t v) { return positions_[b.first + v] - p; };  // relative to p
+    const DVec3 away = -closest.point;
+    if (closest.corners == 7) return true;
+    for (unsigned c = 0; c < 3; ++c) {
+      const unsigned next = c == 2 ? 0 : c + 1;
+      if (closest.corners == (1u << c)) {
+        if ((one.owned_corners >> c & 1u) == 0) return false;
+        const std::uint32_t v = one.corner[c];
+        for (std::uint32_t n = b.surface->around_begin[v]; n < b.surface->around_begin[v + 1]; ++n) {
+          if (dot(away, at(b.surface->around[n]) - at(v)) > 0.0) return false;
+        }
+        return true;
+      }
+      if (closest.corners == (1u << c | 1u << next)) {
+        if (one.neighbour[c] < 0) return true;
+        if (std::uint32_t(one.neighbour[c]) < k) return false;
+        const SurfaceTriangle& other = b.surface->triangles[one.neighbour[c]];
+        for (const std::uint32_t v : other.corner) {
+          if (v != one.corner[c] && v != one.corner[next] && dot(away, at(v) - closest.point) > 0.0)
+            return false;
+        }
+        return true;
+      }
+    }
+    return true;
   }
 
   void try_edges(const SurfaceBoxes& a, std::uint32_t i, FeatureBase base_a, const SurfaceBoxes& b,
@@ -104,6 +134,7 @@ class PairSearch {
     for (int n = 0; n < 4; ++n) pair.vertex[n] = v[n];
     pair.weight[1] = float(closest.s), pair.weight[0] = 1.0f - pair.weight[1];
     pair.weight[3] = -float(closest.t), pair.weight[2] = -1.0f - pair.weight[3];
+    pair.touches = closest.s > 0.0 && closest.s < 1.0 && closest.t > 0.0 && closest.t < 1.0;
     finish(pair, apart, cross(along, q - p), a, b);
   }
 

@@ -21,7 +21,10 @@ namespace gyre {
 struct SurfacePair {
   // The vertices of feature A, one or two of them, then those of feature B.
   std::uint32_t vertex[4] = {};
-  std::int32_t on_a = 1;
+  std::uint16_t on_a = 1;
+  // True if forces may act here. Where the closest point of a triangle lies on its boundary, other triangles and edges have the same point or a
+  // nearer one; of all these pairs one touches, along a normal of the surface and not across a flat sheet's edges.
+  bool touches = true;
   // Of the closest points, a = sum of weight times position over A, b likewise over B: positive on A, where they sum to 1, negative on B.
   float weight[4] = {};
   float thickness = 0.0f;  // m: the radii at the closest points together
