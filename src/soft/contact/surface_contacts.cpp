@@ -9,9 +9,9 @@ namespace {
 // Vertices are looked for a little further than they move, so that impulses may change their moves.
 constexpr float kLimitOfMove = 1.25f;
 constexpr float kLimitOfRadius = 0.1f;
-constexpr float kMostLimitOfEdge = 1.0f;
+constexpr float kMaxLimitOfEdge = 1.0f;
 constexpr float kNearOfThickness = 0.1f;  // pairs nearer than this have rows whatever their velocity
-constexpr float kMostPushOfThickness = 0.25f;
+constexpr float kMaxPushOfThickness = 0.25f;
 
 // The mean of the moves: surfaces that fly together do not look far.
 DVec3 mean_of(std::span<const PlacedSurface> surfaces, std::span<const DVec3> moves) {
@@ -28,7 +28,7 @@ DVec3 mean_of(std::span<const PlacedSurface> surfaces, std::span<const DVec3> mo
 void set_reach(std::span<const PlacedSurface> surfaces, std::span<const float> inverse_mass,
                std::span<const DVec3> moves, std::span<float> limits, std::span<float> pads) {
   for (const PlacedSurface& placed : surfaces) {
-    const float most = kMostLimitOfEdge * placed.surface->mean_edge;
+    const float most = kMaxLimitOfEdge * placed.surface->mean_edge;
     for (int i = 0; i < placed.surface->vertices; ++i) {
       const std::size_t v = placed.first + std::size_t(i);
       const float radius = placed.surface->radius[i], far = float(length(moves[v]));
@@ -125,7 +125,7 @@ class RowSolver {
     row.mass = mobility > 0.0f ? 1.0f / mobility : 0.0f;
     const float gap = float(pair.distance - double(pair.thickness));
     row.target = gap > 0.0f ? -gap / settings.step : 0.0f;
-    row.push_target = gap < 0.0f ? min(-settings.pushout * gap, kMostPushOfThickness * pair.thickness) : 0.0f;
+    row.push_target = gap < 0.0f ? min(-settings.pushout * gap, kMaxPushOfThickness * pair.thickness) : 0.0f;
     row.push = 0.0f;
     SurfaceImpulse& impulse = contacts_.impulses[i];
     if (row.mass == 0.0f) impulse = {};

@@ -1,5 +1,6 @@
 // Exact predicates and crossings, against integers, brute force and cases whose number is known.
 #include "soft/contact/surface_crossings.h"
+#include "random.h"
 #include "soft/contact/orientation.h"
 #include "soft/contact/surface_test_kit.h"
 

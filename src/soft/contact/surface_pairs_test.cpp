@@ -1,6 +1,7 @@
 // Pairs against brute force, and bounds against exact crossings.
 #include "soft/contact/surface_pairs.h"
 #include "geometry/distance/closest.h"
+#include "random.h"
 #include "soft/contact/displacement_bounds.h"
 #include "soft/contact/surface_crossings.h"
 #include "soft/contact/surface_test_kit.h"

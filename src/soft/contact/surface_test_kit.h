@@ -1,7 +1,6 @@
 // What the tests of contacts of soft surfaces share: sheets, and soft bodies that step by themselves and touch each other alone.
 #pragma once
 
-#include "random.h"
 #include "soft/contact/surface_contacts.h"
 #include "soft/contact/surface_crossings.h"
 #include "soft/elements/cloth.h"
@@ -49,7 +48,8 @@ struct Surfaces {
 };
 
 // A random sheet: a grid whose vertices are moved about, far enough to cross itself.
-inline Array<DVec3> crumpled(int cells, double scatter, double lift, testing_random::Mixed& random) {
+template <class Random>
+Array<DVec3> crumpled(int cells, double scatter, double lift, Random& random) {
   Array<DVec3> out;
   for (int j = 0; j <= cells; ++j) {
     for (int i = 0; i <= cells; ++i) {
