@@ -121,50 +121,6 @@ SoftSurface make_surface(std::span<const DVec3> places, std::span<const std::uin
   return surface;
 }
 
-Array<std::uint32_t> boundary_triangles(std::span<const DVec3> places,
-                                        std::span<const std::uint32_t> tetrahedra) {
-  struct Face {
-    std::uint32_t sorted[3];
-    std::uint32_t corner[3];
-  };
-  // The face across from each corner.
-  constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  Array<Face> faces, scratch;
-  for (std::size_t i = 0; i + 3 < tetrahedra.size(); i += 4) {
-    for (int across = 0; across < 4; ++across) {
-      Face face;
-      for (int k = 0; k < 3; ++k) face.corner[k] = tetrahedra[i + std::size_t(kFaces[across][k])];
-      const DVec3 a = places[face.corner[0]];
-      const DVec3 normal = cross(places[face.corner[1]] - a, places[face.corner[2]] - a);
-      if (dot(normal, places[tetrahedra[i + std::size_t(across)]] - a) > 0.0)
-        std::swap(face.corner[1], face.corner[2]);
-      for (int k = 0; k < 3; ++k) face.sorted[k] = face.corner[k];
-      if (face.sorted[0] > face.sorted[1]) std::swap(face.sorted[0], face.sorted[1]);
-      if (face.sorted[1] > face.sorted[2]) std::swap(face.sorted[1], face.sorted[2]);
-      if (face.sorted[0] > face.sorted[1]) std::swap(face.sorted[0], face.sorted[1]);
-      faces.push_back(face);
-    }
-  }
-  scratch.resize(faces.size());
-  const auto same = [](const Face& a, const Face& b) {
-    return a.sorted[0] == b.sorted[0] && a.sorted[1] == b.sorted[1] && a.sorted[2] == b.sorted[2];
-  };
-  merge_sort(faces.view(), scratch.view(), [](const Face& a, const Face& b) {
-    for (int k = 0; k < 3; ++k) {
-      if (a.sorted[k] != b.sorted[k]) return a.sorted[k] < b.sorted[k];
-    }
-    return false;
-  });
-  Array<std::uint32_t> out;
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t end = i + 1;
-    while (end < faces.size() && same(faces[i], faces[end])) ++end;
-    if (end == i + 1) out.append(faces[i].corner);
-    i = end;
-  }
-  return out;
-}
-
 SurfaceBoxes fit_boxes(const PlacedSurface& placed, std::span<const DVec3> positions,
                        std::span<const float> pads, DVec3 origin, Arena& arena) {
   const SoftSurface& surface = *placed.surface;

@@ -47,10 +47,6 @@ struct SoftSurface {
 SoftSurface make_surface(std::span<const DVec3> places, std::span<const std::uint32_t> triangles,
                          float radius);
 
-// The triangles of the boundary of a solid: the faces that belong to one tetrahedron alone, turned outward.
-Array<std::uint32_t> boundary_triangles(std::span<const DVec3> places,
-                                        std::span<const std::uint32_t> tetrahedra);
-
 struct PlacedSurface {
   const SoftSurface* surface = nullptr;
   std::uint32_t first = 0;  // its vertex 0
