@@ -60,60 +60,65 @@ struct Row {
   float push;         // kg m: so far
 };
 
+// Adds an impulse on a pair, times a factor for each vertex.
+template <class Factor>
+void add_to(std::span<Vec3> values, const SurfacePair& pair, Vec3 impulse, Factor&& factor) {
+  for (int k = 0; k < 4; ++k) {
+    const std::uint32_t v = pair.vertex[k];
+    values[v] += pair.weight[k] * factor(v) * impulse;
+  }
+}
+Vec3 sum_of(std::span<const Vec3> values, const SurfacePair& pair) {
+  Vec3 out{};
+  for (int k = 0; k < 4; ++k) out += pair.weight[k] * values[pair.vertex[k]];
+  return out;
+}
+
 class RowSolver {
  public:
-  RowSolver(const SurfaceVertices& vertices, SurfaceContacts& contacts, Arena& arena)
-      : vertices_(vertices), contacts_(contacts), rows_(arena.make<Row>(contacts.pairs.size())) {}
-
-  // Rows of the pairs that may touch in this half step.
-  void prepare(const SurfaceContactSettings& settings) {
+  // Of the pairs that may touch in this half step.
+  RowSolver(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+            SurfaceContacts& contacts, Arena& arena)
+      : vertices_(vertices), contacts_(contacts), rows_(arena.make<Row>(contacts.pairs.size())) {
     std::size_t count = 0;
-    for (std::uint32_t i = 0; i < std::uint32_t(contacts_.pairs.size()); ++i) {
-      if (may_touch(contacts_.pairs[i], settings.step))
-        rows_[count++] = make_row(i, settings);
-      else
-        contacts_.impulses[i] = {};
+    for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
+      if (may_touch(i, settings.step)) rows_[count++] = make_row(i, settings);
     }
     rows_ = rows_.first(count);
-    // Impulses of the last half step, once all rows have seen the velocities without them.
-    for (const Row& row : rows_) {
-      const SurfaceImpulse& impulse = contacts_.impulses[row.pair];
-      if (impulse.normal > 0.0f)
-        add(vertices_.velocities, contacts_.pairs[row.pair], impulse.normal * row.normal + impulse.friction);
-    }
   }
 
-  void solve(int iterations) {
+  void solve(std::span<Vec3> velocities, int iterations) {
     const int count = int(rows_.size());
     for (int n = 0; n < iterations; ++n) {
       if (n % 2 == 0) {
-        for (int i = 0; i < count; ++i) solve_row(i);
+        for (int i = 0; i < count; ++i) solve_row(rows_[i], velocities);
       } else {
-        for (int i = count; i-- > 0;) solve_row(i);
+        for (int i = count; i-- > 0;) solve_row(rows_[i], velocities);
       }
     }
   }
 
-  void solve_pushes(int iterations) {
+  void solve_pushes(std::span<Vec3> pushes, int iterations) {
     for (int n = 0; n < iterations; ++n) {
-      for (std::size_t i = 0; i < rows_.size(); ++i) {
-        Row& row = rows_[i];
+      for (Row& row : rows_) {
         if (!(row.push_target > 0.0f)) continue;
         const SurfacePair& pair = contacts_.pairs[row.pair];
-        const float now = dot(row.normal, sum(contacts_.pushes, pair));
+        const float now = dot(row.normal, sum_of(pushes, pair));
         const float push = max(0.0f, row.push + (row.push_target - now) * row.mass);
-        add(contacts_.pushes, pair, (push - row.push) * row.normal);
+        add(pushes, pair, (push - row.push) * row.normal);
         row.push = push;
       }
     }
   }
 
  private:
-  bool may_touch(const SurfacePair& pair, float step) const {
+  bool may_touch(std::uint32_t i, float step) const {
+    const SurfacePair& pair = contacts_.pairs[i];
     if (!pair.touches) return false;
+    if (contacts_.impulses[i].normal > 0.0f) return true;
     const float gap = float(pair.distance - double(pair.thickness)), near = kNearOfThickness * pair.thickness;
     if (gap < near) return true;
-    return gap - near < -kLimitOfMove * step * dot(to_float(pair.normal), sum(vertices_.velocities, pair));
+    return gap - near < -kLimitOfMove * step * dot(to_float(pair.normal), sum_of(vertices_.velocities, pair));
   }
   Row make_row(std::uint32_t i, const SurfaceContactSettings& settings) {
     const SurfacePair& pair = contacts_.pairs[i];
@@ -127,37 +132,24 @@ class RowSolver {
     row.target = gap > 0.0f ? -gap / settings.step : 0.0f;
     row.push_target = gap < 0.0f ? min(-settings.pushout * gap, kMaxPushOfThickness * pair.thickness) : 0.0f;
     row.push = 0.0f;
-    SurfaceImpulse& impulse = contacts_.impulses[i];
-    if (row.mass == 0.0f) impulse = {};
-    // The plane of friction turns with the normal.
-    impulse.friction -= dot(impulse.friction, row.normal) * row.normal;
     return row;
   }
-  static Vec3 sum(std::span<const Vec3> values, const SurfacePair& pair) {
-    Vec3 out{};
-    for (int k = 0; k < 4; ++k) out += pair.weight[k] * values[pair.vertex[k]];
-    return out;
-  }
   void add(std::span<Vec3> values, const SurfacePair& pair, Vec3 impulse) const {
-    for (int k = 0; k < 4; ++k) {
-      const std::uint32_t v = pair.vertex[k];
-      values[v] += pair.weight[k] * vertices_.inverse_mass[v] * impulse;
-    }
+    add_to(values, pair, impulse, [&](std::uint32_t v) { return vertices_.inverse_mass[v]; });
   }
 
-  void solve_row(int i) {
-    const Row& row = rows_[i];
+  void solve_row(const Row& row, std::span<Vec3> velocities) {
     const SurfacePair& pair = contacts_.pairs[row.pair];
     SurfaceImpulse& impulse = contacts_.impulses[row.pair];
-    const Vec3 velocity = sum(vertices_.velocities, pair);
+    const Vec3 velocity = sum_of(velocities, pair);
     const float along = dot(row.normal, velocity);
     const float normal = max(0.0f, impulse.normal - (along - row.target) * row.mass);
     if (normal == 0.0f && impulse.normal == 0.0f) return;
-    // Scalar inverse masses: normal and friction do not act on each other within a row.
+    // Inverse masses are scalars: normal and friction do not act on each other within a row.
     Vec3 friction = impulse.friction - row.mass * (velocity - along * row.normal);
     const float size = length(friction);
     if (size > pair.friction[0] * normal) friction = (pair.friction[1] * normal / size) * friction;
-    add(vertices_.velocities, pair, (normal - impulse.normal) * row.normal + (friction - impulse.friction));
+    add(velocities, pair, (normal - impulse.normal) * row.normal + (friction - impulse.friction));
     impulse.normal = normal;
     impulse.friction = friction;
   }
@@ -190,16 +182,44 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
   keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
 }
 
+void start_surface_contacts(const SurfaceVertices& vertices, SurfaceContacts& contacts) {
+  contacts.given.assign(vertices.positions.size(), Vec3{});
+  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
+    const SurfacePair& pair = contacts.pairs[i];
+    SurfaceImpulse& impulse = contacts.impulses[i];
+    if (!pair.touches) impulse = {};
+    if (impulse.normal == 0.0f) continue;
+    // The plane of friction turns with the normal.
+    const Vec3 normal = to_float(pair.normal);
+    impulse.friction -= dot(impulse.friction, normal) * normal;
+    add_to(contacts.given, pair, impulse.normal * normal + impulse.friction,
+           [&](std::uint32_t v) { return vertices.inverse_mass[v] > 0.0f ? 1.0f : 0.0f; });
+  }
+}
+
 void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
                             Arena& arena, SurfaceContacts& contacts) {
   const ArenaScope scope(arena);
-  contacts.pushes.assign(vertices.positions.size(), Vec3{});
-  RowSolver solver(vertices, contacts, arena);
-  solver.prepare(settings);
-  solver.solve(settings.iterations);
-  solver.solve_pushes(settings.iterations);
+  const std::size_t count = vertices.positions.size();
+  const std::span<Vec3> velocities = arena.make<Vec3>(count);
+  for (std::size_t v = 0; v < count; ++v) velocities[v] = vertices.velocities[v];
+  RowSolver solver(vertices, settings, contacts, arena);
+  solver.solve(velocities, settings.iterations);
+  contacts.given.resize(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const float w = vertices.inverse_mass[v];
+    contacts.given[v] = w > 0.0f ? (velocities[v] - vertices.velocities[v]) / w : Vec3{};
+  }
   contacts.touching = 0;
   for (const SurfaceImpulse& impulse : contacts.impulses) contacts.touching += impulse.normal > 0.0f;
+}
+
+void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
+                   SurfaceContacts& contacts) {
+  const ArenaScope scope(arena);
+  contacts.pushes.assign(vertices.positions.size(), Vec3{});
+  RowSolver solver(vertices, settings, contacts, arena);
+  solver.solve_pushes(contacts.pushes, settings.iterations);
 }
 
 BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,

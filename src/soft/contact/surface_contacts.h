@@ -32,7 +32,7 @@ namespace gyre {
 // Vertices of all surfaces, in the numbers of PlacedSurface.
 struct SurfaceVertices {
   std::span<DVec3> positions;
-  std::span<Vec3> velocities;
+  std::span<const Vec3> velocities;
   std::span<const float> inverse_mass;  // 1/kg, 0: held, it goes where it is told
 };
 
@@ -55,6 +55,7 @@ struct SurfaceContacts {
   Array<SurfaceImpulse> impulses;  // by pair
   Array<float> limits;             // m, by vertex: how far it may move before pairs are found again
   Array<Vec3> pushes;              // m, by vertex
+  Array<Vec3> given;               // N s, by vertex: what is to be given to it now
   int rounds = 0;                  // of finding pairs, in the last half step
   int touching = 0;                // pairs with an impulse
 };
@@ -62,9 +63,14 @@ struct SurfaceContacts {
 // Finds pairs for a half step at these velocities; pairs that were there keep their impulses.
 void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
                            const SurfaceContactSettings& settings, Arena& arena, SurfaceContacts& contacts);
-// Changes velocities, and sets the pushes.
+// Sets what the impulses that were kept from the last half step give to each vertex.
+void start_surface_contacts(const SurfaceVertices& vertices, SurfaceContacts& contacts);
+// Solves the rows at the present velocities, with all impulses so far given. Sets what the changes of the impulses give to each vertex.
 void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
                             Arena& arena, SurfaceContacts& contacts);
+// Sets the pushes.
+void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
+                   SurfaceContacts& contacts);
 // Moves the vertices to their targets and by their pushes, as far as the bounds let them. Vertices without inverse mass get to their targets.
 BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
                           std::span<const DVec3> targets, const SurfaceContactSettings& settings,

@@ -5,6 +5,7 @@
 #include "soft/contact/surface_crossings.h"
 #include "soft/elements/cloth.h"
 #include "soft/elements/solid.h"
+#include "soft/solver/soft_pass.h"
 #include "soft/solver/soft_test_kit.h"
 
 #include <cmath>
@@ -70,6 +71,7 @@ struct SoftScene {
   ImplicitSettings implicit;
   SurfaceContactSettings settings;
   BoundReport report;
+  int spread = 3, outer = 2;
 
   SoftScene(float step, Vec3 gravity) {
     implicit.step = settings.step = step;
@@ -104,7 +106,35 @@ struct SoftScene {
     }
     const SurfaceVertices vertices{all.positions, velocities, inverse_mass};
     find_surface_contacts(all.placed, vertices, settings, contact_arena, contacts);
-    solve_surface_contacts(vertices, settings, contact_arena, contacts);
+    const auto give = [&](int iterations) {
+      std::size_t at = 0;
+      for (std::size_t k = 0; k < bodies.size(); ++k) {
+        Particles& p = bodies[k].particles;
+        const VectorRows rows = make_vectors(bench.arena, p.x.size());
+        for (std::size_t i = 0; i < p.x.size(); ++i) {
+          const Vec3 one = int(i) < p.count ? contacts.given[at + i] : Vec3{};
+          rows.x[i] = one.x, rows.y[i] = one.y, rows.z[i] = one.z;
+        }
+        add_impulses(bodies[k], steps[k], rows, iterations, bench.kernels, bench.arena, bench.tasks);
+        for (int i = 0; i < p.count; ++i) velocities[at++] = p.velocity(i);
+      }
+    };
+    if (spread > 0) {
+      start_surface_contacts(vertices, contacts);
+      give(spread);
+      for (int n = 0; n < outer; ++n) {
+        solve_surface_contacts(vertices, settings, contact_arena, contacts);
+        give(spread);
+      }
+    } else {
+      start_surface_contacts(vertices, contacts);
+      for (int n = 0; n < 2; ++n) {
+        if (n == 1) solve_surface_contacts(vertices, settings, contact_arena, contacts);
+        for (std::size_t v = 0; v < velocities.size(); ++v)
+          velocities[v] += inverse_mass[v] * contacts.given[v];
+      }
+    }
+    push_surfaces(vertices, settings, contact_arena, contacts);
     std::size_t at = 0;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       Particles& p = bodies[k].particles;
