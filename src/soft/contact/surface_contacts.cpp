@@ -10,7 +10,8 @@ namespace {
 constexpr float kLimitOfMove = 1.25f;
 constexpr float kLimitOfRadius = 0.1f;
 constexpr float kMaxLimitOfEdge = 1.0f;
-constexpr float kNearOfThickness = 0.1f;  // pairs nearer than this have rows whatever their velocity
+constexpr float kNearOfThickness = 0.1f;   // pairs nearer than this have rows whatever their velocity
+constexpr float kSlopOfThickness = 0.01f;  // overlap that stays
 constexpr float kMaxPushOfThickness = 0.25f;
 
 // The mean of the moves: surfaces that fly together do not look far.
@@ -51,113 +52,73 @@ void keep_impulses(std::span<const SurfacePair> before, std::span<const SurfaceI
   }
 }
 
+// One contact, with all that a sweep reads.
 struct Row {
-  std::uint32_t pair;
+  std::uint32_t vertex[4];
+  float weight[4];
+  float change[4];  // 1/kg: weight times inverse mass
   Vec3 normal;
-  float mass;         // kg: impulse for a change of the relative velocity
-  float target;       // m/s: least normal velocity
-  float push_target;  // m: least normal displacement
-  float push;         // kg m: so far
+  float mass;    // kg: impulse for a change of the relative velocity
+  float target;  // m/s: least normal velocity
+  float static_friction, dynamic_friction;
+  SurfaceImpulse impulse;
+  std::uint32_t pair;
 };
 
-// Adds an impulse on a pair, times a factor for each vertex.
-template <class Factor>
-void add_to(std::span<Vec3> values, const SurfacePair& pair, Vec3 impulse, Factor&& factor) {
+Vec3 sum_of(std::span<const Vec3> values, const std::uint32_t (&vertex)[4], const float (&weight)[4]) {
+  return weight[0] * values[vertex[0]] + weight[1] * values[vertex[1]] + weight[2] * values[vertex[2]] +
+         weight[3] * values[vertex[3]];
+}
+void add_to(std::span<Vec3> values, const Row& row, Vec3 impulse) {
+  for (int k = 0; k < 4; ++k) values[row.vertex[k]] += row.change[k] * impulse;
+}
+float gap_of(const SurfacePair& pair) { return float(pair.distance - double(pair.thickness)); }
+
+Row make_row(const SurfacePair& pair, std::uint32_t number, const SurfaceVertices& vertices,
+             const SurfaceImpulse& impulse) {
+  Row row;
+  float mobility = 0.0f;
   for (int k = 0; k < 4; ++k) {
-    const std::uint32_t v = pair.vertex[k];
-    values[v] += pair.weight[k] * factor(v) * impulse;
+    row.vertex[k] = pair.vertex[k];
+    row.weight[k] = pair.weight[k];
+    row.change[k] = pair.weight[k] * vertices.inverse_mass[pair.vertex[k]];
+    mobility += row.weight[k] * row.change[k];
   }
+  row.normal = to_float(pair.normal);
+  row.mass = mobility > 0.0f ? 1.0f / mobility : 0.0f;
+  row.target = 0.0f;
+  row.static_friction = pair.friction[0], row.dynamic_friction = pair.friction[1];
+  row.impulse = impulse;
+  row.pair = number;
+  return row;
 }
-Vec3 sum_of(std::span<const Vec3> values, const SurfacePair& pair) {
-  Vec3 out{};
-  for (int k = 0; k < 4; ++k) out += pair.weight[k] * values[pair.vertex[k]];
-  return out;
+
+bool may_touch(const SurfacePair& pair, const SurfaceVertices& vertices, float step) {
+  const float gap = gap_of(pair), near = kNearOfThickness * pair.thickness;
+  if (gap < near) return true;
+  const Vec3 velocity = sum_of(vertices.velocities, pair.vertex, pair.weight);
+  return gap - near < -kLimitOfMove * step * dot(to_float(pair.normal), velocity);
 }
 
-class RowSolver {
- public:
-  // Of the pairs that may touch in this half step.
-  RowSolver(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
-            SurfaceContacts& contacts, Arena& arena)
-      : vertices_(vertices), contacts_(contacts), rows_(arena.make<Row>(contacts.pairs.size())) {
-    std::size_t count = 0;
-    for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
-      if (may_touch(i, settings.step)) rows_[count++] = make_row(i, settings);
-    }
-    rows_ = rows_.first(count);
-  }
+void solve_row(Row& row, std::span<Vec3> velocities) {
+  const Vec3 velocity = sum_of(velocities, row.vertex, row.weight);
+  const float along = dot(row.normal, velocity);
+  const float normal = max(0.0f, row.impulse.normal - (along - row.target) * row.mass);
+  if (normal == 0.0f && row.impulse.normal == 0.0f) return;
+  // Inverse masses are scalars: normal and friction do not act on each other within a row.
+  Vec3 friction = row.impulse.friction - row.mass * (velocity - along * row.normal);
+  const float size = length(friction);
+  if (size > row.static_friction * normal) friction = (row.dynamic_friction * normal / size) * friction;
+  add_to(velocities, row, (normal - row.impulse.normal) * row.normal + (friction - row.impulse.friction));
+  row.impulse = {normal, friction};
+}
 
-  void solve(std::span<Vec3> velocities, int iterations) {
-    const int count = int(rows_.size());
-    for (int n = 0; n < iterations; ++n) {
-      if (n % 2 == 0) {
-        for (int i = 0; i < count; ++i) solve_row(rows_[i], velocities);
-      } else {
-        for (int i = count; i-- > 0;) solve_row(rows_[i], velocities);
-      }
-    }
-  }
-
-  void solve_pushes(std::span<Vec3> pushes, int iterations) {
-    for (int n = 0; n < iterations; ++n) {
-      for (Row& row : rows_) {
-        if (!(row.push_target > 0.0f)) continue;
-        const SurfacePair& pair = contacts_.pairs[row.pair];
-        const float now = dot(row.normal, sum_of(pushes, pair));
-        const float push = max(0.0f, row.push + (row.push_target - now) * row.mass);
-        add(pushes, pair, (push - row.push) * row.normal);
-        row.push = push;
-      }
-    }
-  }
-
- private:
-  bool may_touch(std::uint32_t i, float step) const {
-    const SurfacePair& pair = contacts_.pairs[i];
-    if (!pair.touches) return false;
-    if (contacts_.impulses[i].normal > 0.0f) return true;
-    const float gap = float(pair.distance - double(pair.thickness)), near = kNearOfThickness * pair.thickness;
-    if (gap < near) return true;
-    return gap - near < -kLimitOfMove * step * dot(to_float(pair.normal), sum_of(vertices_.velocities, pair));
-  }
-  Row make_row(std::uint32_t i, const SurfaceContactSettings& settings) {
-    const SurfacePair& pair = contacts_.pairs[i];
-    Row row;
-    row.pair = i;
-    row.normal = to_float(pair.normal);
-    float mobility = 0.0f;
-    for (int k = 0; k < 4; ++k) mobility += square(pair.weight[k]) * vertices_.inverse_mass[pair.vertex[k]];
-    row.mass = mobility > 0.0f ? 1.0f / mobility : 0.0f;
-    const float gap = float(pair.distance - double(pair.thickness));
-    row.target = gap > 0.0f ? -gap / settings.step : 0.0f;
-    row.push_target = gap < 0.0f ? min(-settings.pushout * gap, kMaxPushOfThickness * pair.thickness) : 0.0f;
-    row.push = 0.0f;
-    return row;
-  }
-  void add(std::span<Vec3> values, const SurfacePair& pair, Vec3 impulse) const {
-    add_to(values, pair, impulse, [&](std::uint32_t v) { return vertices_.inverse_mass[v]; });
-  }
-
-  void solve_row(const Row& row, std::span<Vec3> velocities) {
-    const SurfacePair& pair = contacts_.pairs[row.pair];
-    SurfaceImpulse& impulse = contacts_.impulses[row.pair];
-    const Vec3 velocity = sum_of(velocities, pair);
-    const float along = dot(row.normal, velocity);
-    const float normal = max(0.0f, impulse.normal - (along - row.target) * row.mass);
-    if (normal == 0.0f && impulse.normal == 0.0f) return;
-    // Inverse masses are scalars: normal and friction do not act on each other within a row.
-    Vec3 friction = impulse.friction - row.mass * (velocity - along * row.normal);
-    const float size = length(friction);
-    if (size > pair.friction[0] * normal) friction = (pair.friction[1] * normal / size) * friction;
-    add(velocities, pair, (normal - impulse.normal) * row.normal + (friction - impulse.friction));
-    impulse.normal = normal;
-    impulse.friction = friction;
-  }
-
-  const SurfaceVertices& vertices_;
-  SurfaceContacts& contacts_;
-  std::span<Row> rows_;
-};
+void solve_push(Row& row, std::span<Vec3> pushes) {
+  const float now = dot(row.normal, sum_of(pushes, row.vertex, row.weight));
+  const float push = max(0.0f, row.impulse.normal + (row.target - now) * row.mass);
+  add_to(pushes, row, (push - row.impulse.normal) * row.normal);
+  row.impulse.normal = push;
+}
 
 }  // namespace
 
@@ -192,8 +153,11 @@ void start_surface_contacts(const SurfaceVertices& vertices, SurfaceContacts& co
     // The plane of friction turns with the normal.
     const Vec3 normal = to_float(pair.normal);
     impulse.friction -= dot(impulse.friction, normal) * normal;
-    add_to(contacts.given, pair, impulse.normal * normal + impulse.friction,
-           [&](std::uint32_t v) { return vertices.inverse_mass[v] > 0.0f ? 1.0f : 0.0f; });
+    for (int k = 0; k < 4; ++k) {
+      const std::uint32_t v = pair.vertex[k];
+      if (vertices.inverse_mass[v] > 0.0f)
+        contacts.given[v] += pair.weight[k] * (impulse.normal * normal + impulse.friction);
+    }
   }
 }
 
@@ -203,23 +167,50 @@ void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContac
   const std::size_t count = vertices.positions.size();
   const std::span<Vec3> velocities = arena.make<Vec3>(count);
   for (std::size_t v = 0; v < count; ++v) velocities[v] = vertices.velocities[v];
-  RowSolver solver(vertices, settings, contacts, arena);
-  solver.solve(velocities, settings.iterations);
+  std::span<Row> rows = arena.make<Row>(contacts.pairs.size());
+  std::size_t used = 0;
+  for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
+    const SurfacePair& pair = contacts.pairs[i];
+    if (!pair.touches) continue;
+    if (!(contacts.impulses[i].normal > 0.0f) && !may_touch(pair, vertices, settings.step)) continue;
+    Row& row = rows[used++];
+    row = make_row(pair, i, vertices, contacts.impulses[i]);
+    const float gap = gap_of(pair);
+    if (gap > 0.0f) row.target = -gap / settings.step;
+  }
+  rows = rows.first(used);
+  for (int n = 0; n < settings.iterations; ++n) {
+    for (std::size_t i = 0; i < used; ++i) solve_row(rows[n % 2 == 0 ? i : used - 1 - i], velocities);
+  }
+  contacts.touching = 0;
+  for (const Row& row : rows) {
+    contacts.impulses[row.pair] = row.impulse;
+    contacts.touching += row.impulse.normal > 0.0f;
+  }
   contacts.given.resize(count);
   for (std::size_t v = 0; v < count; ++v) {
     const float w = vertices.inverse_mass[v];
     contacts.given[v] = w > 0.0f ? (velocities[v] - vertices.velocities[v]) / w : Vec3{};
   }
-  contacts.touching = 0;
-  for (const SurfaceImpulse& impulse : contacts.impulses) contacts.touching += impulse.normal > 0.0f;
 }
 
 void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
                    SurfaceContacts& contacts) {
   const ArenaScope scope(arena);
   contacts.pushes.assign(vertices.positions.size(), Vec3{});
-  RowSolver solver(vertices, settings, contacts, arena);
-  solver.solve_pushes(contacts.pushes, settings.iterations);
+  std::span<Row> rows = arena.make<Row>(contacts.pairs.size());
+  std::size_t used = 0;
+  for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
+    const SurfacePair& pair = contacts.pairs[i];
+    const float overlap = -gap_of(pair);
+    if (!pair.touches || overlap < kSlopOfThickness * pair.thickness) continue;
+    Row& row = rows[used++];
+    row = make_row(pair, i, vertices, {});
+    row.target = min(settings.pushout * overlap, kMaxPushOfThickness * pair.thickness);
+  }
+  for (int n = 0; n < settings.iterations; ++n) {
+    for (Row& row : rows.first(used)) solve_push(row, contacts.pushes);
+  }
 }
 
 BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,

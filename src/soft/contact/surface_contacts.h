@@ -38,7 +38,7 @@ struct SurfaceVertices {
 
 struct SurfaceContactSettings {
   float step = 0.0f;  // s: of the half step
-  int iterations = 8;
+  int iterations = 4;
   float pushout = 0.25f;  // share of the overlap removed in a half step
   int most_rounds = 4;    // of finding pairs, for vertices that move further than they were looked for
   BoundSettings bounds{};
