@@ -52,6 +52,29 @@ void keep_impulses(std::span<const SurfacePair> before, std::span<const SurfaceI
   }
 }
 
+// Sums the impulses of all pairs by vertex; the change is owed.
+void sum_impulses(const SurfaceVertices& vertices, SurfaceContacts& contacts) {
+  for (std::size_t v = 0; v < contacts.totals.size(); ++v) {
+    contacts.owed[v] = -contacts.totals[v];
+    contacts.totals[v] = {};
+  }
+  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
+    const SurfacePair& pair = contacts.pairs[i];
+    SurfaceImpulse& impulse = contacts.impulses[i];
+    if (!pair.touches) impulse = {};
+    if (impulse.normal == 0.0f) continue;
+    // The plane of friction turns with the normal.
+    const Vec3 normal = to_float(pair.normal);
+    impulse.friction -= dot(impulse.friction, normal) * normal;
+    for (int k = 0; k < 4; ++k) {
+      const std::uint32_t v = pair.vertex[k];
+      if (vertices.inverse_mass[v] > 0.0f)
+        contacts.totals[v] += pair.weight[k] * (impulse.normal * normal + impulse.friction);
+    }
+  }
+  for (std::size_t v = 0; v < contacts.totals.size(); ++v) contacts.owed[v] += contacts.totals[v];
+}
+
 // One contact, with all that a sweep reads.
 struct Row {
   std::uint32_t vertex[4];
@@ -141,32 +164,16 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
   }
   find_surface_pairs(surfaces, vertices.positions, pads, arena, contacts.pairs);
   keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
-}
-
-void start_surface_contacts(const SurfaceVertices& vertices, SurfaceContacts& contacts) {
-  contacts.given.assign(vertices.positions.size(), Vec3{});
-  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
-    const SurfacePair& pair = contacts.pairs[i];
-    SurfaceImpulse& impulse = contacts.impulses[i];
-    if (!pair.touches) impulse = {};
-    if (impulse.normal == 0.0f) continue;
-    // The plane of friction turns with the normal.
-    const Vec3 normal = to_float(pair.normal);
-    impulse.friction -= dot(impulse.friction, normal) * normal;
-    for (int k = 0; k < 4; ++k) {
-      const std::uint32_t v = pair.vertex[k];
-      if (vertices.inverse_mass[v] > 0.0f)
-        contacts.given[v] += pair.weight[k] * (impulse.normal * normal + impulse.friction);
-    }
-  }
+  sum_impulses(vertices, contacts);
 }
 
 void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
                             Arena& arena, SurfaceContacts& contacts) {
   const ArenaScope scope(arena);
   const std::size_t count = vertices.positions.size();
-  const std::span<Vec3> velocities = arena.make<Vec3>(count);
-  for (std::size_t v = 0; v < count; ++v) velocities[v] = vertices.velocities[v];
+  const std::span<Vec3> velocities = arena.make<Vec3>(count), start = arena.make<Vec3>(count);
+  for (std::size_t v = 0; v < count; ++v)
+    velocities[v] = start[v] = vertices.velocities[v] + vertices.inverse_mass[v] * contacts.owed[v];
   std::span<Row> rows = arena.make<Row>(contacts.pairs.size());
   std::size_t used = 0;
   for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
@@ -187,10 +194,12 @@ void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContac
     contacts.impulses[row.pair] = row.impulse;
     contacts.touching += row.impulse.normal > 0.0f;
   }
-  contacts.given.resize(count);
   for (std::size_t v = 0; v < count; ++v) {
     const float w = vertices.inverse_mass[v];
-    contacts.given[v] = w > 0.0f ? (velocities[v] - vertices.velocities[v]) / w : Vec3{};
+    if (!(w > 0.0f)) continue;
+    const Vec3 change = (velocities[v] - start[v]) / w;
+    contacts.owed[v] += change;
+    contacts.totals[v] += change;
   }
 }
 

@@ -12,8 +12,9 @@
 // The impulse of a pair, equal and opposite on its two closest points, keeps linear momentum exactly, and angular momentum up to the friction times the
 // gap. No impulse adds kinetic energy: contacts are inelastic.
 //
-// W_i is the bare inverse mass, not the inverse of the block of the implicit system: the latter answers one impulse on one particle, and a sheet
-// that lands flat, whose springs then do not resist, would be thrown back by the ratio of both (docs/decisions/soft-contact.md).
+// W_i is the bare inverse mass, while the bodies answer impulses through their stiffness, with A^-1, A = M + s K (soft/solver/implicit_step.h). Since A - M
+// is positive semi-definite, the rows see vertices as more mobile than they are, so that no solve goes too far: each lowers the energy of the
+// coupled system, and it is exact where a surface moves as a whole (docs/decisions/soft-contact.md).
 #pragma once
 
 #include "base/arena/arena.h"
@@ -49,23 +50,30 @@ struct SurfaceImpulse {
   Vec3 friction{};
 };
 
-// What persists between half steps; may be dropped between any two.
+// What persists between half steps; may be cleared between any two.
 struct SurfaceContacts {
   Array<SurfacePair> pairs;
   Array<SurfaceImpulse> impulses;  // by pair
-  Array<float> limits;             // m, by vertex: how far it may move before pairs are found again
-  Array<Vec3> pushes;              // m, by vertex
-  Array<Vec3> given;               // N s, by vertex: what is to be given to it now
-  int rounds = 0;                  // of finding pairs, in the last half step
-  int touching = 0;                // pairs with an impulse
+  // N s, by vertex: the impulses of all pairs together; those of the last half step act as forces in the next, so that the stiffness of the
+  // body spreads them exactly. And the part of them that the velocities do not have yet.
+  Array<Vec3> totals, owed;
+  Array<float> limits;  // m, by vertex: how far it may move before pairs are found again
+  Array<Vec3> pushes;   // m, by vertex
+  int rounds = 0;       // of finding pairs, in the last half step
+  int touching = 0;     // pairs with an impulse
+
+  void clear(std::size_t vertices) {
+    pairs.clear(), impulses.clear();
+    totals.assign(vertices, Vec3{}), owed.assign(vertices, Vec3{});
+  }
 };
 
-// Finds pairs for a half step at these velocities; pairs that were there keep their impulses.
+// Finds pairs for a half step at these velocities, which have the totals of the last. Pairs that were there keep their impulses; what the totals
+// change by, since pairs are gone and normals turn, is owed.
 void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
                            const SurfaceContactSettings& settings, Arena& arena, SurfaceContacts& contacts);
-// Sets what the impulses that were kept from the last half step give to each vertex.
-void start_surface_contacts(const SurfaceVertices& vertices, SurfaceContacts& contacts);
-// Solves the rows at the present velocities, with all impulses so far given. Sets what the changes of the impulses give to each vertex.
+// Solves the rows at the present velocities and what is owed; then all changes are owed. The caller gives what is owed to the bodies, each
+// through its stiffness, and may call this again at the velocities that this makes.
 void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
                             Arena& arena, SurfaceContacts& contacts);
 // Sets the pushes.

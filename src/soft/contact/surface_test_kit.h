@@ -90,8 +90,16 @@ struct SoftScene {
     bench.arena.reset();
     contact_arena.reset();
     Array<ImplicitStep> steps;
-    for (SoftBody& body : bodies)
+    if (contacts.totals.size() != all.positions.size()) contacts.clear(all.positions.size());
+    std::size_t at = 0;
+    for (SoftBody& body : bodies) {
+      Particles& p = body.particles;
+      for (int i = 0; i < p.count; ++i) {
+        const Vec3 force = (1.0f / implicit.step) * contacts.totals[at++];
+        p.fx[i] = force.x, p.fy[i] = force.y, p.fz[i] = force.z;
+      }
       steps.push_back(begin_implicit(body, implicit, bench.kernels, bench.arena, bench.tasks));
+    }
     Array<Vec3> velocities;
     Array<float> inverse_mass;
     Array<DVec3> targets;
@@ -106,39 +114,24 @@ struct SoftScene {
     }
     const SurfaceVertices vertices{all.positions, velocities, inverse_mass};
     find_surface_contacts(all.placed, vertices, settings, contact_arena, contacts);
-    const auto give = [&](int iterations) {
-      std::size_t at = 0;
+    for (int n = 0; n < outer; ++n) {
+      solve_surface_contacts(vertices, settings, contact_arena, contacts);
+      at = 0;
       for (std::size_t k = 0; k < bodies.size(); ++k) {
         Particles& p = bodies[k].particles;
         const VectorRows rows = make_vectors(bench.arena, p.x.size());
         for (std::size_t i = 0; i < p.x.size(); ++i) {
-          const Vec3 one = int(i) < p.count ? contacts.given[at + i] : Vec3{};
+          Vec3 one{};
+          if (int(i) < p.count) std::swap(one, contacts.owed[at + i]);
           rows.x[i] = one.x, rows.y[i] = one.y, rows.z[i] = one.z;
         }
-        add_impulses(bodies[k], steps[k], rows, iterations, bench.kernels, bench.arena, bench.tasks);
+        add_impulses(bodies[k], steps[k], rows, spread, bench.kernels, bench.arena, bench.tasks);
         for (int i = 0; i < p.count; ++i) velocities[at++] = p.velocity(i);
-      }
-    };
-    if (spread > 0) {
-      start_surface_contacts(vertices, contacts);
-      give(spread);
-      for (int n = 0; n < outer; ++n) {
-        solve_surface_contacts(vertices, settings, contact_arena, contacts);
-        give(spread);
-      }
-    } else {
-      start_surface_contacts(vertices, contacts);
-      for (int n = 0; n < 2; ++n) {
-        if (n == 1) solve_surface_contacts(vertices, settings, contact_arena, contacts);
-        for (std::size_t v = 0; v < velocities.size(); ++v)
-          velocities[v] += inverse_mass[v] * contacts.given[v];
       }
     }
     push_surfaces(vertices, settings, contact_arena, contacts);
-    std::size_t at = 0;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       Particles& p = bodies[k].particles;
-      for (int i = 0; i < p.count; ++i) p.set_velocity(i, velocities[at++]);
       finish_implicit(bodies[k], steps[k], bench.kernels, bench.tasks);
       for (int i = 0; i < p.count; ++i) targets.push_back(p.place(i));
     }
