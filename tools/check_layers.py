@@ -82,7 +82,7 @@ ROOMS = {
         "body": [],
         "elements": ["body"],
         "kernels": ["body"],
-        "store": ["elements"],
+        "store": ["elements", "contact"],
         "solver": ["store", "kernels"],
         "contact": ["body"],
     },

@@ -373,6 +373,7 @@ void make_soft_rows(SoftSolve& s) {
     }
     work.last_row = std::uint32_t(scratch.rows.size());
   }
+  begin_soft_surfaces(s);
 }
 
 void begin_soft_members(SoftSolve& s, int begin, int end) {
@@ -383,6 +384,7 @@ void begin_soft_members(SoftSolve& s, int begin, int end) {
     move_held(s, entry);
     set_field_forces(*s.w, entry, s.time, s.h);
     add_forces_of_rows(s, m);
+    add_forces_of_surfaces(s, m);
     work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity}, *s.kernels, work.arena, work.tasks);
   }
 }

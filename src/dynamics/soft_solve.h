@@ -16,6 +16,7 @@
 #pragma once
 
 #include "base/arena/arena.h"
+#include "dynamics/soft_surfaces.h"
 #include "rigid/store/rigid_world.h"
 #include "soft/solver/soft_step.h"
 #include "task/task_system.h"
@@ -68,6 +69,7 @@ struct SoftScratch {
   Array<std::uint32_t> slots;    // of all there are
   Array<SoftRow> rows;
   Array<VelocityChange> changes;  // of touched bodies, by the impulses that are tried
+  SoftSurfaces surfaces;
 };
 
 // The context of the stages below.

@@ -85,6 +85,7 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
   if (first) p.row_islands<solve_row_islands_first>();
   if (!first) p.row_islands<solve_row_islands>();
   p.contacts<solve_contacts>();
+  p.soft_rows<solve_soft_surfaces>();
   p.soft_rows<solve_soft_rows>();
   if (first || last) p.resting_trees<solve_resting_trees>();
   if (first) p.resting_structures<solve_resting_structures_first>();
@@ -108,6 +109,7 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
   if (!has_joints) p.bodies<add_contact_change_and_integrate>();
   p.spinning_bodies<integrate_fast_spinning>();
   p.soft_members<finish_soft_members>();
+  p.soft_rows<bound_soft_surfaces>();
   p.impacts<apply_delayed_contact_restitution>();
   // Joints are relaxed at the present poses, so that no velocity stays from the bias.
   p.stiffened_bodies<stiffen_bodies>();

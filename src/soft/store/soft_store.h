@@ -5,6 +5,7 @@
 #include "base/container/array.h"
 #include "base/container/slot_map.h"
 #include "soft/body/soft_body.h"
+#include "soft/contact/soft_surface.h"
 
 #include <gyre/soft.h>
 
@@ -51,6 +52,7 @@ struct SoftEntry {
   Array<SoftContact> contacts;        // ascending by particle, then shape
   Array<std::uint32_t>
       triangles;  // of the surface, three vertices each, seen from outside counter-clockwise; none of a rope
+  std::shared_ptr<const SoftSurface> surface;  // of the triangles; null: there are none
   float radius = 0.0f;  // m: half the thickness, which the surface keeps from shapes
   float size = 0.0f;    // m: the mean length of its edges, by which speculative distances go
 
