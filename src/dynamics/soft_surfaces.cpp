@@ -6,7 +6,7 @@ namespace gyre {
 
 namespace {
 
-// How often impulses are found and given in a half step.
+// How often impulses are found and given in a sub-step.
 constexpr int kSurfaceRounds = 2;
 
 SoftWork& work_at(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }

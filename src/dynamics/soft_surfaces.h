@@ -19,7 +19,7 @@ struct SoftSurfaces {
   Array<PlacedSurface> placed;
   Array<std::uint32_t> member;    // of each placed surface: its index in SoftSolve::members
   Array<std::int32_t> placed_of;  // by member; -1: it has no surface
-  // By vertex; positions are those at the start of the half step.
+  // By vertex; positions are those at the start of the sub-step.
   Array<DVec3> positions, targets;
   Array<Vec3> velocities;
   Array<float> inverse_mass;
@@ -30,7 +30,7 @@ struct SoftSurfaces {
 
 // Lists the surfaces of a step.
 void begin_soft_surfaces(SoftSolve& s);
-// Adds the impulses of the last half step to the forces from outside.
+// Adds the impulses of the last sub-step to the forces from outside.
 void add_forces_of_surfaces(SoftSolve& s, std::uint32_t member);
 
 // Stages, each of one block.

@@ -1,4 +1,4 @@
-// Contacts of soft surfaces with themselves and each other, in one half step: finds the pairs that may touch, solves impulses that stop them from
+// Contacts of soft surfaces with themselves and each other, in one sub-step: finds the pairs that may touch, solves impulses that stop them from
 // closing, with Coulomb friction, and moves the vertices without a crossing.
 //
 // A pair with weights w (soft/contact/surface_pairs.h) is one contact: its relative velocity is u = sum w_i v_i, and an impulse p on it gives
@@ -38,9 +38,9 @@ struct SurfaceVertices {
 };
 
 struct SurfaceContactSettings {
-  float step = 0.0f;  // s: of the half step
+  float step = 0.0f;  // s: of the sub-step
   int iterations = 4;
-  float pushout = 0.25f;  // share of the overlap removed in a half step
+  float pushout = 0.25f;  // share of the overlap removed in a sub-step
   int most_rounds = 4;    // of finding pairs, for vertices that move further than they were looked for
   BoundSettings bounds{};
 };
@@ -50,16 +50,16 @@ struct SurfaceImpulse {
   Vec3 friction{};
 };
 
-// What persists between half steps; may be cleared between any two.
+// What persists between sub-steps; may be cleared between any two.
 struct SurfaceContacts {
   Array<SurfacePair> pairs;
   Array<SurfaceImpulse> impulses;  // by pair
-  // N s, by vertex: the impulses of all pairs together; those of the last half step act as forces in the next, so that the stiffness of the
+  // N s, by vertex: the impulses of all pairs together; those of the last sub-step act as forces in the next, so that the stiffness of the
   // body spreads them exactly. And the part of them that the velocities do not have yet.
   Array<Vec3> totals, owed;
   Array<float> limits;  // m, by vertex: how far it may move before pairs are found again
   Array<Vec3> pushes;   // m, by vertex
-  int rounds = 0;       // of finding pairs, in the last half step
+  int rounds = 0;       // of finding pairs, in the last sub-step
   int touching = 0;     // pairs with an impulse
 
   void clear(std::size_t vertices) {
@@ -68,7 +68,7 @@ struct SurfaceContacts {
   }
 };
 
-// Finds pairs for a half step at these velocities, which have the totals of the last. Pairs that were there keep their impulses; what the totals
+// Finds pairs for a sub-step at these velocities, which have the totals of the last. Pairs that were there keep their impulses; what the totals
 // change by, since pairs are gone and normals turn, is owed.
 void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
                            const SurfaceContactSettings& settings, Arena& arena, SurfaceContacts& contacts);
