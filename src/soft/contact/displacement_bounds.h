@@ -1,14 +1,14 @@
 // Bounds on moves: shortens the moves of vertices so that no two features of soft surfaces cross on the way, and none comes nearer than
 // a share of its thickness.
 //
-// In: pairs from find_surface_pairs() with pads, and the moves of the vertices. Out: moves that are bounded.
+// In: pairs from find_surface_pairs() for limits, these, and the moves of the vertices. Out: moves that are bounded.
 //
 // Proof. Let n be the normal of a pair, a the least n.x over the vertices of its feature A and b the greatest over those of B; g = a - b. If g > 0, n
 // separates the features: n.p >= a for every point p of A, since p is a mean of its vertices, and n.p <= b on B. Each pair is given two numbers r, s >= 0
 // with r + s <= max(0, g - least gap). Moves m are made such that each vertex x of A has n.(x + m) >= a - r, and each of B
 // n.(x + m) <= b + s. The set of such m is convex and contains 0, so it also contains t m for every t in [0, 1]: all along the straight way from
-// x to x + m the features are apart by g - r - s, at least the smaller of g and the least gap. Pairs that were not found are farther apart
-// than their pads together; a vertex moves no further than its pad less its radius, so these stay apart by their thickness. Two surfaces that do not
+// x to x + m the features are apart by g - r - s, at least the smaller of g and the least gap. Vertices
+// move no further than their limits, so pairs that were not found stay apart by their least gap. Two surfaces that do not
 // cross can begin to do so only where such a pair (a vertex and a triangle, or two edges, without a common vertex) comes to distance 0. Hence no
 // crossing comes into being, but for vertices that are told where to go and leave others no room.
 //

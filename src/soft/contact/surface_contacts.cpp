@@ -25,9 +25,9 @@ DVec3 mean_of(std::span<const PlacedSurface> surfaces, std::span<const DVec3> mo
   return count > 0.0 ? sum / count : DVec3{};
 }
 
-// Limits and pads for these moves.
-void set_reach(std::span<const PlacedSurface> surfaces, std::span<const float> inverse_mass,
-               std::span<const DVec3> moves, std::span<float> limits, std::span<float> pads) {
+// Limits for these moves.
+void set_limits(std::span<const PlacedSurface> surfaces, std::span<const float> inverse_mass,
+                std::span<const DVec3> moves, std::span<float> limits) {
   for (const PlacedSurface& placed : surfaces) {
     const float most = kMaxLimitOfEdge * placed.surface->mean_edge;
     for (int i = 0; i < placed.surface->vertices; ++i) {
@@ -36,7 +36,6 @@ void set_reach(std::span<const PlacedSurface> surfaces, std::span<const float> i
       limits[v] = inverse_mass[v] > 0.0f
                       ? min(kLimitOfMove * far + kLimitOfRadius * radius, max(most, radius))
                       : kLimitOfMove * far;
-      pads[v] = limits[v] + radius;
     }
   }
 }
@@ -150,19 +149,19 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
   const ArenaScope scope(arena);
   const std::size_t count = vertices.positions.size();
   const std::span<DVec3> moves = arena.make<DVec3>(count);
-  const std::span<float> pads = arena.make<float>(count);
   for (std::size_t v = 0; v < count; ++v) moves[v] = double(settings.step) * DVec3(vertices.velocities[v]);
   const DVec3 mean = mean_of(surfaces, moves);
   for (std::size_t v = 0; v < count; ++v) moves[v] = moves[v] - mean;
   contacts.limits.resize(count);
-  set_reach(surfaces, vertices.inverse_mass, moves, contacts.limits, pads);
+  set_limits(surfaces, vertices.inverse_mass, moves, contacts.limits);
   const std::span<SurfacePair> before = arena.make<SurfacePair>(contacts.pairs.size());
   const std::span<SurfaceImpulse> impulses = arena.make<SurfaceImpulse>(contacts.impulses.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     before[i] = contacts.pairs[i];
     impulses[i] = contacts.impulses[i];
   }
-  find_surface_pairs(surfaces, vertices.positions, pads, arena, contacts.pairs);
+  find_surface_pairs(surfaces, vertices.positions, contacts.limits, float(settings.bounds.least_gap), arena,
+                     contacts.pairs);
   keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
   sum_impulses(vertices, contacts);
 }
@@ -230,7 +229,6 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
   const std::span<DVec3> left = arena.make<DVec3>(count), moves = arena.make<DVec3>(count),
                          goals = arena.make<DVec3>(count);
   const std::span<std::uint8_t> held = arena.make<std::uint8_t>(count);
-  const std::span<float> pads = arena.make<float>(count);
   for (std::size_t v = 0; v < count; ++v) {
     held[v] = !(vertices.inverse_mass[v] > 0.0f);
     goals[v] = held[v] != 0 ? targets[v] : targets[v] + contacts.pushes[v];
@@ -256,8 +254,9 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     }
     again = again && contacts.rounds < settings.most_rounds;
     if (!again) break;
-    set_reach(surfaces, vertices.inverse_mass, left, contacts.limits, pads);
-    find_surface_pairs(surfaces, vertices.positions, pads, arena, found);
+    set_limits(surfaces, vertices.inverse_mass, left, contacts.limits);
+    find_surface_pairs(surfaces, vertices.positions, contacts.limits, float(settings.bounds.least_gap), arena,
+                       found);
     pairs = found;
   }
   // All have moved by the mean less than they should.

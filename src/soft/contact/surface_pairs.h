@@ -1,10 +1,9 @@
 // Pairs of features of soft surfaces that are near each other: a vertex and a triangle, or two edges, without a common vertex, of one surface or of two.
 //
-// In: surfaces, positions, and a pad for each vertex (m). Out: every pair whose distance is at most the sum of its two pads, in the order of its key,
-// which does not depend on positions. The pad of a feature is the largest of its vertices'.
-//
-// If a vertex moves by no more than its pad less its radius, then each pair that comes nearer than the sum of its radii is among those
-// found: points of a feature move no further than its vertices.
+// In: surfaces, positions, and a limit for each vertex: how far it may move, m. Out: pairs that matter within these moves, in the order of their keys,
+// which do not depend on positions: those at which forces may act, at a distance of at most the sum of limits and radii of both
+// features; and others that could come nearer than a share of their thickness, `least_gap`. Limit and radius of a feature are the largest
+// of its vertices'. Points of a feature move no further than its vertices, so that no pair is missing that comes nearer.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -35,6 +34,7 @@ struct SurfacePair {
 };
 
 void find_surface_pairs(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
-                        std::span<const float> pads, Arena& arena, Array<SurfacePair>& pairs);
+                        std::span<const float> limits, float least_gap, Arena& arena,
+                        Array<SurfacePair>& pairs);
 
 }  // namespace gyre

@@ -56,7 +56,7 @@ TEST(SurfacePairs, AreThoseOfBruteForce) {
   Arena arena;
   for (int n = 0; n < 8; ++n) {
     Surfaces all;
-    Array<float> pads;
+    Array<float> limits;
     for (int k = 0; k < 1 + n % 3; ++k) {
       const int cells = 4 + int(random.next() % 4);
       Array<DVec3> places = crumpled(cells, 0.1, 0.2, random);
@@ -64,9 +64,11 @@ TEST(SurfacePairs, AreThoseOfBruteForce) {
       all.add(places, grid_triangles(cells, cells), 0.02f);
     }
     for (std::size_t v = 0; v < all.positions.size(); ++v)
-      pads.push_back(n % 2 == 0 ? 0.04f : random.single(0.02f, 0.06f));
+      limits.push_back(n % 2 == 0 ? 0.02f : random.single(0.0f, 0.04f));
     Array<SurfacePair> pairs;
-    find_surface_pairs(all.placed, all.positions, pads, arena, pairs);
+    for (SoftSurface& surface : all.surfaces) surface.radius.assign(surface.radius.size(), 0.02f);
+    // All that are within their thickness, whether they touch or not.
+    find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, pairs);
     Counted found;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const SurfacePair& pair = pairs[i];
@@ -80,14 +82,13 @@ TEST(SurfacePairs, AreThoseOfBruteForce) {
       for (int k = 0; k < 4; ++k) {
         apart += double(pair.weight[k]) * (all.positions[pair.vertex[k]] - all.positions[pair.vertex[0]]);
         sum += double(pair.weight[k]);
-        ASSERT_EQ(pair.weight[k] >= 0.0f && k<pair.on_a, pair.weight[k]> 0.0f ||
-                  (pair.weight[k] == 0.0f && k < pair.on_a));
+        ASSERT_TRUE(k < pair.on_a ? pair.weight[k] >= 0.0f : pair.weight[k] <= 0.0f);
       }
       ASSERT_NEAR(sum, 0.0, 1e-6);
       ASSERT_LT(length(apart - pair.distance * pair.normal), 1e-6);
       ASSERT_NEAR(length(pair.normal), 1.0, 1e-12);
     }
-    // With different pads all that is within the least is found, and nothing beyond the largest.
+    // With different limits all that is within the least is found, and nothing beyond the largest.
     const Counted least = brute_force_pairs(all, n % 2 == 0 ? 0.08 : 0.04);
     const Counted most = brute_force_pairs(all, n % 2 == 0 ? 0.08 : 0.12);
     EXPECT_GE(found.corners, least.corners) << n;
@@ -99,13 +100,47 @@ TEST(SurfacePairs, AreThoseOfBruteForce) {
   }
 }
 
+// Of two flat sheets, forces act between vertices and faces and between edges that cross, all straight up, and nowhere twice; and between
+// the rim of the upper sheet and vertices beyond it.
+TEST(SurfacePairs, TouchAlongTheNormalsOfFlatSheets) {
+  Arena arena;
+  Surfaces all;
+  all.add(places_of(grid_cloth({1, 1}, {6, 6}, {}, {})), grid_triangles(6, 6), 0.02f);
+  all.add(places_of(grid_cloth({0.61f, 0.53f}, {5, 5}, {{0.013, 0.03, 0.027}, {}}, {})), grid_triangles(5, 5),
+          0.02f);
+  Array<float> limits;
+  limits.resize(all.positions.size());
+  Array<SurfacePair> pairs;
+  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, pairs);
+  int corners = 0, rim = 0;
+  for (const SurfacePair& pair : pairs) {
+    if (!pair.touches) continue;
+    const bool on_rim =
+        pair.on_a == 1 && (pair.weight[1] == 0.0f || pair.weight[2] == 0.0f || pair.weight[3] == 0.0f);
+    rim += on_rim;
+    if (on_rim) continue;
+    EXPECT_NEAR(absolute(pair.normal.y), 1.0, 1e-9);
+    EXPECT_NEAR(pair.distance, 0.03, 1e-9);
+    corners += pair.on_a == 1;
+  }
+  // Each vertex of the upper sheet is over one face, and each inner one of the lower sheet under one.
+  int under = 0;
+  for (std::size_t v = 0; v < 49; ++v) {
+    under += absolute(all.positions[v].x - 0.013) < 0.305 && absolute(all.positions[v].z - 0.027) < 0.265;
+  }
+  EXPECT_EQ(corners, 36 + under);
+  EXPECT_LT(rim, 12);
+}
+
 TEST(SurfacePairs, OfASheetAtRestAreNone) {
   Arena arena;
   Surfaces all;
   const Array<DVec3> places = places_of(grid_cloth({1, 1}, {30, 30}, {}, {}));
   all.add(places, grid_triangles(30, 30), 1.0f);  // much thicker than its cells
   Array<SurfacePair> pairs;
-  find_surface_pairs(all.placed, all.positions, all.surfaces[0].radius, arena, pairs);
+  Array<float> limits;
+  limits.resize(all.positions.size());
+  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, pairs);
   EXPECT_EQ(pairs.size(), 0u);
 }
 
@@ -125,14 +160,13 @@ TEST(DisplacementBounds, RandomMovesNeverCross) {
     }
     ASSERT_EQ(count_crossings(all.placed, all.positions, arena), 0);
     const std::size_t count = all.positions.size();
-    Array<float> limits, pads;
+    Array<float> limits;
     Array<std::uint8_t> held;
     held.resize(count);
     limits.assign(count, 0.03f);
-    for (std::size_t v = 0; v < count; ++v) pads.push_back(0.03f + 0.005f);
     for (int move = 0; move < 30; ++move) {
       Array<SurfacePair> pairs;
-      find_surface_pairs(all.placed, all.positions, pads, arena, pairs);
+      find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, pairs);
       double least = 1.0;
       for (const SurfacePair& pair : pairs) least = min(least, pair.distance / double(pair.thickness));
       // Those that were nearer at the start come no nearer; the rest keeps the least gap.
@@ -171,13 +205,12 @@ TEST(DisplacementBounds, LeaveMovesAloneThatDoNotApproach) {
   const Array<DVec3> high = places_of(grid_cloth({0.5f, 0.5f}, {4, 4}, {{0, 0.03, 0}, {}}, {}));
   all.add(low, grid_triangles(4, 4), 0.01f);
   all.add(high, grid_triangles(4, 4), 0.01f);
-  Array<float> limits, pads;
+  Array<float> limits;
   limits.assign(all.positions.size(), 0.2f);
-  pads.assign(all.positions.size(), 0.21f);
   Array<std::uint8_t> held;
   held.resize(all.positions.size());
   Array<SurfacePair> pairs;
-  find_surface_pairs(all.placed, all.positions, pads, arena, pairs);
+  find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, pairs);
   Array<DVec3> moves;
   moves.resize(all.positions.size());
   for (std::size_t v = 25; v < 50; ++v) moves[v] = {0.01, -0.1, 0.0};
