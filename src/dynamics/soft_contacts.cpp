@@ -1,9 +1,12 @@
 #include "dynamics/soft_contacts.h"
 
+#include "dynamics/soft_groups.h"
 #include "geometry/query/point_query.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
 #include "task/parallel.h"
+
+#include <cmath>
 
 namespace gyre {
 
@@ -55,6 +58,15 @@ class ContactFinder {
       for (std::size_t k = 0; k < found[i]; ++k) contacts.push_back(room[i * kMaxVertexContacts + k]);
     }
     keep_impulses(before);
+  }
+
+  // True if a body moves that is near or that a vertex is attached to.
+  bool is_anything_moving() const {
+    for (const Candidate& candidate : candidates_)
+      if (can_wake_others(w_, candidate.body)) return true;
+    for (const SoftAttachment& one : entry_.attachments)
+      if (one.body != kWorldAnchor && can_wake_others(w_, std::uint32_t(one.body))) return true;
+    return false;
   }
 
  private:
@@ -173,8 +185,9 @@ class ContactFinder {
   std::span<Candidate> candidates_{};
 };
 
-// Wakes bodies that are touched or held. An awake one does not fall asleep meanwhile.
+// Wakes bodies that are touched or held by what moves. An awake one does not fall asleep meanwhile.
 void wake_bodies(RigidWorld& w, const SoftEntry& entry) {
+  if (entry.rest[0].still_time >= kTimeToSleep) return;
   for (const SoftContact& contact : entry.contacts) {
     if (contact.gap <= 0.0f || contact.impulse != Vec3{}) wake(w, std::uint32_t(contact.body));
   }
@@ -183,11 +196,94 @@ void wake_bodies(RigidWorld& w, const SoftEntry& entry) {
   }
 }
 
+// The speed below which a vertex is still: that of bodies of the size of what it belongs to.
+float rest_speed(const RigidWorld& w, const SoftEntry& entry) {
+  const Particles& p = entry.body.particles;
+  DVec3 low = p.place(0), high = low;
+  for (int i = 1; i < p.count; ++i) {
+    const DVec3 at = p.place(i);
+    low = {min(low.x, at.x), min(low.y, at.y), min(low.z, at.z)};
+    high = {max(high.x, at.x), max(high.y, at.y), max(high.z, at.z)};
+  }
+  const float gravity = length(w.settings.gravity);
+  return kSleepSpeedShare * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * 0.5f * float(length(high - low)));
+}
+
+bool is_still(const RigidWorld& w, const SoftEntry& entry) {
+  const Particles& p = entry.body.particles;
+  const float most = rest_speed(w, entry);
+  for (int i = 0; i < p.count; ++i)
+    if (length_squared(p.velocity(i)) > most * most) return false;
+  return true;
+}
+
+bool do_all_rest(const RigidWorld& w, const SoftEntry& entry) {
+  for (const SoftContact& contact : entry.contacts)
+    if (contact.impulse != Vec3{} && can_wake_others(w, std::uint32_t(contact.body))) return false;
+  for (const SoftAttachment& one : entry.attachments)
+    if (one.body != kWorldAnchor && can_wake_others(w, std::uint32_t(one.body))) return false;
+  return true;
+}
+
+void fall_asleep(SoftEntry& entry) {
+  entry.rest[0].asleep = 1;
+  Particles& p = entry.body.particles;
+  for (int i = 0; i < p.count; ++i) p.set_velocity(i, {});
+  for (Array<double>& moved : entry.body.moved) moved.clear();
+}
+
+// What may touch something that is awake wakes too.
+void wake_groups(SoftStore& soft, float gravity, Arena& arena, float seconds) {
+  const ArenaScope scope(arena);
+  const std::span<const std::uint32_t> group = group_soft(soft, gravity, seconds, arena);
+  const std::span<std::uint8_t> awake = arena.make<std::uint8_t>(soft.entries.size());  // by group
+  for (std::uint8_t& one : awake) one = 0;
+  for (std::size_t slot = 0; slot < soft.entries.size(); ++slot) {
+    const SoftEntry& entry = soft.entries[slot];
+    if (entry.def != nullptr && entry.is_awake()) awake[group[slot]] = 1;
+  }
+  for (std::size_t slot = 0; slot < soft.entries.size(); ++slot) {
+    SoftEntry& entry = soft.entries[slot];
+    if (entry.def != nullptr && !entry.is_awake() && awake[group[slot]] != 0) wake(entry);
+  }
+}
+
 }  // namespace
+
+void rest_soft(RigidWorld& w, SoftStore& soft, Arena& arena, float seconds) {
+  if (w.settings.sleeping == 0) return;
+  const ArenaScope scope(arena);
+  bool any_field = false;
+  for (const FieldRecord& field : w.fields) any_field = any_field || field.is_live();
+  const std::span<const std::uint32_t> group = group_soft(soft, length(w.settings.gravity), seconds, arena);
+  const std::span<std::uint8_t> moves = arena.make<std::uint8_t>(soft.entries.size());  // by group
+  for (std::uint8_t& one : moves) one = 0;
+  const auto slot_of = [&](const SoftEntry& entry) { return std::size_t(&entry - soft.entries.data()); };
+  soft.for_each([&](SoftEntry& entry) {
+    if (!entry.is_awake()) return;
+    SoftRest& rest = entry.rest[0];
+    rest.still_time = !any_field && is_still(w, entry) ? min(rest.still_time + seconds, kMaxStillTime) : 0.0f;
+    if (rest.still_time < kMaxStillTime || !do_all_rest(w, entry)) moves[group[slot_of(entry)]] = 1;
+  });
+  soft.for_each([&](SoftEntry& entry) {
+    if (entry.is_awake() && moves[group[slot_of(entry)]] == 0) fall_asleep(entry);
+  });
+}
+
+void wake_all(SoftStore& soft) {
+  soft.for_each([](SoftEntry& entry) { wake(entry); });
+}
 
 void find_soft_contacts(RigidWorld& w, SoftStore& soft, Array<std::uint32_t>& shapes_near, Arena& arena,
                         TaskSystem& tasks, float seconds) {
   soft.for_each([&](SoftEntry& entry) {
+    if (entry.is_awake()) return;
+    const ArenaScope scope(arena);
+    if (ContactFinder(w, entry, shapes_near, arena, seconds).is_anything_moving()) wake(entry);
+  });
+  wake_groups(soft, length(w.settings.gravity), arena, seconds);
+  soft.for_each([&](SoftEntry& entry) {
+    if (!entry.is_awake()) return;
     const ArenaScope scope(arena);
     ContactFinder(w, entry, shapes_near, arena, seconds).run(tasks);
     wake_bodies(w, entry);
