@@ -57,7 +57,8 @@ void give_owed(SoftSolve& s) {
 
 void begin_soft_surfaces(SoftSolve& s) {
   SoftSurfaces& all = s.scratch->surfaces;
-  all.placed.clear(), all.member.clear();
+  const std::vector<std::shared_ptr<const SoftSurface>> before = std::move(all.surfaces);
+  all.surfaces.clear(), all.placed.clear(), all.member.clear();
   all.placed_of.assign(s.members.size(), -1);
   std::size_t vertices = 0;
   bool any_self = false;
@@ -66,11 +67,13 @@ void begin_soft_surfaces(SoftSolve& s) {
     if (entry.surface == nullptr) continue;
     all.placed_of[m] = std::int32_t(all.placed.size());
     all.placed.push_back({entry.surface.get(), std::uint32_t(vertices)});
+    all.surfaces.push_back(entry.surface);
     all.member.push_back(m);
     any_self |= entry.surface->self_collision;
     vertices += std::size_t(entry.surface->vertices);
   }
   all.active = any_self || all.placed.size() > 1;
+  if (all.surfaces != before) all.contacts.candidates.surfaces.clear();
   if (!all.active) return;
   all.positions.resize(vertices), all.targets.resize(vertices);
   all.velocities.resize(vertices), all.inverse_mass.resize(vertices);

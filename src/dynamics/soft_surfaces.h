@@ -10,6 +10,9 @@
 
 #include <gyre/math.h>
 
+#include <memory>
+#include <vector>
+
 namespace gyre {
 
 struct SoftSolve;
@@ -17,6 +20,8 @@ struct SoftSolve;
 struct SoftSurfaces {
   bool active = false;  // there are surfaces that may touch
   Array<PlacedSurface> placed;
+  // Those of the placed surfaces, so that no other is taken for one of them by its address.
+  std::vector<std::shared_ptr<const SoftSurface>> surfaces;
   Array<std::uint32_t> member;    // of each placed surface: its index in SoftSolve::members
   Array<std::int32_t> placed_of;  // by member; -1: it has no surface
   // By vertex; positions are those at the start of the sub-step.

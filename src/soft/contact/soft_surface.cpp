@@ -50,7 +50,7 @@ void set_edges(SoftSurface& surface) {
   for (std::size_t i = 0; i < sides; ++i) {
     if (i > 0 && keys[i] == keys[i - 1]) continue;
     surface.triangles[side[i] / 3].owned_edge[side[i] % 3] = std::int32_t(surface.edges.size());
-    surface.edges.push_back({std::uint32_t(keys[i] >> 32), std::uint32_t(keys[i])});
+    surface.edges.push_back({std::uint32_t(keys[i] >> 32), std::uint32_t(keys[i]), side[i] / 3, side[i] % 3});
     if (i + 1 == sides || keys[i + 1] != keys[i]) continue;
     surface.triangles[side[i] / 3].neighbour[side[i] % 3] = std::int32_t(side[i + 1] / 3);
     surface.triangles[side[i + 1] / 3].neighbour[side[i + 1] % 3] = std::int32_t(side[i] / 3);

@@ -18,7 +18,8 @@
 namespace gyre {
 
 struct SurfaceEdge {
-  std::uint32_t a = 0, b = 0;  // a < b
+  std::uint32_t a = 0, b = 0;            // a < b
+  std::uint32_t triangle = 0, side = 0;  // of which it is the edge 01, 12 or 20, the one that owns it
 };
 
 struct SurfaceTriangle {

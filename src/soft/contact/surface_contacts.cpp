@@ -161,7 +161,7 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
     impulses[i] = contacts.impulses[i];
   }
   find_surface_pairs(surfaces, vertices.positions, contacts.limits, float(settings.bounds.least_gap), arena,
-                     contacts.pairs);
+                     contacts.candidates, contacts.pairs);
   keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
   sum_impulses(vertices, contacts);
 }
@@ -256,7 +256,7 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     if (!again) break;
     set_limits(surfaces, vertices.inverse_mass, left, contacts.limits);
     find_surface_pairs(surfaces, vertices.positions, contacts.limits, float(settings.bounds.least_gap), arena,
-                       found);
+                       contacts.candidates, found);
     pairs = found;
   }
   // All have moved by the mean less than they should.

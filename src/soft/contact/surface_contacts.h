@@ -57,6 +57,7 @@ struct SurfaceContacts {
   // N s, by vertex: the impulses of all pairs together; those of the last sub-step act as forces in the next, so that the stiffness of the
   // body spreads them exactly. And the part of them that the velocities do not have yet.
   Array<Vec3> totals, owed;
+  SurfaceCandidates candidates;
   Array<float> limits;  // m, by vertex: how far it may move before pairs are found again
   Array<Vec3> pushes;   // m, by vertex
   int rounds = 0;       // of finding pairs, in the last sub-step

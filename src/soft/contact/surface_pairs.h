@@ -9,6 +9,7 @@
 #include "base/arena/arena.h"
 #include "base/container/array.h"
 #include "soft/contact/soft_surface.h"
+#include "soft/contact/surface_candidates.h"
 
 #include <gyre/math.h>
 
@@ -33,8 +34,9 @@ struct SurfacePair {
   std::uint64_t key = 0;
 };
 
+// `candidates` is brought up to date where it must be; what is found does not depend on it.
 void find_surface_pairs(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
                         std::span<const float> limits, float least_gap, Arena& arena,
-                        Array<SurfacePair>& pairs);
+                        SurfaceCandidates& candidates, Array<SurfacePair>& pairs);
 
 }  // namespace gyre

@@ -65,10 +65,11 @@ TEST(SurfacePairs, AreThoseOfBruteForce) {
     }
     for (std::size_t v = 0; v < all.positions.size(); ++v)
       limits.push_back(n % 2 == 0 ? 0.02f : random.single(0.0f, 0.04f));
+    SurfaceCandidates candidates;
     Array<SurfacePair> pairs;
     for (SoftSurface& surface : all.surfaces) surface.radius.assign(surface.radius.size(), 0.02f);
     // All that are within their thickness, whether they touch or not.
-    find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, pairs);
+    find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, candidates, pairs);
     Counted found;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const SurfacePair& pair = pairs[i];
@@ -110,8 +111,9 @@ TEST(SurfacePairs, TouchAlongTheNormalsOfFlatSheets) {
           0.02f);
   Array<float> limits;
   limits.resize(all.positions.size());
+  SurfaceCandidates candidates;
   Array<SurfacePair> pairs;
-  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, pairs);
+  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, candidates, pairs);
   int corners = 0, rim = 0;
   for (const SurfacePair& pair : pairs) {
     if (!pair.touches) continue;
@@ -137,10 +139,11 @@ TEST(SurfacePairs, OfASheetAtRestAreNone) {
   Surfaces all;
   const Array<DVec3> places = places_of(grid_cloth({1, 1}, {30, 30}, {}, {}));
   all.add(places, grid_triangles(30, 30), 1.0f);  // much thicker than its cells
+  SurfaceCandidates candidates;
   Array<SurfacePair> pairs;
   Array<float> limits;
   limits.resize(all.positions.size());
-  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, pairs);
+  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, candidates, pairs);
   EXPECT_EQ(pairs.size(), 0u);
 }
 
@@ -164,9 +167,10 @@ TEST(DisplacementBounds, RandomMovesNeverCross) {
     Array<std::uint8_t> held;
     held.resize(count);
     limits.assign(count, 0.03f);
+    SurfaceCandidates candidates;
     for (int move = 0; move < 30; ++move) {
       Array<SurfacePair> pairs;
-      find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, pairs);
+      find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, candidates, pairs);
       double least = 1.0;
       for (const SurfacePair& pair : pairs) least = min(least, pair.distance / double(pair.thickness));
       // Those that were nearer at the start come no nearer; the rest keeps the least gap.
@@ -209,8 +213,9 @@ TEST(DisplacementBounds, LeaveMovesAloneThatDoNotApproach) {
   limits.assign(all.positions.size(), 0.2f);
   Array<std::uint8_t> held;
   held.resize(all.positions.size());
+  SurfaceCandidates candidates;
   Array<SurfacePair> pairs;
-  find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, pairs);
+  find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, candidates, pairs);
   Array<DVec3> moves;
   moves.resize(all.positions.size());
   for (std::size_t v = 25; v < 50; ++v) moves[v] = {0.01, -0.1, 0.0};
