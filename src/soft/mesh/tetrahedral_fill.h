@@ -1,0 +1,45 @@
+// Fills a closed triangle surface with tetrahedra, for a solid, and embeds the surface in them, so that it moves with the solid.
+//
+// In: vertices in metres, triangles, and the number of cells along the longest side of the surface's box. Out: tetrahedra of positive volume
+// whose boundary is close to the surface (within a fraction of a cell), and the surface's vertices as weighted sums of their corners. A
+// surface that is inside out is turned. The same input gives the same bits everywhere.
+// Method: isosurface stuffing. Dihedral angles are within kMinDihedral and kMaxDihedral, whatever the surface.
+// Source: F. Labelle, J. R. Shewchuk, "Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral Angles", 2007.
+// docs/decisions/tetrahedral-fill.md has the measurements.
+#pragma once
+
+#include "base/container/array.h"
+#include "soft/mesh/embedded_surface.h"
+
+#include <gyre/math.h>
+#include <gyre/result.h>
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+constexpr int kMinFillResolution = 2, kMaxFillResolution = 128;
+constexpr std::uint32_t kMaxFillTetrahedra = 2'000'000;
+// Degrees: the bounds that Labelle and Shewchuk prove.
+constexpr double kMinDihedral = 10.78, kMaxDihedral = 164.74;
+// The share of the surface's volume by which that of the tetrahedra may differ.
+constexpr double kFillVolumeShare = 0.15;
+// A surface vertex farther than both from all tetrahedra belongs to a part that is too thin for the cells.
+constexpr double kFillReachCells = 2.0, kFillReachShare = 0.1;  // cells; of the longest side
+
+struct TetrahedralMesh {
+  Array<Vec3> vertices;
+  Array<std::uint32_t> tetrahedra;  // four indices each
+  Array<EmbeddedPoint> surface;     // for each vertex given
+  double surface_volume = 0.0;      // m^3, inside the triangles
+  double filled_volume = 0.0;       // m^3, of all tetrahedra
+};
+
+// Refuses: indices out of range or not in threes, vertices that are not finite, a triangle without area, an edge that is not shared evenly,
+// a surface that crosses itself or encloses no volume, a resolution out of range, more than kMaxFillTetrahedra, and parts that are too
+// thin, with the resolution that keeps them.
+Result<TetrahedralMesh> fill_with_tetrahedra(std::span<const Vec3> vertices,
+                                             std::span<const std::uint32_t> triangles, int resolution);
+
+}  // namespace gyre
