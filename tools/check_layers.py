@@ -83,7 +83,8 @@ ROOMS = {
         "mesh": [],
         "elements": ["body", "mesh"],
         "kernels": ["body"],
-        "solver": ["elements", "kernels"],
+        "store": ["elements"],
+        "solver": ["store", "kernels"],
     },
     "io": {
         "codec": [],
@@ -97,7 +98,7 @@ ROOMS = {
 TESTS = re.compile(r"_test(_\w+)?\.(h|cpp)$")
 # Files, tests among them, that may lie in one folder: more than these nobody reads as a list.
 ROOM_LIMIT = 40
-VALUE_HEADERS = {"ids", "math", "result", "geometry", "bounds", "decomposition", "defs", "events", "fields", "joints", "memory", "stepping"}
+VALUE_HEADERS = {"ids", "math", "result", "geometry", "bounds", "decomposition", "defs", "events", "fields", "joints", "memory", "soft", "stepping"}
 SEES_WHOLE_API = {"world", "io", "debug"}
 
 # Folders outside src/: the project's own folders that they may include besides include/gyre.

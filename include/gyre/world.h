@@ -17,6 +17,7 @@
 #include <gyre/math.h>
 #include <gyre/queries.h>
 #include <gyre/result.h>
+#include <gyre/soft.h>
 #include <gyre/stepping.h>
 
 #include <cstdint>
@@ -84,6 +85,7 @@ struct WorldStats {
   int touching = 0;        // pairs with a contact point that bears load or overlaps
   int contact_points = 0;
   int colors = 0;          // of the constraint graph
+  int softs = 0, soft_vertices = 0;  // ropes, cloths and solids
 };
 
 // How well the solvers sequential_impulses and lcp solved the last step; all zero with soft_step.
@@ -101,6 +103,7 @@ struct Energy {
   double kinetic = 0;    // J
   double potential = 0;  // J, in gravity, zero at the world's origin
   double elastic = 0;    // J, in spring joints
+  double soft_elastic = 0;  // J, in ropes, cloths and solids
 };
 
 struct Momentum {
@@ -126,6 +129,10 @@ class World {
   bool remove_joint(JointId joint);
   FieldId add_field(const FieldDef& field);  // wakes every body, as every change of fields does
   bool remove_field(FieldId field);
+  SoftId add_rope(const RopeDef& rope);
+  SoftId add_cloth(const ClothDef& cloth);
+  SoftId add_solid(const SolidDef& solid);
+  bool remove_soft(SoftId soft);
 
   // --------------------------------------------------------------------------------------------------------- change
   bool set_pose(BodyId body, const Pose& pose);  // teleports: keeps the velocity, drops the contacts
@@ -173,6 +180,15 @@ class World {
   bool add_impulse_at(BodyId body, Vec3 impulse, DVec3 point);
   bool add_angular_impulse(BodyId body, Vec3 impulse);        // N m s
 
+  // Soft matter (soft.h). The vertex keeps its present place in the frame of the body, and turns freely there; it follows a moving body within
+  // the step. It no longer collides with that body. A second call replaces the first.
+  bool attach(SoftId soft, int vertex, BodyId body);
+  bool pin(SoftId soft, int vertex);      // to the world: it stays where it is
+  bool release(SoftId soft, int vertex);  // from a body or the world; true if it was free already
+  // Positions (m) and velocities (m/s) of all vertices at once; either may be empty and stays then. Attached vertices stay attached, where
+  // they are put.
+  bool set_vertices(SoftId soft, std::span<const DVec3> positions, std::span<const Vec3> velocities);
+
   // Gives an impulse at once to every dynamic body within range; see ExplosionDef.
   bool explode(const ExplosionDef& explosion);
 
@@ -184,6 +200,7 @@ class World {
   bool exists(ShapeId shape) const;
   bool exists(JointId joint) const;
   bool exists(FieldId field) const;
+  bool exists(SoftId soft) const;
   // Each returns the zero value for a stale id.
   Pose pose(BodyId body) const;
   DVec3 center_of_mass(BodyId body) const;  // world
@@ -208,6 +225,12 @@ class World {
   // angular_y (b).
   JointAxisState joint_axis_state(JointId joint, JointAxis axis) const;
   bool joint_enabled(JointId joint) const;
+  // Ropes, cloths and solids. Copies up to out.size() ids, in order of index; returns how many there are.
+  std::size_t softs(std::span<SoftId> out) const;
+  SoftInfo soft_info(SoftId soft) const;
+  SoftVertices vertices(SoftId soft) const;
+  // The surface: three vertices each, counter-clockwise seen from outside (of a cloth: from one side). None of a rope.
+  std::span<const std::uint32_t> soft_triangles(SoftId soft) const;
 
   // Copied at most once after a change, by the first thread that asks; both stay valid side by side until the next change or step.
   BodyColumns bodies() const;        // every body

@@ -8,6 +8,7 @@
 #include "rigid/rigid_step.h"
 #include "world/field_commands.h"
 #include "world/joint_commands.h"
+#include "world/soft_commands.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -170,6 +171,7 @@ CommandResult execute(WorldState& s, const RemoveBody& c) {
   const std::uint32_t body = c.body.index;
   wake_if_movable(w, body);
   wake_neighbours(w, body);
+  forget_body(s.soft, body);
   while (!joints_of(w.bodies, body).empty()) remove_joint(w, joints_of(w.bodies, body).front());
   for (const ShapeId id : w.bodies.shapes[body]) {
     drop_contacts(w, id.index);

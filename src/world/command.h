@@ -2,11 +2,13 @@
 // command, shows it to the log, and executes it. A recording is a list of commands, so it cannot miss a change.
 #pragma once
 
+#include "soft/store/soft_store.h"
 #include "world/flat_joint.h"
 
 #include <gyre/defs.h>
 #include <gyre/fields.h>
 #include <gyre/result.h>
+#include <gyre/soft.h>
 
 #include <variant>
 #include <vector>
@@ -140,6 +142,28 @@ struct SetMotion {
   float tolerance = 1.0e-5f;
   int max_impacts = 128;
 };
+struct AddSoft {
+  std::shared_ptr<const SoftDef> def;
+};
+struct RemoveSoft {
+  SoftId soft;
+};
+// A null body is the world.
+struct AttachSoft {
+  SoftId soft;
+  int vertex = 0;
+  BodyId body;
+};
+struct ReleaseSoft {
+  SoftId soft;
+  int vertex = 0;
+};
+// Either list may be empty: it stays as it is.
+struct SetVertices {
+  SoftId soft;
+  std::vector<DVec3> positions;
+  std::vector<Vec3> velocities;
+};
 struct Step {
   float seconds = 0;
 };
@@ -149,7 +173,7 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
                              SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
                              SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled,
-                             SetMotion, SetSolver>;
+                             SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices>;
 
 // The result of a command: success, and the id of the new object.
 struct CommandResult {
@@ -158,6 +182,7 @@ struct CommandResult {
   ShapeId shape;
   JointId joint;
   FieldId field{};
+  SoftId soft{};
 };
 
 // Checks the command, shows it to the log and executes it. A refused command changes nothing and is reported as one

@@ -6,6 +6,7 @@
 #include "collision/contact/contact_store.h"
 #include "collision/broadphase/proxy.h"
 #include "rigid/store/rigid_world.h"
+#include "soft/store/soft_store.h"
 
 namespace gyre {
 
@@ -183,6 +184,15 @@ void for_each_field(T& r, F&& f) {
 template <Is<SolverSettings> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.kind), f(r.options.lcp_method), f(r.options.friction_sides), f(r.options.iterations), f(r.options.direct_rows);
+}
+template <Is<SoftAttachment> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.particle), f(r.body), for_each_field(r.place, f), for_each_field(r.local, f), for_each_field(r.impulse, f);
+}
+template <Is<SoftContact> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.particle), f(r.shape), f(r.body), f(r.triangle), for_each_field(r.normal, f), for_each_field(r.from_body, f), f(r.gap);
+  f(r.static_friction), f(r.dynamic_friction), for_each_field(r.surface_velocity, f), for_each_field(r.impulse, f);
 }
 template <Is<RigidSettings> T, class F>
 void for_each_field(T& r, F&& f) {

@@ -49,6 +49,30 @@ bool World::set_surface_rule(const SurfaceRule& rule) { return submit(*state_, S
 FieldId World::add_field(const FieldDef& field) { return submit(*state_, AddField{field}).field; }
 bool World::set_field(FieldId field, const FieldDef& def) { return submit(*state_, SetField{field, def}).done; }
 bool World::remove_field(FieldId field) { return submit(*state_, RemoveField{field}).done; }
+SoftId World::add_rope(const RopeDef& rope) {
+  return submit(*state_, AddSoft{std::make_shared<const SoftDef>(rope)}).soft;
+}
+SoftId World::add_cloth(const ClothDef& cloth) {
+  return submit(*state_, AddSoft{std::make_shared<const SoftDef>(cloth)}).soft;
+}
+SoftId World::add_solid(const SolidDef& solid) {
+  return submit(*state_, AddSoft{std::make_shared<const SoftDef>(solid)}).soft;
+}
+bool World::remove_soft(SoftId soft) { return submit(*state_, RemoveSoft{soft}).done; }
+bool World::attach(SoftId soft, int vertex, BodyId body) {
+  if (!exists(body)) {
+    report_problem(*state_, ErrorCode::stale_id, body, "attach: body %u (generation %u) does not exist in this world",
+                   body.index, unsigned(body.generation));
+    return false;
+  }
+  return submit(*state_, AttachSoft{soft, vertex, body}).done;
+}
+bool World::pin(SoftId soft, int vertex) { return submit(*state_, AttachSoft{soft, vertex, {}}).done; }
+bool World::release(SoftId soft, int vertex) { return submit(*state_, ReleaseSoft{soft, vertex}).done; }
+bool World::set_vertices(SoftId soft, std::span<const DVec3> positions, std::span<const Vec3> velocities) {
+  return submit(*state_, SetVertices{soft, {positions.begin(), positions.end()}, {velocities.begin(), velocities.end()}}).done;
+}
+
 bool World::explode(const ExplosionDef& explosion) { return submit(*state_, Explode{explosion}).done; }
 bool World::set_filter(ShapeId shape, const Filter& filter) { return submit(*state_, SetFilter{shape, filter}).done; }
 bool World::set_joint_axis(JointId joint, JointAxis axis, const JointAxisDef& def) {

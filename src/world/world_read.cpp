@@ -6,6 +6,7 @@
 #include "rigid/batch/surface_rules.h"
 #include "world/field_commands.h"
 #include "world/joint_reading.h"
+#include "world/soft_commands.h"
 #include "world/world_state.h"
 
 #include <limits>
@@ -216,6 +217,8 @@ WorldStats World::stats() const {
   counts.joints = int(w.joints.ids.size());
   counts.colors = state_->solve.colors;
   counts.pairs = int(w.contacts.live);
+  counts.softs = int(state_->soft.ids.size());
+  state_->soft.for_each([&](const SoftEntry& entry) { counts.soft_vertices += entry.body.particles.count; });
   // Free slots have the flags of static bodies; their contacts touch nothing and have no manifolds.
   for (const BodyFlags& flags : w.bodies.flags) counts.awake_bodies += is_simulated(flags) ? 1 : 0;
   for (const Contact& contact : w.contacts.contacts) {
@@ -292,6 +295,7 @@ Energy World::energy() const {
         mass * double(w.bodies.forces[i].gravity_scale) * dot(gravity, w.bodies.poses[i].center);
   });
   w.joints.ids.for_each_live([&](std::uint32_t slot) { energy.elastic += spring_energy(w, slot); });
+  add_soft_energy(state_->soft, gravity, energy);
   return energy;
 }
 
@@ -305,6 +309,7 @@ Momentum World::momentum() const {
     momentum.linear += p;
     momentum.angular += cross(w.bodies.poses[i].center, p) + spin_momentum(w.bodies, i);
   });
+  add_soft_momentum(state_->soft, momentum);
   return momentum;
 }
 

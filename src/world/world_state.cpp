@@ -45,6 +45,19 @@ class HashVisitor {
   void operator()(const char*, const IdPool& ids) {
     for (const std::uint32_t generation : ids.generations()) add_word(generation);
   }
+  void operator()(const char*, const SoftStore& soft) {
+    if (soft.entries.empty()) return;
+    for (const std::uint32_t generation : soft.ids.generations()) add_word(generation);
+    soft.for_each([&](const SoftEntry& entry) {
+      const Particles& p = entry.body.particles;
+      add_word(std::uint64_t(entry.kind) << 32 | std::uint64_t(p.count));
+      for (const float mass : p.mass) add(mass);
+      for_each_soft_array(entry, [&](const auto& array) {
+        add_word(array.size());
+        for (const auto& record : array) add_record(record);
+      });
+    });
+  }
   void operator()(const char*, const std::vector<AnyShape>& geometry) {
     for (const AnyShape& shape : geometry) add_word(hash_shape(shape));
   }

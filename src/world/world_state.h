@@ -8,6 +8,7 @@
 #include "rigid/rigid_step.h"
 #include "rigid/store/rigid_world.h"
 #include "rigid/time/toi_stepping.h"
+#include "soft/store/soft_store.h"
 #include "solver/kernels/solver_kernels.h"
 #include "task/task_system.h"
 #include "world/command.h"
@@ -52,6 +53,7 @@ struct BodyCopy {
 struct WorldState {
   // Simulation state.
   RigidWorld rigid;
+  SoftStore soft;
   double time = 0.0;             // s
   std::uint64_t step_count = 0;
 
@@ -108,7 +110,7 @@ template <class Column>
 constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || std::is_same_v<Column, Array<JointDetail>> ||
                                  std::is_same_v<Column, Array<PathPoint>> || std::is_same_v<Column, Array<FieldRecord>> ||
                                  std::is_same_v<Column, Array<MotionSettings>> || std::is_same_v<Column, Array<LastMove>> ||
-                                 std::is_same_v<Column, Array<SolverSettings>>;
+                                 std::is_same_v<Column, Array<SolverSettings>> || std::is_same_v<Column, SoftStore>;
 
 // Calls visit(name, column) for every state column, in a fixed order. A column is an Array or an IsColumn of records
 // that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
@@ -146,6 +148,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("path_points", s.rigid.joints.path_points);
   visit("contacts", s.rigid.contacts.contacts);
   visit("manifolds", s.rigid.contacts.manifolds);
+  visit("soft", s.soft);
 }
 
 // A world with default state: no bodies; threads and kernels as in the def.
@@ -157,6 +160,8 @@ Error check_world_def(const WorldDef& def);
 Error check_columns(const RigidWorld& w);
 // Derives all data that is not state from consistent columns.
 void derive_state(RigidWorld& w);
+// Checks what refers from soft matter to bodies and shapes.
+Error check_soft_columns(const RigidWorld& w, const SoftStore& soft);
 // Checks and derives: the last step of loading.
 Error rebuild_derived(RigidWorld& w);
 

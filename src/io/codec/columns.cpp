@@ -22,6 +22,7 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
   columns.rigid.broadphase_stale = true;
   columns.rigid.world_number = state.number;
   state.rigid = std::move(columns.rigid);
+  state.soft = std::move(columns.soft);
   state.time = columns.time;
   state.step_count = columns.step_count;
   state.queried_changes.store(kNothingQueried, std::memory_order_relaxed);

@@ -10,6 +10,7 @@ struct StateColumns {
   double time = 0.0;
   std::uint64_t step_count = 0;
   RigidWorld rigid;
+  SoftStore soft;
 };
 
 // Replaces the state of a world by checked columns, derived for the number of this world. Ids stay valid if their

@@ -63,6 +63,7 @@ class FieldReader {
     value.emplace();
     return true;
   }
+  void fail() { in_.fail(); }
 
  private:
   ByteReader& in_;
@@ -206,7 +207,8 @@ void fields(C& c, T& v) {
   all(c, position, orientation, linear, angular, frequency, damping, force, torque);
 }
 template <class C, class T>
-requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>>) void fields(C& c, T& list) {
+requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>> || Is<T, std::vector<DVec3>> ||
+         Is<T, std::vector<std::uint32_t>>) void fields(C& c, T& list) {
   c.count(list);
   for (auto& item : list) all(c, item);
 }
@@ -226,6 +228,58 @@ void fields(C& c, T& v) {
       angular_z, drive, path, path_closed, path_orientation);
 }
 
+// -------------------------------------------------------------------------------------------------------- soft matter
+
+template <class C, class T>
+requires(Is<T, std::array<float, 2>> || Is<T, std::array<int, 2>> || Is<T, std::array<int, 3>>) void fields(C& c, T& values) {
+  for (auto& value : values) all(c, value);
+}
+template <class C, Is<SoftSettings> T>
+void fields(C& c, T& v) {
+  auto& [integrator, damping, static_friction, dynamic_friction, filter, user_data, positions, velocities] = v;
+  all(c, integrator, damping, static_friction, dynamic_friction, filter, user_data, positions, velocities);
+}
+template <class C, Is<RopeDef> T>
+void fields(C& c, T& v) {
+  auto& [points, segments, links, radius, density, stretch, bend, settings] = v;
+  all(c, points, segments, links, radius, density, stretch, bend, settings);
+}
+template <class C, Is<ClothGrid> T>
+void fields(C& c, T& v) {
+  auto& [size, cells] = v;
+  all(c, size, cells);
+}
+template <class C, Is<ClothDef> T>
+void fields(C& c, T& v) {
+  auto& [grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision, settings] = v;
+  all(c, grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision, settings);
+}
+template <class C, Is<SolidBox> T>
+void fields(C& c, T& v) {
+  auto& [half_extents, cells] = v;
+  all(c, half_extents, cells);
+}
+template <class C, Is<SolidDef> T>
+void fields(C& c, T& v) {
+  auto& [box, vertices, tetrahedra, pose, model, density, modulus, ratio, settings] = v;
+  all(c, box, vertices, tetrahedra, pose, model, density, modulus, ratio, settings);
+}
+// The kind, then the definition.
+void fields(FieldWriter& c, const std::shared_ptr<const SoftDef>& def) {
+  c.number(std::uint8_t(def->index()));
+  std::visit([&](const auto& one) { fields(c, one); }, *def);
+}
+void fields(FieldReader& c, std::shared_ptr<const SoftDef>& def) {
+  std::uint8_t kind = 0;
+  c.number(kind);
+  SoftDef read;
+  if (kind == 1) read.emplace<ClothDef>();
+  if (kind == 2) read.emplace<SolidDef>();
+  if (kind > 2) c.fail();
+  std::visit([&](auto& one) { fields(c, one); }, read);
+  def = std::make_shared<const SoftDef>(std::move(read));
+}
+
 // ----------------------------------------------------------------------------------------------------------- commands
 
 template <class T, class... Of>
@@ -233,14 +287,14 @@ concept IsOneOf = (Is<T, Of> || ...);
 
 template <class C, class T>
 requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSurfaceRule, SetSleeping,
-                 SetSubsteps, AddField, RemoveField, Explode, Step>
+                 SetSubsteps, AddField, RemoveField, Explode, AddSoft, RemoveSoft, Step>
 void fields(C& c, T& v) {
   auto& [only] = v;
   all(c, only);
 }
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
-                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver>
+                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
@@ -251,7 +305,7 @@ void fields(C& c, T& v) {
   all(c, integrator, springs, time, tolerance, max_impacts);
 }
 template <class C, class T>
-requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis>
+requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis, AttachSoft, SetVertices>
 void fields(C& c, T& v) {
   auto& [first, second, third] = v;
   all(c, first, second, third);
@@ -289,6 +343,19 @@ Command read_command(ByteReader& in, const GeometryTable& geometry, std::uint16_
   FieldReader reader(in, geometry, world_number);
   std::visit([&](auto& c) { fields(reader, c); }, command);
   return command;
+}
+
+void write_soft_def(ByteWriter& out, const SoftDef& def) {
+  FieldWriter writer(out);
+  fields(writer, std::make_shared<const SoftDef>(def));
+}
+
+std::shared_ptr<const SoftDef> read_soft_def(ByteReader& in) {
+  const GeometryTable none;
+  FieldReader reader(in, none, 0);
+  std::shared_ptr<const SoftDef> def;
+  fields(reader, def);
+  return def;
 }
 
 void for_each_shape(const Command& command, FunctionRef<void(const AnyShape&)> fn) {

@@ -19,4 +19,8 @@ Command read_command(ByteReader& in, const GeometryTable& geometry, std::uint16_
 // Calls fn for each shape in the command.
 void for_each_shape(const Command& command, FunctionRef<void(const AnyShape&)> fn);
 
+// The definition of a rope, cloth or solid.
+void write_soft_def(ByteWriter& out, const SoftDef& def);
+std::shared_ptr<const SoftDef> read_soft_def(ByteReader& in);
+
 }  // namespace gyre

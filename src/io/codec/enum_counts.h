@@ -7,6 +7,7 @@
 #include <gyre/defs.h>
 #include <gyre/fields.h>
 #include <gyre/joints.h>
+#include <gyre/soft.h>
 
 namespace gyre {
 
@@ -36,6 +37,14 @@ template <>
 inline constexpr int kEnumCount<TimeStepping> = kTimeSteppingCount;
 template <>
 inline constexpr int kEnumCount<FieldKind> = int(FieldKind::buoyancy) + 1;
+template <>
+inline constexpr int kEnumCount<SoftIntegrator> = int(SoftIntegrator::verlet) + 1;
+template <>
+inline constexpr int kEnumCount<RopeLinks> = int(RopeLinks::rods) + 1;
+template <>
+inline constexpr int kEnumCount<ClothLinks> = int(ClothLinks::membrane) + 1;
+template <>
+inline constexpr int kEnumCount<SolidModel> = int(SolidModel::neo_hookean) + 1;
 template <>
 inline constexpr int kEnumCount<ProxyMotion> = int(ProxyMotion::moving) + 1;
 

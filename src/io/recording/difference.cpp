@@ -56,6 +56,17 @@ struct Tracer {
       out.rows.push_back(hash_bytes(bytes.view().data(), bytes.size()));
     }
   }
+  // A row for each rope, cloth or solid.
+  void operator()(const char* name, const SoftStore& soft) {
+    StateTrace::Column& out = add(name);
+    soft.for_each([&](const SoftEntry& entry) {
+      std::uint64_t hash = std::uint64_t(entry.body.particles.count);
+      for_each_soft_array(entry, [&](const auto& array) {
+        for (const auto& record : array) hash = mix_bits(hash + hash_record(record));
+      });
+      out.rows.push_back(hash);
+    });
+  }
   template <class Record>
   void operator()(const char* name, const Record& record) {
     add(name).rows.push_back(hash_record(record));

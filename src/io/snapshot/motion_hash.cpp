@@ -37,6 +37,15 @@ std::uint64_t hash_motion(const WorldState& state) {
   const BodyStore& bodies = state.rigid.bodies;
   hash_detail::Lanes lanes(state.step_count);
   for (const std::uint32_t i : bodies.awake) hash_body(lanes, bodies.motion[i], bodies.poses[i]);
+  state.soft.for_each([&](const SoftEntry& entry) {
+    const Particles& p = entry.body.particles;
+    for (int i = 0; i < p.count; ++i) {
+      lanes.update(word_of(p.x[i]), word_of(p.y[i]), word_of(p.z[i]),
+                   std::uint64_t(__builtin_bit_cast(std::uint32_t, p.vx[i])) ^
+                       std::uint64_t(__builtin_bit_cast(std::uint32_t, p.vy[i])) << 16 ^
+                       std::uint64_t(__builtin_bit_cast(std::uint32_t, p.vz[i])) << 32);
+    }
+  });
   const std::uint64_t counts = std::uint64_t(bodies.awake.size()) << 32 | state.rigid.contacts.live;
   return mix_bits(lanes.merge() ^ mix_bits(counts ^ mix_bits(word_of(state.time))));
 }

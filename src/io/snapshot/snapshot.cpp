@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "io/codec/record_codec.h"
+#include "io/codec/soft_codec.h"
 #include "world/world_access.h"
 
 #include <gyre/replay.h>
@@ -26,6 +27,8 @@ Error bad_snapshot(const char* what) { return make_error(ErrorCode::invalid_data
 // The layout of each kind of column. Ids are stored as generations; shapes have a layout of their own.
 constexpr std::uint64_t kShapeLayout = hash_text("shape 1");
 
+constexpr std::uint64_t kSoftLayout = hash_text("soft 1");
+
 template <class Column>
 struct ColumnLayout {  // a single record
   static RecordLayout get() { return layout_of<Column>(); }
@@ -45,6 +48,11 @@ struct ColumnLayout<IdPool> {
 template <>
 struct ColumnLayout<std::vector<AnyShape>> {
   static RecordLayout get() { return {1, kShapeLayout}; }
+};
+
+template <>
+struct ColumnLayout<SoftStore> {
+  static RecordLayout get() { return {1, kSoftLayout}; }
 };
 
 // An empty later column is not written, and a missing one is read as empty, so older snapshots can be read.
@@ -95,6 +103,13 @@ class ColumnWriter {
     ByteWriter payload;
     for (const AnyShape& shape : shapes) write_shape(payload, shape);
     out_.put(std::uint64_t(shapes.size()));
+    out_.put(std::uint64_t(payload.size()));
+    out_.put_bytes(payload.view());
+  }
+  void write(const SoftStore& soft) {
+    ByteWriter payload;
+    write_soft(payload, soft);
+    out_.put(std::uint64_t(soft.ids.size()));
     out_.put(std::uint64_t(payload.size()));
     out_.put_bytes(payload.view());
   }
@@ -210,6 +225,10 @@ class ColumnReader {
     for (AnyShape& shape : shapes) shape = read_shape(in, geometry_);
     return in.finished();
   }
+  bool read(const StoredColumn& stored, SoftStore& soft) {
+    ByteReader in(stored.payload);
+    return read_soft(in, soft) && in.finished() && soft.ids.size() == stored.count;
+  }
   template <class Record>
   bool read(const StoredColumn& stored, Record& record) {
     return stored.count == 1 && size_fits<Record>(stored) &&
@@ -294,13 +313,16 @@ Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number
   if (e.ok()) e = read_columns(content, geometry, columns);
   if (e) return e;
   columns.rigid.world_number = world_number;
-  return rebuild_derived(columns.rigid);
+  e = rebuild_derived(columns.rigid);
+  return e ? e : check_soft_columns(columns.rigid, columns.soft);
 }
 
 std::uint64_t state_layout() {
   std::uint64_t hash = 0;
   const StateColumns columns;
   for_each_column(columns, [&]<class Column>(const char* name, const Column&) {
+    // Soft matter has its own layout, which readers compare: recordings without any stay readable when it changes.
+    if constexpr (std::is_same_v<Column, SoftStore>) return;
     hash = mix_bits(hash + ColumnLayout<Column>::get().hash);
     hash = mix_bits(hash + hash_text(name));
   });

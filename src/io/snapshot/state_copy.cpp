@@ -193,6 +193,11 @@ struct OtherSize {
     bytes += column.bytes();
   }
   void operator()(const char*, const IdPool& ids) { bytes += ids.bytes(); }
+  void operator()(const char*, const SoftStore& soft) {
+    soft.for_each([&](const SoftEntry& entry) {
+      for_each_soft_array(entry, [&](const auto& array) { bytes += array.bytes(); });
+    });
+  }
   void operator()(const char*, const std::vector<AnyShape>& shapes) { bytes += shapes.capacity() * sizeof(AnyShape); }
   template <class T>
   void operator()(const char*, const T&) {

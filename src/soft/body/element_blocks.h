@@ -15,7 +15,7 @@ struct RowSlot {
   std::int32_t columns = -1;  // this is negative; else 16 columns begin here in SlicedRows::columns
 };
 
-enum class SolidModel : std::uint8_t { linear, corotated, neo_hookean };
+enum class ElementModel : std::uint8_t { linear, corotated, neo_hookean };
 
 constexpr int kTetLanes = 16;
 constexpr int kTetEdges = 6;     // pairs of corners 01 02 03 12 13 23
@@ -38,7 +38,7 @@ struct alignas(64) TriangleBlock {
 
 // The constants that the laws of the elements need.
 struct ElementMaterial {
-  SolidModel model = SolidModel::corotated;
+  ElementModel model = ElementModel::corotated;
   float mu = 0.0f, lambda = 0.0f;                          // Pa, of tetrahedra
   float stretch = 0.0f, contraction = 0.0f, shear = 0.0f;  // N/m, of triangles: c, c' and g
 };

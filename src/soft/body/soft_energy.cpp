@@ -47,7 +47,7 @@ Invariants invariants(const DVec3 (&f)[3]) {
 
 double density(const Continuum& continuum, const DVec3 (&f)[3]) {
   const double mu = double(continuum.material.mu), lambda = double(continuum.material.lambda);
-  if (continuum.material.model == SolidModel::linear) {
+  if (continuum.material.model == ElementModel::linear) {
     const double trace = f[0].x + f[1].y + f[2].z - 3.0;
     const double xy = 0.5 * (f[1].x + f[0].y), xz = 0.5 * (f[2].x + f[0].z), yz = 0.5 * (f[2].y + f[1].z);
     const double strain = square(f[0].x - 1.0) + square(f[1].y - 1.0) + square(f[2].z - 1.0) +
@@ -55,7 +55,7 @@ double density(const Continuum& continuum, const DVec3 (&f)[3]) {
     return mu * strain + 0.5 * lambda * trace * trace;
   }
   const Invariants of = invariants(f);
-  if (continuum.material.model == SolidModel::corotated) {
+  if (continuum.material.model == ElementModel::corotated) {
     return mu * (of.square - 2.0 * of.stretch + 3.0) + 0.5 * lambda * square(of.stretch - 3.0);
   }
   const double bulk = lambda + mu, excess = of.determinant - (1.0 + mu / bulk);
@@ -104,7 +104,8 @@ double membrane_energy(const Particles& particles, const Continuum& continuum) {
 
 double elastic_energy(const SoftBody& body) {
   double twice = 0.0;  // each pair stands in two rows
-  each_pair(body.particles, body.springs.rows, [&](int place, double span) {
+  const bool keeps_length = !body.chain.rest_length.empty() && body.chain.stretch_stiffness == 0.0;
+  if (!keeps_length) each_pair(body.particles, body.springs.rows, [&](int place, double span) {
     twice +=
         0.5 * double(body.springs.stiffness[place]) * square(span - double(body.springs.rest_length[place]));
   });

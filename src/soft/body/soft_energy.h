@@ -5,7 +5,7 @@
 
 namespace gyre {
 
-// Of springs, bending and continua, J. (A segment of a rope that keeps its length has none; its spring must not be asked.)
+// Of springs, bending and continua, J. A segment of a rope that keeps its length has none.
 double elastic_energy(const SoftBody& body);
 
 }  // namespace gyre

@@ -3,9 +3,9 @@
 
 #include "soft/body/soft_body.h"
 
-namespace gyre {
+#include <gyre/soft.h>
 
-enum class ClothLinks : std::uint8_t { springs, membrane };
+namespace gyre {
 
 struct ClothMaterial {
   ClothLinks links = ClothLinks::springs;

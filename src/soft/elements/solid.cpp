@@ -28,22 +28,9 @@ SoftBody tetrahedral_solid(std::span<const DVec3> places, std::span<const std::u
   return body;
 }
 
-SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose,
-                   const SolidMaterial& material) {
+Array<std::uint32_t> box_tetrahedra(const int (&cells)[3]) {
   // H. Freudenthal's cut of a cube along its diagonal: each tetrahedron goes along the three axes in another order. Neighbours fit.
   constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  const DQuat turn = to_double(pose.orientation);
-  Array<DVec3> places;
-  for (int k = 0; k <= cells[2]; ++k) {
-    for (int j = 0; j <= cells[1]; ++j) {
-      for (int i = 0; i <= cells[0]; ++i) {
-        const DVec3 local{(2.0 * i / cells[0] - 1.0) * double(half_extents.x),
-                          (2.0 * j / cells[1] - 1.0) * double(half_extents.y),
-                          (2.0 * k / cells[2] - 1.0) * double(half_extents.z)};
-        places.push_back(pose.position + rotate(turn, local));
-      }
-    }
-  }
   const int stride[3] = {1, cells[0] + 1, (cells[0] + 1) * (cells[1] + 1)};
   Array<std::uint32_t> corners;
   for (int k = 0; k < cells[2]; ++k) {
@@ -57,7 +44,24 @@ SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose,
       }
     }
   }
-  return tetrahedral_solid(places, corners, material);
+  return corners;
+}
+
+SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose,
+                   const SolidMaterial& material) {
+  const DQuat turn = to_double(pose.orientation);
+  Array<DVec3> places;
+  for (int k = 0; k <= cells[2]; ++k) {
+    for (int j = 0; j <= cells[1]; ++j) {
+      for (int i = 0; i <= cells[0]; ++i) {
+        const DVec3 local{(2.0 * i / cells[0] - 1.0) * double(half_extents.x),
+                          (2.0 * j / cells[1] - 1.0) * double(half_extents.y),
+                          (2.0 * k / cells[2] - 1.0) * double(half_extents.z)};
+        places.push_back(pose.position + rotate(turn, local));
+      }
+    }
+  }
+  return tetrahedral_solid(places, box_tetrahedra(cells), material);
 }
 
 }  // namespace gyre

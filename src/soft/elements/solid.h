@@ -10,12 +10,15 @@ struct SolidMaterial {
   float young_modulus = 1.0e5f;  // Pa
   float poisson_ratio = 0.45f;
   float damping = 0.0f;  // s
-  SolidModel model = SolidModel::neo_hookean;
+  ElementModel model = ElementModel::neo_hookean;
 };
 
 // A solid of `places` at rest and four corners a tetrahedron.
 SoftBody tetrahedral_solid(std::span<const DVec3> places, std::span<const std::uint32_t> corners,
                            const SolidMaterial& material);
+
+// Four corners each of the tetrahedra of a box of cells, six a cell.
+Array<std::uint32_t> box_tetrahedra(const int (&cells)[3]);
 
 // A box, its middle at `pose`, in cells of six tetrahedra each. Particle i + (cells[0] + 1) (j + (cells[1] + 1) k) is corner i, j, k.
 SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose, const SolidMaterial& material);

@@ -13,7 +13,7 @@ namespace {
 
 using soft_test::Bench;
 using testing_random::Mixed;
-constexpr SolidModel kModels[] = {SolidModel::linear, SolidModel::corotated, SolidModel::neo_hookean};
+constexpr ElementModel kModels[] = {ElementModel::linear, ElementModel::corotated, ElementModel::neo_hookean};
 
 SoftBody block(const SolidMaterial& material, int cells = 3) {
   return box_solid({0.5f, 0.5f, 0.5f}, {cells, cells, cells}, Pose{}, material);
@@ -26,7 +26,7 @@ SoftPass forces_of(SoftBody& body, Bench& bench, int width = 0) {
 }
 
 TEST(SolidForces, AreTheGradientOfTheEnergy) {
-  for (const SolidModel model : kModels) {
+  for (const ElementModel model : kModels) {
     SolidMaterial material;
     material.model = model;
     material.poisson_ratio = 0.3f;
@@ -60,7 +60,7 @@ TEST(SolidForces, AreTheGradientOfTheEnergy) {
 }
 
 TEST(SolidForces, ARotationGivesNone) {
-  for (const SolidModel model : {SolidModel::corotated, SolidModel::neo_hookean}) {
+  for (const ElementModel model : {ElementModel::corotated, ElementModel::neo_hookean}) {
     SolidMaterial material;
     material.model = model;
     SoftBody body = block(material);
@@ -80,7 +80,7 @@ TEST(SolidForces, ARotationGivesNone) {
 
 // The inner particles of an irregular block whose surface is moved by an affine map land where the map says.
 TEST(SolidStatics, PatchTest) {
-  for (const SolidModel model : kModels) {
+  for (const ElementModel model : kModels) {
     SolidMaterial material;
     material.model = model;
     material.poisson_ratio = 0.3f;
@@ -136,7 +136,7 @@ double mean_height(const SoftBody& body, const SoftBody& start, double height) {
 }
 
 TEST(SolidStatics, ABarStretchesUnderItsOwnWeight) {
-  for (const SolidModel model : kModels) {
+  for (const ElementModel model : kModels) {
     SolidMaterial material;
     material.model = model;
     material.young_modulus = 1.0e6f;
@@ -156,7 +156,7 @@ TEST(SolidStatics, ABarStretchesUnderItsOwnWeight) {
 }
 
 // The tip of a beam of 1 m x 0.1 m x 0.1 m with `across` cells through its depth, under its own weight times 1/100.
-double tip_of(SolidModel model, int across, float ratio = 0.3f) {
+double tip_of(ElementModel model, int across, float ratio = 0.3f) {
   SolidMaterial material;
   material.model = model;
   material.young_modulus = 1.0e6f;
@@ -179,27 +179,27 @@ double tip_of(SolidModel model, int across, float ratio = 0.3f) {
 
 TEST(SolidStatics, ACantileverConvergesWithTheSquareOfTheCells) {
   const double exact = 0.014715 + 0.000153;
-  const double coarse = tip_of(SolidModel::corotated, 2), fine = tip_of(SolidModel::corotated, 4);
+  const double coarse = tip_of(ElementModel::corotated, 2), fine = tip_of(ElementModel::corotated, 4);
   const double extrapolated = 1.0 / (1.0 / fine + (1.0 / fine - 1.0 / coarse) / 3.0);
   EXPECT_NEAR(extrapolated, exact, 0.05 * exact);
   EXPECT_LT(fine, exact);
   EXPECT_GT(fine, 0.77 * exact);  // four cells through the depth: docs/decisions/soft-solver.md, Limits
-  EXPECT_NEAR(tip_of(SolidModel::neo_hookean, 2), coarse, 0.02 * coarse);
-  EXPECT_NEAR(tip_of(SolidModel::linear, 2), coarse, 0.02 * coarse);
+  EXPECT_NEAR(tip_of(ElementModel::neo_hookean, 2), coarse, 0.02 * coarse);
+  EXPECT_NEAR(tip_of(ElementModel::linear, 2), coarse, 0.02 * coarse);
 }
 
 // A cantilever swings at the frequency that goes with its bending: f = 3.51602 / (2 pi) sqrt(EI / m L^4), and the tip under its own weight is
 // w L^4 / 8 EI, so f = 3.51602 / (2 pi) sqrt(g / 8 tip).
 TEST(SolidDynamics, ACantileverSwingsAtItsFrequency) {
   SolidMaterial material;
-  material.model = SolidModel::corotated;
+  material.model = ElementModel::corotated;
   material.young_modulus = 1.0e6f;
   material.poisson_ratio = 0.3f;
   SoftBody beam = box_solid({0.5f, 0.05f, 0.05f}, {20, 2, 2}, Pose{}, material);
   for (int i = 0; i < beam.particles.count; ++i) {
     if (beam.particles.x[i] < -0.499) hold(beam, i, beam.particles.place(i));
   }
-  const double tip = tip_of(SolidModel::corotated, 2);
+  const double tip = tip_of(ElementModel::corotated, 2);
   const double wanted = 3.51602 / (2.0 * double(kPi)) * std::sqrt(0.0981 / (8.0 * tip));
   Bench bench;
   ImplicitSettings settings;
@@ -224,10 +224,10 @@ TEST(SolidDynamics, ACantileverSwingsAtItsFrequency) {
 }
 
 TEST(SolidRobustness, ComesBackFromAnyState) {
-  for (const SolidModel model : {SolidModel::corotated, SolidModel::neo_hookean}) {
+  for (const ElementModel model : {ElementModel::corotated, ElementModel::neo_hookean}) {
     for (int kind = 0; kind < 3; ++kind) {
       // A point is a minimum of the neo-Hookean energy, and it stays one: docs/decisions/soft-solver.md, Limits.
-      if (kind == 2 && model == SolidModel::neo_hookean) continue;
+      if (kind == 2 && model == ElementModel::neo_hookean) continue;
       SolidMaterial material;
       material.model = model;
       material.poisson_ratio = 0.3f;
@@ -278,7 +278,7 @@ TEST(SolidRobustness, EveryScaleIsTheSame) {
 }
 
 TEST(SolidDeterminism, WidthsAndThreadsGiveTheSameBits) {
-  for (const SolidModel model : kModels) {
+  for (const ElementModel model : kModels) {
     double first = 0.0;
     for (const int width : {1, 4, 8, 16}) {
       for (const int threads : {1, 2}) {

@@ -140,9 +140,9 @@ GYRE_INLINE void respond(const SoftPass& pass, const TetBlock& block, int lane, 
   const Mat3W<W> f = edges * inverse;
   const ElementMaterial& material = pass.material;
   const ElementResponse<W> element =
-      material.model == SolidModel::neo_hookean
+      material.model == ElementModel::neo_hookean
           ? neo_hookean_response(f, material.mu, material.lambda)
-          : linear_response(f, material.model == SolidModel::corotated, material.mu, material.lambda);
+          : linear_response(f, material.model == ElementModel::corotated, material.mu, material.lambda);
   const Wide<W> volume = Wide<W>::load(block.volume + lane);
   // Rows of Dm^-1 are the gradients of corners 1 to 3.
   const Mat3W<W> gradients = transpose(inverse);

@@ -1,0 +1,198 @@
+#include "soft/store/soft_builder.h"
+
+#include "base/container/sort.h"
+#include "math/rotation.h"
+#include "soft/elements/cloth.h"
+#include "soft/elements/rope.h"
+#include "soft/elements/solid.h"
+
+#include <cmath>
+
+namespace gyre {
+
+namespace {
+
+// A rod of a cloth is a spring under which the cloth hangs longer by this share by its own weight.
+constexpr double kRodStrain = 1.0e-3;
+constexpr double kEarthGravity = 9.81;  // m/s^2
+
+Pose normalized_pose(const Pose& pose) { return {pose.position, normalized(pose.orientation)}; }
+
+Array<DVec3> placed(std::span<const Vec3> vertices, const Pose& pose) {
+  Array<DVec3> places;
+  const DQuat turn = to_double(pose.orientation);
+  for (const Vec3 vertex : vertices) places.push_back(pose.position + rotate(turn, DVec3(vertex)));
+  return places;
+}
+
+// The diagonal of the box of all vertices, m.
+double extent_of(const SoftBody& body) {
+  DVec3 low = body.particles.place(0), high = low;
+  for (int i = 1; i < body.particles.count; ++i) {
+    const DVec3 p = body.particles.place(i);
+    low = {min(low.x, p.x), min(low.y, p.y), min(low.z, p.z)};
+    high = {max(high.x, p.x), max(high.y, p.y), max(high.z, p.z)};
+  }
+  return length(high - low);
+}
+
+void build(const RopeDef& def, SoftEntry& entry) {
+  const int segments = def.segments > 0 ? def.segments : int(def.points.size()) - 1;
+  entry.kind = SoftKind::rope;
+  entry.radius = def.radius;
+  entry.body = rope_along(def.points, segments,
+                          {.linear_density = def.linear_density,
+                           .stretch_stiffness = def.stretch_stiffness,
+                           .bend_stiffness = def.bend_stiffness,
+                           .damping = def.settings.damping,
+                           .keeps_length = def.links == RopeLinks::rods});
+}
+
+void add_grid_triangles(const std::array<int, 2>& cells, Array<std::uint32_t>& triangles) {
+  const std::uint32_t columns = std::uint32_t(cells[0]) + 1;
+  for (std::uint32_t j = 0; j < std::uint32_t(cells[1]); ++j) {
+    for (std::uint32_t i = 0; i < std::uint32_t(cells[0]); ++i) {
+      const std::uint32_t a = i + j * columns, b = a + 1, c = a + columns, d = c + 1;
+      // Diagonals alternate, so that the sheet has no grain.
+      if ((i + j) % 2 == 0) {
+        for (const std::uint32_t v : {a, c, d, a, d, b}) triangles.push_back(v);
+      } else {
+        for (const std::uint32_t v : {a, c, b, b, c, d}) triangles.push_back(v);
+      }
+    }
+  }
+}
+
+void build(const ClothDef& def, SoftEntry& entry) {
+  entry.kind = SoftKind::cloth;
+  entry.radius = 0.5f * def.thickness;
+  ClothMaterial material{.links = def.links,
+                         .area_density = def.area_density,
+                         .stretch_stiffness = def.stretch_stiffness,
+                         .shear_stiffness = def.shear_stiffness,
+                         .bend_stiffness = def.bend_stiffness,
+                         .damping = def.settings.damping};
+  const Pose pose = normalized_pose(def.pose);
+  const auto make = [&] {
+    if (!def.grid) {
+      return mesh_cloth(placed(def.vertices, pose), def.triangles, material);
+    }
+    const float size[2] = {def.grid->size[0], def.grid->size[1]};
+    const int cells[2] = {def.grid->cells[0], def.grid->cells[1]};
+    return grid_cloth(size, cells, pose, material);
+  };
+  if (def.grid) {
+    add_grid_triangles(def.grid->cells, entry.triangles);
+  } else {
+    entry.triangles.assign(def.triangles);
+  }
+  if (def.links == ClothLinks::rods) {
+    entry.body = make();
+    const double weight = double(def.area_density) * kEarthGravity * extent_of(entry.body);
+    material.stretch_stiffness = float(weight / kRodStrain);
+  }
+  entry.body = make();
+}
+
+// A face of a tetrahedron, to be sorted by its vertices.
+struct Face {
+  std::uint32_t low, middle, high;  // its vertices
+  std::uint32_t tetrahedron, opposite;
+};
+
+Face make_face(std::span<const std::uint32_t> tetrahedra, std::uint32_t tetrahedron, std::uint32_t opposite) {
+  std::uint32_t v[3] = {};
+  for (std::uint32_t i = 0, n = 0; i < 4; ++i)
+    if (i != opposite) v[n++] = tetrahedra[4 * std::size_t(tetrahedron) + i];
+  const std::uint32_t low = min(min(v[0], v[1]), v[2]), high = max(max(v[0], v[1]), v[2]);
+  return {low, v[0] ^ v[1] ^ v[2] ^ low ^ high, high, tetrahedron, opposite};
+}
+
+// The faces that belong to one tetrahedron alone, seen from outside counter-clockwise, in the order of the tetrahedra.
+void add_outer_faces(std::span<const std::uint32_t> tetrahedra, const SoftBody& body,
+                     Array<std::uint32_t>& triangles) {
+  Array<Face> faces, scratch;
+  for (std::uint32_t t = 0; t < tetrahedra.size() / 4; ++t) {
+    for (std::uint32_t k = 0; k < 4; ++k) faces.push_back(make_face(tetrahedra, t, k));
+  }
+  scratch.resize(faces.size());
+  const auto same = [](const Face& a, const Face& b) {
+    return a.low == b.low && a.middle == b.middle && a.high == b.high;
+  };
+  merge_sort(faces.view(), scratch.view(), [](const Face& a, const Face& b) {
+    return a.low != b.low ? a.low < b.low : a.middle != b.middle ? a.middle < b.middle : a.high < b.high;
+  });
+  Array<Face> outer;
+  for (std::size_t i = 0; i < faces.size();) {
+    std::size_t end = i + 1;
+    while (end < faces.size() && same(faces[i], faces[end])) ++end;
+    if (end - i == 1) outer.push_back(faces[i]);
+    i = end;
+  }
+  scratch.resize(outer.size());
+  merge_sort(outer.view(), scratch.view(), [](const Face& a, const Face& b) {
+    return a.tetrahedron != b.tetrahedron ? a.tetrahedron < b.tetrahedron : a.opposite < b.opposite;
+  });
+  for (const Face& face : outer) {
+    const DVec3 a = body.particles.place(int(face.low)), b = body.particles.place(int(face.middle)),
+                c = body.particles.place(int(face.high)),
+                inner =
+                    body.particles.place(int(tetrahedra[4 * std::size_t(face.tetrahedron) + face.opposite]));
+    const bool is_outward = dot(cross(b - a, c - a), inner - a) < 0.0;
+    triangles.push_back(face.low);
+    triangles.push_back(is_outward ? face.middle : face.high);
+    triangles.push_back(is_outward ? face.high : face.middle);
+  }
+}
+
+void build(const SolidDef& def, SoftEntry& entry) {
+  entry.kind = SoftKind::solid;
+  const SolidMaterial material{.density = def.density,
+                               .young_modulus = def.young_modulus,
+                               .poisson_ratio = def.poisson_ratio,
+                               .damping = def.settings.damping,
+                               .model = ElementModel(def.model)};
+  const Pose pose = normalized_pose(def.pose);
+  if (def.box) {
+    const int cells[3] = {def.box->cells[0], def.box->cells[1], def.box->cells[2]};
+    entry.body = box_solid(def.box->half_extents, cells, pose, material);
+    add_outer_faces(box_tetrahedra(cells), entry.body, entry.triangles);
+  } else {
+    entry.body = tetrahedral_solid(placed(def.vertices, pose), def.tetrahedra, material);
+    add_outer_faces(def.tetrahedra, entry.body, entry.triangles);
+  }
+}
+
+// The mean length of the edges of triangles, or of the segments of a rope.
+float edge_size(const SoftEntry& entry) {
+  const Particles& p = entry.body.particles;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < entry.triangles.size(); ++k) {
+    const std::size_t next = k % 3 == 2 ? k - 2 : k + 1;
+    sum += length(p.place(int(entry.triangles[k])) - p.place(int(entry.triangles[next])));
+    ++count;
+  }
+  for (const double rest : entry.body.chain.rest_length) sum += rest, ++count;
+  return count > 0 ? float(sum / double(count)) : 0.0f;
+}
+
+void set_start(const SoftSettings& settings, Particles& particles) {
+  for (std::size_t i = 0; i < settings.positions.size(); ++i)
+    particles.set_place(int(i), settings.positions[i]);
+  for (std::size_t i = 0; i < settings.velocities.size(); ++i)
+    particles.set_velocity(int(i), settings.velocities[i]);
+}
+
+}  // namespace
+
+SoftEntry build_soft(std::shared_ptr<const SoftDef> def) {
+  SoftEntry entry;
+  std::visit([&](const auto& one) { build(one, entry); }, *def);
+  entry.size = edge_size(entry);
+  entry.def = std::move(def);
+  set_start(entry.settings(), entry.body.particles);
+  return entry;
+}
+
+}  // namespace gyre

@@ -1,0 +1,21 @@
+// Makes the entry of a rope, cloth or solid from its definition, which is checked first. A pure function: the same definition gives the same
+// bits.
+#pragma once
+
+#include "soft/store/soft_store.h"
+
+#include <gyre/result.h>
+
+namespace gyre {
+
+constexpr int kMaxSoftVertices = 1 << 20;  // of one rope, cloth or solid
+
+// Says why a definition is refused; code none if it is not. The message names the field, what was found and what is expected.
+Error check_soft(const RopeDef& def);
+Error check_soft(const ClothDef& def);
+Error check_soft(const SolidDef& def);
+
+// The definition must have passed its check.
+SoftEntry build_soft(std::shared_ptr<const SoftDef> def);
+
+}  // namespace gyre

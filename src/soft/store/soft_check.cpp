@@ -1,0 +1,218 @@
+// The checks of definitions. See soft_builder.h.
+#include "soft/store/soft_builder.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr float kLargest = 1.0e12f;   // of lengths and stiffness, in their units
+constexpr double kFarthest = 1.0e12;  // m
+constexpr std::size_t kMostElements = 8u << 20;
+
+template <class... Args>
+Error refused(const char* format, Args... args) {
+  return make_error(ErrorCode::invalid_argument, format, args...);
+}
+
+Error above_zero(const char* field, float value) {
+  if (is_finite(value) && value > 0.0f && value <= kLargest) return {};
+  return refused("%s is %g; it must be above 0 and at most 1e12", field, double(value));
+}
+Error not_negative(const char* field, float value) {
+  if (is_finite(value) && value >= 0.0f && value <= kLargest) return {};
+  return refused("%s is %g; it must be at least 0 and at most 1e12", field, double(value));
+}
+Error within_bounds(const char* field, std::size_t index, DVec3 p) {
+  if (is_finite(p) && absolute(p.x) <= kFarthest && absolute(p.y) <= kFarthest && absolute(p.z) <= kFarthest)
+    return {};
+  return refused("%s[%zu] is (%g, %g, %g); every component must be finite and within 1e12 m", field, index,
+                 p.x, p.y, p.z);
+}
+Error good_pose(const Pose& pose) {
+  const Error e = within_bounds("pose.position", 0, pose.position);
+  if (e) return e;
+  const float size = dot(pose.orientation, pose.orientation);
+  if (is_finite(pose.orientation) && size > 1.0e-12f && is_finite(size)) return {};
+  return refused("pose.orientation is (%g, %g, %g, %g); it must be a finite quaternion that is not zero",
+                 double(pose.orientation.x), double(pose.orientation.y), double(pose.orientation.z),
+                 double(pose.orientation.w));
+}
+Error good_count(std::size_t vertices) {
+  if (vertices <= std::size_t(kMaxSoftVertices)) return {};
+  return refused("there are %zu vertices; at most %d are possible", vertices, kMaxSoftVertices);
+}
+
+Error good_settings(const SoftSettings& s, std::size_t vertices) {
+  Error e = not_negative("settings.damping", s.damping);
+  if (e.ok()) e = not_negative("settings.static_friction", s.static_friction);
+  if (e.ok()) e = not_negative("settings.dynamic_friction", s.dynamic_friction);
+  if (e.ok() && !s.positions.empty() && s.positions.size() != vertices)
+    e = refused("settings.positions has %zu entries; there are %zu vertices", s.positions.size(), vertices);
+  if (e.ok() && !s.velocities.empty() && s.velocities.size() != vertices)
+    e = refused("settings.velocities has %zu entries; there are %zu vertices", s.velocities.size(), vertices);
+  for (std::size_t i = 0; e.ok() && i < s.positions.size(); ++i)
+    e = within_bounds("settings.positions", i, s.positions[i]);
+  for (std::size_t i = 0; e.ok() && i < s.velocities.size(); ++i)
+    e = within_bounds("settings.velocities", i, DVec3(s.velocities[i]));
+  return e;
+}
+
+// Checks vertices and the indices of elements of `corners` vertices each. A vertex without an element has no mass.
+Error good_elements(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices,
+                    std::size_t corners, const char* element) {
+  Error e = good_count(vertices.size());
+  if (e) return e;
+  if (indices.empty() || indices.size() % corners != 0)
+    return refused("%s has %zu indices; it must have %zu for each, and at least one", element, indices.size(),
+                   corners);
+  if (indices.size() / corners > kMostElements)
+    return refused("%s has %zu elements; at most %zu are possible", element, indices.size() / corners,
+                   kMostElements);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    e = within_bounds("vertices", i, DVec3(vertices[i]));
+    if (e) return e;
+  }
+  Array<std::uint8_t> used;
+  used.resize(vertices.size());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] >= vertices.size())
+      return refused("%s[%zu] has vertex %u; there are %zu vertices", element, i / corners, indices[i],
+                     vertices.size());
+    for (std::size_t k = i - i % corners; k < i; ++k) {
+      if (indices[k] == indices[i])
+        return refused("%s[%zu] has vertex %u twice", element, i / corners, indices[i]);
+    }
+    used[indices[i]] = 1;
+  }
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (used[i] == 0)
+      return refused("vertices[%zu] belongs to none of %s; it would have no mass", i, element);
+  }
+  return {};
+}
+
+Error has_areas(const ClothDef& def) {
+  for (std::size_t t = 0; t + 2 < def.triangles.size(); t += 3) {
+    const DVec3 a(def.vertices[def.triangles[t]]), b(def.vertices[def.triangles[t + 1]]),
+        c(def.vertices[def.triangles[t + 2]]);
+    const double longest = max(length(b - a), max(length(c - a), length(c - b)));
+    // Heights below this share of the longest side are lost in the rounding of float.
+    if (length(cross(b - a, c - a)) > 1.0e-6 * longest * longest) continue;
+    return refused("triangles[%zu] has no area", t / 3);
+  }
+  return {};
+}
+
+Error has_volumes(const SolidDef& def) {
+  for (std::size_t t = 0; t + 3 < def.tetrahedra.size(); t += 4) {
+    const DVec3 a(def.vertices[def.tetrahedra[t]]);
+    const DVec3 b = DVec3(def.vertices[def.tetrahedra[t + 1]]) - a,
+                c = DVec3(def.vertices[def.tetrahedra[t + 2]]) - a,
+                d = DVec3(def.vertices[def.tetrahedra[t + 3]]) - a;
+    const double longest = max(length(b), max(length(c), length(d)));
+    if (absolute(dot(b, cross(c, d))) > 1.0e-7 * longest * longest * longest) continue;
+    return refused("tetrahedra[%zu] has no volume", t / 4);
+  }
+  return {};
+}
+
+}  // namespace
+
+Error check_soft(const RopeDef& def) {
+  if (def.points.size() < 2)
+    return refused("points has %zu entries; a rope needs at least 2", def.points.size());
+  Error e = good_count(max(def.points.size(), def.segments > 0 ? std::size_t(def.segments) + 1 : 0));
+  double whole = 0.0;
+  for (std::size_t i = 0; e.ok() && i < def.points.size(); ++i) {
+    e = within_bounds("points", i, def.points[i]);
+    if (i > 0) whole += length(def.points[i] - def.points[i - 1]);
+  }
+  if (e) return e;
+  if (def.segments < 0)
+    return refused("segments is %d; it must be at least 1, or 0 for the points as they are", def.segments);
+  if (!(whole > 0.0)) return refused("points lie in one place; a rope needs a length");
+  const bool as_given = def.segments == 0 || std::size_t(def.segments) + 1 == def.points.size();
+  for (std::size_t i = 1; as_given && i < def.points.size(); ++i) {
+    if (!(length(def.points[i] - def.points[i - 1]) > 1.0e-9 * whole))
+      return refused("points[%zu] lies where points[%zu] does; a segment needs a length", i, i - 1);
+  }
+  e = not_negative("radius", def.radius);
+  if (e.ok()) e = above_zero("linear_density", def.linear_density);
+  if (e.ok() && def.links == RopeLinks::springs) e = above_zero("stretch_stiffness", def.stretch_stiffness);
+  if (e.ok()) e = not_negative("stretch_stiffness", def.stretch_stiffness);
+  if (e.ok()) e = not_negative("bend_stiffness", def.bend_stiffness);
+  if (e) return e;
+  return good_settings(def.settings, def.segments > 0 ? std::size_t(def.segments) + 1 : def.points.size());
+}
+
+Error check_soft(const ClothDef& def) {
+  Error e;
+  std::size_t vertices = def.vertices.size();
+  if (def.grid) {
+    const ClothGrid& grid = *def.grid;
+    if (!def.vertices.empty() || !def.triangles.empty())
+      return refused("grid and triangles are both given; a cloth is one of them");
+    e = above_zero("grid.size[0]", grid.size[0]);
+    if (e.ok()) e = above_zero("grid.size[1]", grid.size[1]);
+    for (const int cells : grid.cells) {
+      if (e.ok() && (cells < 1 || cells > 4096))
+        e = refused("grid.cells has %d; it must lie within 1 and 4096", cells);
+    }
+    if (e) return e;
+    vertices = (std::size_t(grid.cells[0]) + 1) * (std::size_t(grid.cells[1]) + 1);
+    e = good_count(vertices);
+  } else {
+    if (def.vertices.empty()) return refused("neither grid nor vertices are given; a cloth is one of them");
+    e = good_elements(def.vertices, def.triangles, 3, "triangles");
+    if (e.ok()) e = has_areas(def);
+  }
+  if (e.ok()) e = good_pose(def.pose);
+  if (e.ok()) e = above_zero("area_density", def.area_density);
+  if (e.ok())
+    e = def.links == ClothLinks::rods ? not_negative("stretch_stiffness", def.stretch_stiffness)
+                                      : above_zero("stretch_stiffness", def.stretch_stiffness);
+  const bool needs_shear = !def.grid && def.links == ClothLinks::membrane;
+  if (e.ok())
+    e = needs_shear ? above_zero("shear_stiffness", def.shear_stiffness)
+                    : not_negative("shear_stiffness", def.shear_stiffness);
+  // An isotropic sheet has 4 G > E: its Poisson ratio is below 1.
+  if (e.ok() && needs_shear && !(4.0f * def.shear_stiffness > def.stretch_stiffness))
+    e = refused(
+        "shear_stiffness is %g; a membrane of triangles needs more than a quarter of stretch_stiffness, %g",
+        double(def.shear_stiffness), double(def.stretch_stiffness));
+  if (e.ok()) e = not_negative("bend_stiffness", def.bend_stiffness);
+  if (e.ok()) e = not_negative("thickness", def.thickness);
+  return e ? e : good_settings(def.settings, vertices);
+}
+
+Error check_soft(const SolidDef& def) {
+  Error e;
+  std::size_t vertices = def.vertices.size();
+  if (def.box) {
+    const SolidBox& box = *def.box;
+    if (!def.vertices.empty() || !def.tetrahedra.empty())
+      return refused("box and tetrahedra are both given; a solid is one of them");
+    e = above_zero("box.half_extents.x", box.half_extents.x);
+    if (e.ok()) e = above_zero("box.half_extents.y", box.half_extents.y);
+    if (e.ok()) e = above_zero("box.half_extents.z", box.half_extents.z);
+    vertices = 1;
+    for (const int cells : box.cells) {
+      if (e.ok() && (cells < 1 || cells > 256))
+        e = refused("box.cells has %d; it must lie within 1 and 256", cells);
+      vertices *= e.ok() ? std::size_t(cells) + 1 : 1;
+    }
+    if (e.ok()) e = good_count(vertices);
+  } else {
+    if (def.vertices.empty()) return refused("neither box nor vertices are given; a solid is one of them");
+    e = good_elements(def.vertices, def.tetrahedra, 4, "tetrahedra");
+    if (e.ok()) e = has_volumes(def);
+  }
+  if (e.ok()) e = good_pose(def.pose);
+  if (e.ok()) e = above_zero("density", def.density);
+  if (e.ok()) e = above_zero("young_modulus", def.young_modulus);
+  if (e.ok() && !(def.poisson_ratio > -1.0f && def.poisson_ratio < 0.5f))
+    e = refused("poisson_ratio is %g; it must lie between -1 and 1/2", double(def.poisson_ratio));
+  return e ? e : good_settings(def.settings, vertices);
+}
+
+}  // namespace gyre

@@ -1,0 +1,96 @@
+// SoftStore: all ropes, cloths and solids of a world, by the index of their ids. An entry is rebuilt from its definition when a state is
+// loaded; only what moves is saved.
+#pragma once
+
+#include "base/container/array.h"
+#include "base/container/slot_map.h"
+#include "soft/body/soft_body.h"
+
+#include <gyre/soft.h>
+
+#include <memory>
+#include <variant>
+#include <vector>
+
+namespace gyre {
+
+using SoftDef = std::variant<RopeDef, ClothDef, SolidDef>;
+
+constexpr std::int32_t kWorldAnchor = -1;  // of an attachment: the world
+
+// A vertex that keeps its place in the frame of a body, or in the world.
+struct SoftAttachment {
+  std::uint32_t particle = 0;
+  std::int32_t body = kWorldAnchor;
+  DVec3 place{};   // of the world: where it stays
+  Vec3 local{};    // of a body: from its centre of mass, in its axes, m
+  Vec3 impulse{};  // N s on the vertex in the last half-step, where the body yields: the warm start
+};
+
+// A vertex near a shape, found once a step. The shape's surface is a plane here, which moves with the body.
+struct SoftContact {
+  std::uint32_t particle = 0;
+  std::uint32_t shape = 0;
+  std::int32_t body = kWorldAnchor;  // kWorldAnchor: it does not move
+  std::uint32_t triangle = 0;        // of a mesh or height field
+  Vec3 normal{};                     // unit, out of the shape, world axes, when the step began
+  Vec3
+      from_body{};  // from the body's centre of mass to the point on the surface, world axes, when the step began
+  float gap = 0.0f;  // m, of vertex and surface less the thickness, when the step began
+  float static_friction = 0.0f;
+  float dynamic_friction = 0.0f;
+  Vec3 surface_velocity{};  // m/s, of a conveyor belt, world axes
+  Vec3 impulse{};           // N s on the vertex in the last half-step: the warm start
+};
+
+struct SoftEntry {
+  std::shared_ptr<const SoftDef> def;  // null: the slot is free
+  SoftKind kind = SoftKind::rope;
+  SoftBody body;
+  Array<SoftAttachment> attachments;  // ascending by particle
+  Array<SoftContact> contacts;        // ascending by particle, then shape
+  Array<std::uint32_t>
+      triangles;  // of the surface, three vertices each, seen from outside counter-clockwise; none of a rope
+  float radius = 0.0f;  // m: half the thickness, which the surface keeps from shapes
+  float size = 0.0f;    // m: the mean length of its edges, by which speculative distances go
+
+  const SoftSettings& settings() const {
+    return std::visit([](const auto& one) -> const SoftSettings& { return one.settings; }, *def);
+  }
+};
+
+struct SoftStore {
+  IdPool ids;
+  std::vector<SoftEntry> entries;
+
+  bool empty() const { return ids.size() == 0; }
+  void clear() {
+    ids = {};
+    entries.clear();
+  }
+  template <class Fn>
+  void for_each(Fn&& fn) {
+    for (SoftEntry& entry : entries)
+      if (entry.def != nullptr) fn(entry);
+  }
+  template <class Fn>
+  void for_each(Fn&& fn) const {
+    for (const SoftEntry& entry : entries)
+      if (entry.def != nullptr) fn(entry);
+  }
+};
+
+// Calls visit(array) for every array of an entry that a step changes: with the definition they are its state.
+template <class Entry, class Visitor>
+void for_each_soft_array(Entry& entry, Visitor&& visit) {
+  auto& p = entry.body.particles;
+  visit(p.x), visit(p.y), visit(p.z);
+  visit(p.vx), visit(p.vy), visit(p.vz);
+  for (auto& pull : entry.body.pull) visit(pull);
+  for (auto& moved : entry.body.moved) visit(moved);
+  visit(entry.body.chain.tension);
+  visit(entry.attachments);
+  visit(entry.contacts);
+}
+
+}  // namespace gyre

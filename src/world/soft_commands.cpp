@@ -1,0 +1,286 @@
+#include "world/soft_commands.h"
+
+#include "base/float_mode.h"
+#include "math/rotation.h"
+#include "rigid/sleep/island.h"
+#include "soft/body/soft_energy.h"
+#include "soft/store/soft_builder.h"
+#include "world/refusal.h"
+#include "world/world_state.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr std::size_t kMaxSofts = 1u << 16;
+
+Error check_id(const WorldState& s, SoftId id, const char* what) {
+  if (is_soft(s, id)) return {};
+  return make_error(ErrorCode::stale_id, "%s: rope, cloth or solid %u (generation %u) does not exist in this world", what,
+                    id.index, unsigned(id.generation));
+}
+Error check_vertex(const WorldState& s, SoftId id, int vertex, const char* what) {
+  const Error e = check_id(s, id, what);
+  if (e) return e;
+  const int count = s.soft.entries[id.index].body.particles.count;
+  if (vertex >= 0 && vertex < count) return {};
+  return refuse("%s: vertex is %d; it must lie within 0 and %d", what, vertex, count - 1);
+}
+
+std::size_t find_attachment(const SoftEntry& entry, std::uint32_t particle) {
+  std::size_t at = 0;
+  while (at < entry.attachments.size() && entry.attachments[at].particle < particle) ++at;
+  return at;
+}
+bool has_attachment(const SoftEntry& entry, std::size_t at, std::uint32_t particle) {
+  return at < entry.attachments.size() && entry.attachments[at].particle == particle;
+}
+
+// Lets an attachment stand where its vertex is now.
+void anchor_here(const RigidWorld& w, const SoftEntry& entry, SoftAttachment& attachment) {
+  attachment.place = entry.body.particles.place(int(attachment.particle));
+  attachment.impulse = {};
+  if (attachment.body == kWorldAnchor) return;
+  const BodyPose& pose = w.bodies.poses[std::size_t(attachment.body)];
+  attachment.local = rotate(conjugate(pose.orientation), difference(attachment.place, pose.center));
+}
+
+// Contacts of the last step, between steps of a scheme, and the changes that the next step begins with, belong to the old places.
+void forget_motion(SoftEntry& entry) {
+  entry.contacts.clear();
+  for (Array<float>& pull : entry.body.pull) pull.clear();
+  for (Array<double>& moved : entry.body.moved) moved.clear();
+}
+
+}  // namespace
+
+bool is_soft(const WorldState& s, SoftId id) {
+  return id && id.world == s.number && s.soft.ids.live(id.index) &&
+         std::uint16_t(s.soft.ids.generation(id.index)) == id.generation;
+}
+
+Error check(const WorldState& s, const AddSoft& c) {
+  if (s.soft.ids.size() >= kMaxSofts) return refuse("a world has at most %d ropes, cloths and solids", int(kMaxSofts));
+  return std::visit([](const auto& def) { return check_soft(def); }, *c.def);
+}
+Error check(const WorldState& s, const RemoveSoft& c) { return check_id(s, c.soft, "remove_soft"); }
+Error check(const WorldState& s, const AttachSoft& c) {
+  const Error e = check_vertex(s, c.soft, c.vertex, c.body ? "attach" : "pin");
+  if (e || !c.body) return e;
+  const IdPool& ids = s.rigid.bodies.ids;
+  if (c.body.world == s.number && ids.live(c.body.index) && std::uint16_t(ids.generation(c.body.index)) == c.body.generation)
+    return {};
+  return make_error(ErrorCode::stale_id, "attach: body %u (generation %u) does not exist in this world", c.body.index,
+                    unsigned(c.body.generation));
+}
+Error check(const WorldState& s, const ReleaseSoft& c) { return check_vertex(s, c.soft, c.vertex, "release"); }
+Error check(const WorldState& s, const SetVertices& c) {
+  const Error e = check_id(s, c.soft, "set_vertices");
+  if (e) return e;
+  const std::size_t count = std::size_t(s.soft.entries[c.soft.index].body.particles.count);
+  if (!c.positions.empty() && c.positions.size() != count)
+    return refuse("set_vertices: there are %d positions and %d vertices", int(c.positions.size()), int(count));
+  if (!c.velocities.empty() && c.velocities.size() != count)
+    return refuse("set_vertices: there are %d velocities and %d vertices", int(c.velocities.size()), int(count));
+  for (std::size_t i = 0; i < c.positions.size(); ++i) {
+    const DVec3 p = c.positions[i];
+    if (!is_finite(p) || absolute(p.x) > kMaxPosition || absolute(p.y) > kMaxPosition || absolute(p.z) > kMaxPosition)
+      return refuse("set_vertices: positions[%d] is (%g, %g, %g); every component must be finite and within 1e12 m", int(i), p.x,
+                    p.y, p.z);
+  }
+  for (std::size_t i = 0; i < c.velocities.size(); ++i) {
+    if (!is_finite(c.velocities[i])) return refuse("set_vertices: velocities[%d] is not finite", int(i));
+  }
+  return {};
+}
+
+CommandResult execute(WorldState& s, const AddSoft& c) {
+  const IdPool::Slot slot = s.soft.ids.acquire();
+  if (s.soft.entries.size() < s.soft.ids.capacity()) s.soft.entries.resize(s.soft.ids.capacity());
+  s.soft.entries[slot.index] = build_soft(c.def);
+  CommandResult out;
+  out.done = true;
+  out.soft = {slot.index, std::uint16_t(slot.generation), s.number};
+  return out;
+}
+CommandResult execute(WorldState& s, const RemoveSoft& c) {
+  for (const SoftContact& contact : s.soft.entries[c.soft.index].contacts) {
+    if (contact.body != kWorldAnchor) wake(s.rigid, std::uint32_t(contact.body));
+  }
+  for (const SoftAttachment& attachment : s.soft.entries[c.soft.index].attachments) {
+    if (attachment.body != kWorldAnchor) wake(s.rigid, std::uint32_t(attachment.body));
+  }
+  s.soft.entries[c.soft.index] = {};
+  s.soft.ids.release(c.soft.index);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const AttachSoft& c) {
+  SoftEntry& entry = s.soft.entries[c.soft.index];
+  const std::uint32_t particle = std::uint32_t(c.vertex);
+  const std::size_t at = find_attachment(entry, particle);
+  if (!has_attachment(entry, at, particle)) entry.attachments.insert_at(at, SoftAttachment{.particle = particle});
+  SoftAttachment& attachment = entry.attachments[at];
+  attachment.body = c.body ? std::int32_t(c.body.index) : kWorldAnchor;
+  anchor_here(s.rigid, entry, attachment);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const ReleaseSoft& c) {
+  SoftEntry& entry = s.soft.entries[c.soft.index];
+  const std::size_t at = find_attachment(entry, std::uint32_t(c.vertex));
+  if (!has_attachment(entry, at, std::uint32_t(c.vertex))) return {true, {}, {}, {}};
+  if (entry.attachments[at].body != kWorldAnchor) wake(s.rigid, std::uint32_t(entry.attachments[at].body));
+  entry.attachments.erase_at(at);
+  let_go(entry.body, c.vertex);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetVertices& c) {
+  SoftEntry& entry = s.soft.entries[c.soft.index];
+  for (std::size_t i = 0; i < c.positions.size(); ++i) entry.body.particles.set_place(int(i), c.positions[i]);
+  for (std::size_t i = 0; i < c.velocities.size(); ++i) entry.body.particles.set_velocity(int(i), c.velocities[i]);
+  forget_motion(entry);
+  if (!c.positions.empty()) {
+    for (SoftAttachment& attachment : entry.attachments) anchor_here(s.rigid, entry, attachment);
+  }
+  return {true, {}, {}, {}};
+}
+
+void forget_body(SoftStore& soft, std::uint32_t body) {
+  soft.for_each([&](SoftEntry& entry) {
+    for (std::size_t k = entry.attachments.size(); k-- > 0;) {
+      if (entry.attachments[k].body != std::int32_t(body)) continue;
+      let_go(entry.body, int(entry.attachments[k].particle));
+      entry.attachments.erase_at(k);
+    }
+    for (std::size_t k = entry.contacts.size(); k-- > 0;) {
+      if (entry.contacts[k].body == std::int32_t(body)) entry.contacts.erase_at(k);
+    }
+  });
+}
+
+// ------------------------------------------------------------------------------------------------------------- reading
+
+void add_soft_energy(const SoftStore& soft, DVec3 gravity, Energy& energy) {
+  soft.for_each([&](const SoftEntry& entry) {
+    const Particles& p = entry.body.particles;
+    for (int i = 0; i < p.count; ++i) {
+      energy.kinetic += 0.5 * double(p.mass[i]) * length_squared(DVec3(p.velocity(i)));
+      energy.potential -= double(p.mass[i]) * dot(gravity, p.place(i));
+    }
+    energy.soft_elastic += elastic_energy(entry.body);
+  });
+}
+void add_soft_momentum(const SoftStore& soft, Momentum& momentum) {
+  soft.for_each([&](const SoftEntry& entry) {
+    const Particles& p = entry.body.particles;
+    for (int i = 0; i < p.count; ++i) {
+      const DVec3 one = double(p.mass[i]) * DVec3(p.velocity(i));
+      momentum.linear += one;
+      momentum.angular += cross(p.place(i), one);
+    }
+  });
+}
+
+bool World::exists(SoftId soft) const { return is_soft(*state_, soft); }
+std::size_t World::softs(std::span<SoftId> out) const {
+  const IdPool& ids = state_->soft.ids;
+  std::size_t count = 0;
+  ids.for_each_live([&](std::uint32_t slot) {
+    if (count < out.size()) out[count] = {slot, std::uint16_t(ids.generation(slot)), state_->number};
+    ++count;
+  });
+  return count;
+}
+SoftInfo World::soft_info(SoftId soft) const {
+  if (!exists(soft)) return {};
+  const FloatMode mode;
+  const SoftEntry& entry = state_->soft.entries[soft.index];
+  const Particles& p = entry.body.particles;
+  SoftInfo info;
+  info.kind = entry.kind;
+  info.vertices = p.count;
+  info.radius = entry.radius;
+  info.contacts = int(entry.contacts.size());
+  info.user_data = entry.settings().user_data;
+  info.elastic_energy = elastic_energy(entry.body);
+  for (int i = 0; i < p.count; ++i) {
+    info.mass += double(p.mass[i]);
+    info.kinetic_energy += 0.5 * double(p.mass[i]) * length_squared(DVec3(p.velocity(i)));
+  }
+  return info;
+}
+SoftVertices World::vertices(SoftId soft) const {
+  if (!exists(soft)) return {};
+  const Particles& p = state_->soft.entries[soft.index].body.particles;
+  const std::size_t count = std::size_t(p.count);
+  return {p.x.view().first(count),  p.y.view().first(count),  p.z.view().first(count),
+          p.vx.view().first(count), p.vy.view().first(count), p.vz.view().first(count)};
+}
+std::span<const std::uint32_t> World::soft_triangles(SoftId soft) const {
+  if (!exists(soft)) return {};
+  return state_->soft.entries[soft.index].triangles.view();
+}
+
+const char* to_string(SoftKind kind) {
+  switch (kind) {
+    case SoftKind::rope:
+      return "rope";
+    case SoftKind::cloth:
+      return "cloth";
+    case SoftKind::solid:
+      return "solid";
+  }
+  return "unknown";
+}
+const char* to_string(SoftIntegrator integrator) {
+  switch (integrator) {
+    case SoftIntegrator::implicit:
+      return "implicit";
+    case SoftIntegrator::explicit_euler:
+      return "explicit_euler";
+    case SoftIntegrator::semi_implicit_euler:
+      return "semi_implicit_euler";
+    case SoftIntegrator::rk4:
+      return "rk4";
+    case SoftIntegrator::verlet:
+      return "verlet";
+  }
+  return "unknown";
+}
+const char* to_string(RopeLinks links) { return links == RopeLinks::springs ? "springs" : "rods"; }
+const char* to_string(ClothLinks links) {
+  return links == ClothLinks::springs ? "springs" : links == ClothLinks::rods ? "rods" : "membrane";
+}
+const char* to_string(SolidModel model) {
+  return model == SolidModel::linear ? "linear" : model == SolidModel::corotated ? "corotated" : "neo_hookean";
+}
+
+// ------------------------------------------------------------------------------------------------------ loaded columns
+
+Error check_soft_columns(const RigidWorld& w, const SoftStore& soft) {
+  const auto bad = [](const char* what) {
+    return make_error(ErrorCode::invalid_data, "the state does not hang together: %s", what);
+  };
+  if (soft.ids.capacity() != soft.entries.size()) return bad("ids and entries of soft matter differ in length");
+  for (std::uint32_t slot = 0; slot < soft.entries.size(); ++slot) {
+    const SoftEntry& entry = soft.entries[slot];
+    if (soft.ids.live(slot) != (entry.def != nullptr)) return bad("soft matter without an id");
+    const std::uint32_t count = std::uint32_t(entry.body.particles.count);
+    const auto good_body = [&](std::int32_t body) {
+      return body == kWorldAnchor || (body >= 0 && w.bodies.ids.live(std::uint32_t(body)));
+    };
+    for (std::size_t k = 0; k < entry.attachments.size(); ++k) {
+      const SoftAttachment& one = entry.attachments[k];
+      if (one.particle >= count || !good_body(one.body)) return bad("an attachment without its vertex or body");
+      if (k > 0 && entry.attachments[k - 1].particle >= one.particle) return bad("attachments out of order");
+      if (!is_finite(one.place) || !is_finite(one.local) || !is_finite(one.impulse)) return bad("an attachment that is not finite");
+    }
+    for (const SoftContact& one : entry.contacts) {
+      if (one.particle >= count || one.shape >= w.shapes.ids.capacity() || !good_body(one.body))
+        return bad("a contact of a vertex that is not there");
+      if (!is_finite(one.impulse) || !is_finite(one.normal) || !is_finite(one.from_body)) return bad("a contact that is not finite");
+    }
+  }
+  return {};
+}
+
+}  // namespace gyre
