@@ -8,6 +8,9 @@ constexpr double kOnSurface = 1.0e-6;
 // More than an axis needs so that it has one cell more.
 constexpr double kCellSlack = 1.0e-6;
 
+// Cells along the side of a block.
+constexpr int kBlock = 4;
+
 // Direction d + 7 is opposite to d. The first three of each half are long, the others short.
 constexpr LatticePoint kSteps[CutLattice::kDirections] = {
     {2, 0, 0},  {0, 2, 0},  {0, 0, 2},  {1, 1, 1},    {-1, 1, 1},  {1, -1, 1},  {-1, -1, 1},
@@ -47,6 +50,7 @@ CutLattice::CutLattice(const SurfaceField& field, DVec3 size, int resolution)
   origin_ = {low[0], low[1], low[2]};
   corners_ = std::uint32_t((cells_[0] + 1) * (cells_[1] + 1) * (cells_[2] + 1));
   sides_.assign(corners_ + std::uint32_t(cells_[0] * cells_[1] * cells_[2]), std::int8_t(-1));
+  find_far_blocks();
   classify_all();
   for (const LatticePoint p : near_) find_cuts(p);
   for (const LatticePoint p : near_) move_point(p);
@@ -74,6 +78,25 @@ DVec3 CutLattice::position(LatticePoint p) const {
   return moved != nullptr ? moved->position : place(p);
 }
 
+void CutLattice::find_far_blocks() {
+  for (int axis = 0; axis < 3; ++axis) blocks_[axis] = cells_[axis] / kBlock + 1;
+  // From the centre of a block to its corner, a cell, and some for rounding.
+  const double reach = (0.8660254037844387 * kBlock + 1.001) * cell_;
+  for (int k = 0; k < blocks_[2]; ++k) {
+    for (int j = 0; j < blocks_[1]; ++j) {
+      for (int i = 0; i < blocks_[0]; ++i) {
+        const LatticePoint center{(2 * i + 1) * kBlock, (2 * j + 1) * kBlock, (2 * k + 1) * kBlock};
+        far_.push_back(field_.nearest(place(center), reach).triangle == SurfaceField::kNoTriangle);
+      }
+    }
+  }
+}
+
+bool CutLattice::is_far(LatticePoint p) const {
+  constexpr int kSize = 2 * kBlock;
+  return far_[p.x / kSize + blocks_[0] * (p.y / kSize + blocks_[1] * (p.z / kSize))];
+}
+
 // The corners, then the centres, each after its neighbours below.
 void CutLattice::classify_all() {
   for (const int odd : {0, 1}) {
@@ -88,7 +111,8 @@ void CutLattice::classify_all() {
 void CutLattice::classify(LatticePoint p) {
   const std::uint32_t self = id(p);
   const DVec3 at = place(p);
-  const SurfaceField::Nearest nearest = field_.nearest(at, cell_);
+  SurfaceField::Nearest nearest{cell_, SurfaceField::kNoTriangle};
+  if (!is_far(p)) nearest = field_.nearest(at, cell_);
   if (nearest.triangle == SurfaceField::kNoTriangle) {
     // No edge from here meets the surface, so a neighbour off the surface is on the same side. Points on the border are outside.
     const LatticePoint below[3] = {{p.x - 2, p.y, p.z}, {p.x, p.y - 2, p.z}, {p.x, p.y, p.z - 2}};

@@ -6,7 +6,7 @@
 // edge than a fixed share of the edge: nearer ones move that end, and its other cut points vanish.
 // Points have integer coordinates in half cells: all even for the corners of cells, all odd for their centres.
 // Source: F. Labelle, J. R. Shewchuk, "Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral Angles", 2007; the shares are
-// those of its table for uniform tetrahedra, for which it proves dihedral angles within 10.78 and 164.74 degrees.
+// those of its bound for uniform tetrahedra.
 #pragma once
 
 #include "base/container/array.h"
@@ -60,6 +60,8 @@ class CutLattice {
     DVec3 position;
     std::uint32_t triangle;
   };
+  void find_far_blocks();
+  bool is_far(LatticePoint p) const;
   void classify(LatticePoint p);
   void classify_all();
   void find_cuts(LatticePoint p);
@@ -73,6 +75,8 @@ class CutLattice {
   int cells_[3] = {};
   std::uint32_t corners_ = 0;
   Array<std::int8_t> sides_;
+  int blocks_[3] = {};
+  Array<bool> far_;  // of blocks of cells: whether all points in it are farther than a cell from the surface
   Array<LatticePoint> near_;  // points one cell or less from the surface, in order
   FlatMap<Moved> moved_;
   Array<LatticeCut> cuts_;

@@ -139,6 +139,7 @@ class LatticeFill {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
+  bool has_inner_point(LatticePoint center) const;
   void add_face(LatticePoint center, int axis);
   void add_lattice_tetrahedron(const LatticePoint (&corner)[4]);
   void add_tetrahedron(const std::uint32_t (&corner)[4]);
@@ -211,6 +212,16 @@ void LatticeFill::add_lattice_tetrahedron(const LatticePoint (&corner)[4]) {
   }
 }
 
+// True if the centre or a corner of the cell is inside.
+bool LatticeFill::has_inner_point(LatticePoint center) const {
+  if (lattice_.side(lattice_.id(center)) > 0) return true;
+  for (int i = 0; i < 8; ++i) {
+    const LatticePoint p{center.x + 2 * (i & 1) - 1, center.y + (i & 2) - 1, center.z + (i & 4) / 2 - 1};
+    if (lattice_.side(lattice_.id(p)) > 0) return true;
+  }
+  return false;
+}
+
 // The four tetrahedra around the edge from a cell's centre to the next centre along the axis.
 void LatticeFill::add_face(LatticePoint center, int axis) {
   const auto along = [](LatticePoint p, int on, int by) {
@@ -227,14 +238,27 @@ void LatticeFill::add_face(LatticePoint center, int axis) {
 }
 
 void LatticeFill::run() {
-  for (int z = 1; z < 2 * lattice_.cells(2); z += 2) {
-    for (int y = 1; y < 2 * lattice_.cells(1); y += 2) {
-      for (int x = 1; x < 2 * lattice_.cells(0); x += 2) {
+  const int last[3] = {2 * lattice_.cells(0) - 1, 2 * lattice_.cells(1) - 1, 2 * lattice_.cells(2) - 1};
+  // A tetrahedron lies around the edge between two cells, and its other corners are corners of both.
+  const std::size_t columns = std::size_t(lattice_.cells(0)), rows = std::size_t(lattice_.cells(1));
+  const auto cell_at = [&](int x, int y, int z) {
+    return std::size_t(x / 2) + columns * (std::size_t(y / 2) + rows * std::size_t(z / 2));
+  };
+  Array<bool> inner;
+  inner.resize(columns * rows * std::size_t(lattice_.cells(2)));
+  for (int z = 1; z <= last[2]; z += 2) {
+    for (int y = 1; y <= last[1]; y += 2) {
+      for (int x = 1; x <= last[0]; x += 2) inner[cell_at(x, y, z)] = has_inner_point({x, y, z});
+    }
+  }
+  for (int z = 1; z <= last[2] && !out_.too_many; z += 2) {
+    for (int y = 1; y <= last[1]; y += 2) {
+      for (int x = 1; x <= last[0]; x += 2) {
+        const bool here = inner[cell_at(x, y, z)];
         const LatticePoint center{x, y, z};
-        if (x + 2 < 2 * lattice_.cells(0)) add_face(center, 0);
-        if (y + 2 < 2 * lattice_.cells(1)) add_face(center, 1);
-        if (z + 2 < 2 * lattice_.cells(2)) add_face(center, 2);
-        if (out_.too_many) return;
+        if (x < last[0] && (here || inner[cell_at(x + 2, y, z)])) add_face(center, 0);
+        if (y < last[1] && (here || inner[cell_at(x, y + 2, z)])) add_face(center, 1);
+        if (z < last[2] && (here || inner[cell_at(x, y, z + 2)])) add_face(center, 2);
       }
     }
   }
@@ -339,11 +363,10 @@ Error fault_error(const CheckedSurface& surface, const SurfaceField& field, cons
                       number, resolution, advice.message);
   }
   if (check.fault == FillFault::pieces) {
-    return make_error(
-        kCode,
-        "mesh: its connected parts are %d and would be %u at resolution %d, whose cells are too large for "
-        "what joins or parts them; %s",
-        surface.parts, number, resolution, advice.message);
+    return make_error(kCode,
+                      "mesh: has %d connected parts and would have %u at resolution %d, whose cells are too "
+                      "large for it; %s",
+                      surface.parts, number, resolution, advice.message);
   }
   if (check.fault == FillFault::thin_part) {
     return make_error(kCode,
