@@ -18,6 +18,11 @@ struct EmbeddedPoint {
   float weight[4] = {};
 };
 
+struct EmbeddedSurface {
+  Array<EmbeddedPoint> points;
+  Array<std::uint32_t> triangles;  // three points each, seen from outside counter-clockwise
+};
+
 // `cell`: m, about the length of an edge. `distance` becomes the distance of each point from its tetrahedron, m.
 Array<EmbeddedPoint> embed_points(std::span<const Vec3> vertices, std::span<const std::uint32_t> tetrahedra,
                                   double cell, std::span<const Vec3> points, Array<double>& distance);

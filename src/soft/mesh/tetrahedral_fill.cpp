@@ -306,7 +306,8 @@ FillCheck check_filling(const CheckedSurface& surface, Filling& filling, int res
   if (!(absolute(share - 1.0) <= kFillVolumeShare)) return {FillFault::volume, 100.0 * share};
   const double cell = surface.side / resolution;
   Array<double> distance;
-  mesh.surface = embed_points(mesh.vertices, mesh.tetrahedra, cell, surface.vertices, distance);
+  mesh.surface.triangles.assign(surface.triangles);
+  mesh.surface.points = embed_points(mesh.vertices, mesh.tetrahedra, cell, surface.vertices, distance);
   const double reach = max(kFillReachCells * cell, kFillReachShare * surface.side);
   for (const std::uint32_t i : surface.triangles) {
     if (distance[i] > reach) return {FillFault::thin_part, double(i)};

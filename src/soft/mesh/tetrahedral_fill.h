@@ -31,8 +31,8 @@ constexpr double kFillReachCells = 2.0, kFillReachShare = 0.1;  // cells; of the
 
 struct TetrahedralMesh {
   Array<Vec3> vertices;
-  Array<std::uint32_t> tetrahedra;  // four indices each
-  Array<EmbeddedPoint> surface;     // for each vertex given
+  Array<std::uint32_t> tetrahedra;  // four indices each, wound so that the volume is positive
+  EmbeddedSurface surface;          // a point for each vertex given
   double surface_volume = 0.0;      // m^3, inside the triangles
   double filled_volume = 0.0;       // m^3, of all tetrahedra
 };

@@ -110,10 +110,10 @@ DVec3 place_of(const EmbeddedPoint& point, const Array<Vec3>& vertices) {
 
 // Weights sum to one and give the vertex, also after an affine motion; no tetrahedron is nearer than the one chosen.
 void expect_embedded(const TestMesh& surface, TetrahedralMesh mesh) {
-  ASSERT_EQ(mesh.surface.size(), surface.vertices.size());
+  ASSERT_EQ(mesh.surface.points.size(), surface.vertices.size());
   const double side = side_of(surface);
-  for (std::size_t i = 0; i < mesh.surface.size(); ++i) {
-    const EmbeddedPoint& point = mesh.surface[i];
+  for (std::size_t i = 0; i < mesh.surface.points.size(); ++i) {
+    const EmbeddedPoint& point = mesh.surface.points[i];
     double sum = 0.0;
     for (const float w : point.weight) sum += double(w);
     EXPECT_NEAR(sum, 1.0, 1.0e-6);
@@ -135,8 +135,8 @@ void expect_embedded(const TestMesh& surface, TetrahedralMesh mesh) {
     return Vec3{1.2f * v.x + 0.3f * v.y, 0.8f * v.y - 0.2f * v.z, v.z + 0.4f * v.x} + Vec3{1, 2, 3};
   };
   for (Vec3& v : mesh.vertices) v = moved(v);
-  for (std::size_t i = 0; i < mesh.surface.size(); ++i)
-    EXPECT_LT(length(place_of(mesh.surface[i], mesh.vertices) - DVec3(moved(surface.vertices[i]))),
+  for (std::size_t i = 0; i < mesh.surface.points.size(); ++i)
+    EXPECT_LT(length(place_of(mesh.surface.points[i], mesh.vertices) - DVec3(moved(surface.vertices[i]))),
               1.0e-5 * side);
 }
 
@@ -209,7 +209,7 @@ TEST(TetrahedralFill, KeepsItsBoundsInAnyTurn) {
     ASSERT_TRUE(mesh) << i << ' ' << mesh.error().message;
     expect_quality(surface, *mesh, resolution);
     for (std::size_t k = 0; k < surface.vertices.size(); ++k) {
-      EXPECT_LT(length(place_of(mesh->surface[k], mesh->vertices) - DVec3(surface.vertices[k])),
+      EXPECT_LT(length(place_of(mesh->surface.points[k], mesh->vertices) - DVec3(surface.vertices[k])),
                 3.0e-6 * side_of(surface) + 1.0e-6);
     }
   }
@@ -218,7 +218,7 @@ TEST(TetrahedralFill, KeepsItsBoundsInAnyTurn) {
 std::uint64_t hash_of(const TetrahedralMesh& mesh) {
   std::uint64_t hash = hash_bytes(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3));
   hash = hash_bytes(mesh.tetrahedra.data(), mesh.tetrahedra.size() * sizeof(std::uint32_t), hash);
-  return hash_bytes(mesh.surface.data(), mesh.surface.size() * sizeof(EmbeddedPoint), hash);
+  return hash_bytes(mesh.surface.points.data(), mesh.surface.points.size() * sizeof(EmbeddedPoint), hash);
 }
 
 TEST(TetrahedralFill, HasTheSameBitsEverywhere) {
@@ -236,6 +236,7 @@ TEST(TetrahedralFill, TurnsASurfaceThatIsInsideOut) {
   ASSERT_TRUE(mesh && turned);
   EXPECT_EQ(hash_of(*mesh), hash_of(*turned));
   EXPECT_GT(turned->surface_volume, 0.0);
+  EXPECT_EQ(turned->surface.triangles[1], mesh->surface.triangles[1]);
 }
 
 TEST(TetrahedralFill, AcceptsVerticesThatSeveralTrianglesRepeat) {
