@@ -112,6 +112,7 @@ OUTER = {
 }
 
 PUBLIC_STANDARD = {
+    "array",
     "cmath", "compare", "cstddef", "cstdint", "limits", "memory", "optional", "span", "string_view", "type_traits", "utility",
     "variant", "vector",
 }

@@ -11,5 +11,6 @@
 #include <gyre/memory.h>
 #include <gyre/queries.h>
 #include <gyre/result.h>
+#include <gyre/soft.h>
 #include <gyre/stepping.h>
 #include <gyre/world.h>

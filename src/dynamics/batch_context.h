@@ -4,6 +4,7 @@
 
 #include "dynamics/fused_stages.h"
 #include "dynamics/island_batches.h"
+#include "dynamics/soft_solve.h"
 #include "dynamics/worker_partition.h"
 #include "rigid/solve/body_motion_solve.h"
 #include "rigid/solve/contact_solve.h"
@@ -51,7 +52,9 @@ struct BatchContext {
   std::size_t moved_in_contact = 0;   // number of first moved bodies that contacts act on
   FusedRuns fused_runs[2] = {};       // if bodies move run by run: of other bodies; of articulations
   RowSolve* rows = nullptr;           // if constraints are solved as rows
+  SoftSolve soft{};                   // with members if the batch has all soft matter of the world
 
+  bool has_soft() const { return !soft.members.empty(); }
   // True if all stages from the contacts of one half-step to those of the next are fused run by run.
   bool is_fused() const { return !fused_runs[1].runs.empty(); }
 };

@@ -81,11 +81,13 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
 // moves in each sub-step and they must see its pose.
 class BatchIslands {
  public:
-  BatchIslands(const RigidWorld& w, const Constraints& constraints, std::span<std::uint32_t> room)
+  BatchIslands(const RigidWorld& w, const Constraints& constraints, std::span<const std::uint32_t> united,
+               std::span<std::uint32_t> room)
       : sets_(room, w.bodies.awake) {
     constraints.for_each_edge([&](const ConstraintEdge& edge) {
       if (edge.other != kNoIndex && sets_.has(edge.other)) sets_.unite(edge.owner, edge.other);
     });
+    for (const std::uint32_t body : united) sets_.unite(united[0], body);
     sets_.flatten(w.bodies.awake);
   }
   std::uint32_t root(std::uint32_t body) const { return sets_.parents[body]; }
@@ -195,7 +197,8 @@ std::span<const std::uint32_t> copy_to(std::span<std::uint32_t> room, std::span<
 
 }  // namespace
 
-IslandBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, BatchSize size) {
+IslandBatches find_batches(const RigidWorld& w, std::span<const std::uint32_t> united, Arena& arena, TaskSystem& tasks,
+                           BatchSize size) {
   const std::span<const std::uint32_t> awake = w.bodies.awake;
   // Results are allocated first. The rest is released before batches are solved.
   const BatchRoom room(w, arena, size);
@@ -210,13 +213,13 @@ IslandBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks,
     if (!batches.empty())
       batches[0] = {
           {awake, copy_to(room.contacts, constraints.contacts), copy_to(room.joints, constraints.joints)}};
-    return IslandBatches{batches, local_index};
+    return IslandBatches{batches, local_index, united.empty() ? -1 : 0};
   };
   if (all_weights <= most) return all_in_one(room.batches.first(awake.empty() ? 0 : 1));
   const std::span<IslandBatch> batches = room.batches;
   BucketedLists bodies(batches.size(), arena), contacts(batches.size(), arena), joints(batches.size(), arena);
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(local_index.size());
-  const BatchIslands islands(w, constraints, local_index);
+  const BatchIslands islands(w, constraints, united, local_index);
   const std::span<const std::uint32_t> island_weights =
       weigh_islands(w, constraints, islands, local_index.size(), arena);
   const std::span<std::uint32_t> parts = part_islands(w, islands, island_weights, most, arena, batch_of);
@@ -238,7 +241,7 @@ IslandBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks,
     batches[i] = {{bodies.of(i), contacts.of(i), joints.of(i)}, weights[i] <= most};
     for (std::uint32_t n = 0; n < batches[i].bodies.size(); ++n) local_index[batches[i].bodies[n]] = n;
   }
-  return {batches.first(count), local_index};
+  return {batches.first(count), local_index, united.empty() ? -1 : int(batch_of[united[0]])};
 }
 
 }  // namespace gyre

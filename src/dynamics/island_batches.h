@@ -36,9 +36,12 @@ struct IslandBatches {
   std::span<const IslandBatch> batches;
   // By body: its index in its batch's list; undefined for bodies in no batch.
   std::span<const std::uint32_t> local_index;
+  int united = -1;  // the batch of the bodies that were to be in one; -1: there are none
 };
 
 // All lists are allocated in `arena`.
-IslandBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, BatchSize size);
+// `united`: awake bodies that soft matter couples; they and their islands are one batch.
+IslandBatches find_batches(const RigidWorld& w, std::span<const std::uint32_t> united, Arena& arena, TaskSystem& tasks,
+                           BatchSize size);
 
 }  // namespace gyre

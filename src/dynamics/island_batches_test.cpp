@@ -34,7 +34,7 @@ class ChainsInBatches : public ::testing::Test {
   };
   Found find(BatchSize size) {
     arena_.reset();
-    const IslandBatches all = find_batches(w_, arena_, tasks_, size);
+    const IslandBatches all = find_batches(w_, {}, arena_, tasks_, size);
     Found found{std::vector<std::uint32_t>(chains_, kNone), {}};
     std::size_t bodies = 0, joints = 0;
     for (std::uint32_t n = 0; n < all.batches.size(); ++n) {

@@ -8,7 +8,7 @@ namespace gyre {
 namespace {
 
 // Upper bounds for the lines that stand once in the program, and for those of a half-step beside a line for each colour.
-constexpr std::size_t kLinesOnce = 24, kLinesPerHalfStep = 48;
+constexpr std::size_t kLinesOnce = 24, kLinesPerHalfStep = 52;
 
 }  // namespace
 
@@ -28,6 +28,7 @@ ProgramBuilder::ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena
       joint_islands_(int(batch.joints.islands.size())),
       stiffened_(batch.joints.stiffened.empty() ? 0 : 1),
       row_islands_(batch.rows == nullptr ? 0 : int(batch.rows->islands.islands.size())),
+      soft_members_(int(batch.soft.members.size())),
       is_fused_(batch.is_fused()) {
   for (const ContactGroup& group : batch.contact_groups) contact_blocks_ += int(group.count);
   const std::size_t joints = batch.joints.groups.size(), contacts = batch.contact_groups.size();

@@ -125,6 +125,16 @@ class ProgramBuilder {
     add(run_stage<stage, JointSolve>, &batch_.joints, stiffened_);
   }
 
+  // Add lines for soft matter: for each member, and for all their rows.
+  template <auto stage>
+  void soft_members() {
+    add(run_stage<stage, SoftSolve>, &batch_.soft, soft_members_);
+  }
+  template <auto stage>
+  void soft_rows() {
+    add(run_stage<stage, SoftSolve>, &batch_.soft, soft_members_ > 0 ? 1 : 0);
+  }
+
   // Adds a line for islands whose constraints are solved as rows.
   template <auto stage>
   void row_islands() {
@@ -141,6 +151,7 @@ class ProgramBuilder {
   bool is_fused() const { return is_fused_; }
   bool has_swept_joints() const { return joint_slices_ > 0; }
   bool has_joints() const { return articulations_ > 0 || simd_articulations_ > 0 || has_swept_joints(); }
+  bool is_solved_as_rows() const { return batch_.rows != nullptr; }
   bool has_fields() const { return fields_ > 0; }
   // True if no stage comes between forces and the warm start of bodies.
   bool can_warm_start_with_forces() const {
@@ -171,7 +182,7 @@ class ProgramBuilder {
   int bodies_, fast_spinning_, orientations_, free_bodies_, fields_;
   int contact_blocks_ = 0, impacts_, trees_, structures_;
   int joint_slices_, articulations_, simd_articulations_, joint_islands_, stiffened_;
-  int row_islands_;
+  int row_islands_, soft_members_;
   bool is_fused_;
   std::span<Stage> room_;
   std::size_t used_ = 0;

@@ -58,6 +58,7 @@ void find_resting(BatchContext& batch, Arena& arena) {
   ContactSolve& contacts = batch.contacts;
   contacts.forest = {};
   contacts.structures = {};
+  if (batch.has_soft()) return;  // loads by soft matter are none that the direct solvers know
   const std::span<ContactConstraint> constraints = contacts.lists.constraints.view();
   if (constraints.empty() || !(length(batch.w.settings.gravity) > 0.0f)) return;
   if (all_contacts_are_jointed(batch, arena)) return;
@@ -325,6 +326,18 @@ void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
     w.bodies.last_moves.resize(w.bodies.motion.size());
 }
 
+void add_soft(BatchContext& batch, SoftStore& soft, SoftScratch& scratch, const HalfStepping& plan) {
+  batch.soft = {.w = &batch.w,
+                .store = &soft,
+                .scratch = &scratch,
+                .kernels = &select_soft_kernels(batch.kernels.width),
+                .members = scratch.slots,
+                .h = plan.h,
+                .warm_scale = plan.warm_scale,
+                .time = batch.w.now};
+  make_soft_rows(batch.soft);
+}
+
 void begin_scratch(BatchScratch& scratch) {
   scratch.hits.clear();
   scratch.counts = {};
@@ -399,7 +412,7 @@ void sum_up(SolveScratch& scratch) {
 
 }  // namespace
 
-void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
+void solve_step(RigidWorld& w, SoftStore& soft, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
                 const SolverKernels& kernels, float seconds) {
   const SolverSettings* const row_solver = row_solver_of(w);
   const HalfStepping plan = plan_half_steps(w, seconds, row_solver != nullptr);
@@ -408,23 +421,32 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   const bool shared = may_share_batches(w, tasks);
   begin_workers(scratch, shared ? std::size_t(tasks.worker_count()) : 0);
   const ArenaScope scope(arena);
-  const IslandBatches all = find_batches(w, arena, tasks, batch_size(tasks.worker_count(), shared));
+  if (!soft.empty()) gather_soft(w, soft, scratch.soft);
+  const std::span<const std::uint32_t> united = soft.empty() ? std::span<const std::uint32_t>{} : scratch.soft.touched.view();
+  const IslandBatches all = find_batches(w, united, arena, tasks, batch_size(tasks.worker_count(), shared));
   const auto describe = [&](const IslandBatch& members, BatchScratch& own) {
     return describe_batch(w, own, kernels, members, all.local_index, seconds, plan);
   };
-  for (const IslandBatch& members : all.batches) {
-    if (shared && members.is_small) continue;
+  const auto solve_together = [&](const IslandBatch& members, bool has_soft) {
     BatchContext batch = describe(members, scratch.together);
+    if (has_soft) add_soft(batch, soft, scratch.soft, plan);
     if (row_solver != nullptr) {
       solve_batch_as_rows(batch, *row_solver, arena, tasks);
     } else {
       solve_batch(batch, arena, tasks);
     }
+    if (has_soft) keep_soft_rows(batch.soft);
+  };
+  // Soft matter that touches no moving body has a batch of its own.
+  if (!soft.empty() && all.united < 0) solve_together({}, true);
+  for (std::size_t i = 0; i < all.batches.size(); ++i) {
+    const bool has_soft = int(i) == all.united;
+    if (!shared || !all.batches[i].is_small || has_soft) solve_together(all.batches[i], has_soft);
   }
   if (shared) {
     for_blocks(tasks, int(all.batches.size()), 1, [&](int i, int, int worker) {
       const IslandBatch& members = all.batches[std::size_t(i)];
-      if (!members.is_small) return;
+      if (!members.is_small || i == all.united) return;
       WorkerContext& own = *scratch.workers[std::size_t(worker)];
       BatchContext batch = describe(members, own.scratch);
       solve_batch(batch, own.arena, own.tasks);

@@ -55,6 +55,7 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
     p.coupling_springs<apply_spring_impulses>();
     if (warm_start_with_forces) p.bodies<apply_forces_and_warm_start>();
     if (!warm_start_with_forces) p.bodies<apply_forces>();
+    p.soft_members<begin_soft_members>();
     p.impacts<apply_contact_restitution>();
     // Warm start. Joints come before contacts, so that their impulses are not counted as contact change.
     p.all_joints<compute_second_order_bias>();
@@ -66,6 +67,7 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
     if (!first && !warm_start_with_forces) p.measured_bodies<warm_start_bodies>();
     if (first) p.measured_bodies<start_contact_change>();
     if (first) p.contacts<warm_start_contacts>();
+    if (first || p.is_solved_as_rows()) p.soft_rows<warm_start_soft_rows>();
     if (first) p.measured_bodies<add_contact_change>();
     // Fields come after the warm start, because a stream acts on the true velocity.
     p.field_bodies<apply_field_forces>();
@@ -83,6 +85,7 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
   if (first) p.row_islands<solve_row_islands_first>();
   if (!first) p.row_islands<solve_row_islands>();
   p.contacts<solve_contacts>();
+  p.soft_rows<solve_soft_rows>();
   if (first || last) p.resting_trees<solve_resting_trees>();
   if (first) p.resting_structures<solve_resting_structures_first>();
   if (last) p.resting_structures<solve_resting_structures_last>();
@@ -104,6 +107,7 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
   if (has_joints) p.bodies<integrate_positions>();
   if (!has_joints) p.bodies<add_contact_change_and_integrate>();
   p.spinning_bodies<integrate_fast_spinning>();
+  p.soft_members<finish_soft_members>();
   p.impacts<apply_delayed_contact_restitution>();
   // Joints are relaxed at the present poses, so that no velocity stays from the bias.
   p.stiffened_bodies<stiffen_bodies>();
@@ -141,6 +145,7 @@ std::size_t count_measured(const BatchContext& batch) {
   const bool has_contacts = !batch.contact_groups.empty(), has_lanes = !joints.bundles.bundles.empty(),
              has_articulations = !joints.articulations.scalar.empty();
   if (batch.rows != nullptr) return 0;
+  if (batch.has_soft()) return batch.motion.moved.size();
   if (joints.groups.empty() && !has_articulations) {
     if (has_lanes) return has_contacts ? batch.moved_in_contact : 0;
     return batch.motion.moved.size();

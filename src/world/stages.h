@@ -9,6 +9,7 @@ namespace gyre {
 enum class StageName : std::uint8_t {
   refit,
   find_pairs,
+  touch_soft,
   collide,
   link_islands,
   solve,
@@ -17,8 +18,8 @@ enum class StageName : std::uint8_t {
   break_joints,
   put_to_sleep,
 };
-constexpr int kStageCount = 9;
-inline constexpr const char* kStageNames[kStageCount] = {"refit",        "find_pairs",  "collide",
+constexpr int kStageCount = 10;
+inline constexpr const char* kStageNames[kStageCount] = {"refit",        "find_pairs",  "touch_soft",  "collide",
                                                          "link_islands", "solve",       "clamp_fast_bodies",
                                                          "finish_bodies", "break_joints", "put_to_sleep"};
 

@@ -1,5 +1,6 @@
 // One step of the world as a list of stages. Each stage is a function from arrays to arrays in a lower layer.
 #include "base/check.h"
+#include "dynamics/soft_contacts.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/integrate/spring_stability.h"
 #include "rigid/rigid_step.h"
@@ -127,6 +128,9 @@ void detect_collisions(WorldState& s, float seconds) {
   run_stage(s, StageName::refit, [&] { refit(w, *s.tasks, seconds); });
   count(s, CounterName::refitted_boxes, w.shapes.changed.size());
   run_stage(s, StageName::find_pairs, [&] { count(s, CounterName::new_pairs, find_pairs(w, *s.tasks)); });
+  run_stage(s, StageName::touch_soft, [&] {
+    if (!s.soft.empty()) find_soft_contacts(w, s.soft, s.solve.soft.shapes_near, s.arena, *s.tasks, seconds);
+  });
   run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, s.recycle_contacts, seconds); });
   count_manifold_updates(s);
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
@@ -142,6 +146,16 @@ void finish_step(WorldState& s, float seconds, float whole, bool last) {
   run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
 }
 
+// What a step that is tried again begins with.
+void save_before(WorldState& s) {
+  s.impacts.before.save(s.rigid);
+  if (!s.soft.empty()) s.soft_before = s.soft;
+}
+void restore_before(WorldState& s) {
+  s.impacts.before.restore(s.rigid);
+  if (!s.soft.empty()) s.soft = s.soft_before;
+}
+
 // Solves with as many sub-steps, at least those of the settings, as keep the error of constrained bodies within the
 // tolerance.
 void solve_to_tolerance(WorldState& s, float seconds) {
@@ -150,10 +164,10 @@ void solve_to_tolerance(WorldState& s, float seconds) {
   const std::int32_t min_substeps = w.settings.substeps;
   const std::size_t hits = w.events.hits.size();
   std::int32_t substeps = clamp(motion.planned_substeps, min_substeps, max(min_substeps, kMaxPlanned / 2));
-  s.impacts.before.save(w);
+  save_before(s);
   const auto solve = [&] {
     w.settings.substeps = substeps;
-    solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
+    solve_step(w, s.soft, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
     w.settings.substeps = min_substeps;
   };
   solve();
@@ -162,7 +176,7 @@ void solve_to_tolerance(WorldState& s, float seconds) {
   double error = 0.0;
   while (2 * substeps <= kMaxPlanned) {
     s.impacts.other = w.bodies.motion;
-    s.impacts.before.restore(w);
+    restore_before(s);
     w.events.hits.resize(hits);
     substeps *= 2;
     solve();
@@ -183,7 +197,7 @@ void step_undivided(WorldState& s, float seconds) {
   run_stage(s, StageName::solve, [&] {
     if (motion_settings(s.rigid).time == TimeStepping::error_controlled)
       return solve_to_tolerance(s, seconds);
-    solve_step(s.rigid, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
+    solve_step(s.rigid, s.soft, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
   });
   finish_step(s, seconds, seconds, true);
 }
@@ -200,18 +214,18 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
   const std::int32_t substeps = w.settings.substeps;
   const std::size_t hits = w.events.hits.size();
   const bool bounded = w.inactive_contacts.empty();
-  if (!bounded) s.impacts.before.save(w);
+  if (!bounded) save_before(s);
   double length = left;
   is_impact = false;
   for (int n = 0;; ++n) {
     w.settings.substeps =
         clamp(std::int32_t(std::ceil(double(substeps) * length / double(seconds))), 1, substeps);
-    solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, float(length));
+    solve_step(w, s.soft, s.solve, s.arena, *s.tasks, *s.kernels, float(length));
     if (bounded || n + 1 == kMaxTries) break;
     const FirstImpact first = find_first_impact(w, s.impacts.before, length);
     if (!(first.time < length)) break;
     is_impact = !first.is_turning_point;
-    s.impacts.before.restore(w);
+    restore_before(s);
     w.events.hits.resize(hits);
     length = max(first.time, kShortest * double(seconds));
   }

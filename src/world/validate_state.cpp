@@ -271,7 +271,7 @@ bool are_all(const IslandBatches& batches, std::span<const std::uint32_t> SolveB
 Error StateValidator::everything_is_solved() const {
   Arena arena;
   TaskSystem alone;
-  const IslandBatches batches = find_batches(w_, arena, alone, {.most = 16});
+  const IslandBatches batches = find_batches(w_, {}, arena, alone, {.most = 16});
   const auto acts = [&](std::uint32_t slot) { return is_solved(w_, w_.contacts.contacts[slot]); };
   if (!are_all(batches, &SolveBatch::contacts, w_.contacts.contacts.size(), acts))
     return broken("a contact with manifolds and an awake body is not in one batch");

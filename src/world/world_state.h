@@ -66,6 +66,7 @@ struct WorldState {
   SolveScratch solve;
   ContinuousScratch continuous;
   ImpactScratch impacts;
+  SoftStore soft_before;  // before a step that may be tried again
   StageProfile profile;
   StageHook stage_hook;
   CommandLog* log = nullptr;

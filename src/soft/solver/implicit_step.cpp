@@ -10,6 +10,9 @@ namespace gyre {
 
 namespace {
 
+// Share of the error of impulses that have spread far enough.
+constexpr double kSpreadTolerance = 1.0e-4;
+
 SoftPass make_pass(SoftBody& body, const ImplicitSettings& settings, Arena& arena) {
   SoftPass pass = begin_pass(body, arena);
   const std::size_t rows = std::size_t(padded_rows(body.particles.count));
@@ -184,22 +187,31 @@ Sym3 inverse_mass(const ImplicitStep& step, int particle) {
   return {part(0), part(1), part(2), part(3), part(4), part(5)};
 }
 
-void add_impulses(SoftBody& body, const ImplicitStep& step, const VectorRows& impulses, int iterations,
-                  const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
+void find_response(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
+                   const VectorRows& change, int iterations, const SoftKernels& kernels, Arena& arena,
+                   TaskSystem& tasks) {
   const ArenaScope scope(arena);
   SoftPass pass = step.pass;
   const std::size_t rows = body.particles.x.size();
-  pass.change = make_vectors(arena, rows);
+  pass.change = change;
+  pass.residual = make_vectors(arena, rows);  // advance() writes it
   for (std::size_t i = 0; i < rows; ++i) {
-    pass.change.x[i] = pass.change.y[i] = pass.change.z[i] = 0.0f;
+    change.x[i] = change.y[i] = change.z[i] = 0.0f;
     pass.residual.x[i] = impulses.x[i], pass.residual.y[i] = impulses.y[i],
     pass.residual.z[i] = impulses.z[i];
   }
   Solver solver(pass, kernels, tasks);
   double error = solver.sum(kernels.precondition);
-  solver.iterate(error, 0.0, iterations, iterations);
-  if (body.held.empty()) keep_momentum(body.particles, impulses, pass.change);
-  change_velocities(body.particles, pass.change);
+  solver.iterate(error, kSpreadTolerance * error, 1, iterations);
+  if (body.held.empty()) keep_momentum(body.particles, impulses, change);
+}
+
+void add_impulses(SoftBody& body, const ImplicitStep& step, const VectorRows& impulses, int iterations,
+                  const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
+  const ArenaScope scope(arena);
+  const VectorRows change = make_vectors(arena, body.particles.x.size());
+  find_response(body, step, impulses, change, iterations, kernels, arena, tasks);
+  change_velocities(body.particles, change);
 }
 
 void finish_implicit(SoftBody& body, const ImplicitStep& step, const SoftKernels& kernels,

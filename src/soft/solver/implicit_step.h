@@ -53,8 +53,12 @@ ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, co
                             Arena& arena, TaskSystem& tasks);
 // How a particle's velocity answers an impulse on it, its neighbours held still: the inverse of its block of A, 1/kg; zero if it is held.
 Sym3 inverse_mass(const ImplicitStep& step, int particle);
-// Adds the change of velocity that impulses (N s, a row for each particle, also those that fill up the last slice) make, through the
+// Finds the change of velocity that impulses (N s, a row for each particle, also those that fill up the last slice) make, through the
 // stiffness of the whole body: A d = impulses, by so many iterations.
+void find_response(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
+                   const VectorRows& change, int iterations, const SoftKernels& kernels, Arena& arena,
+                   TaskSystem& tasks);
+// The same, and adds it.
 void add_impulses(SoftBody& body, const ImplicitStep& step, const VectorRows& impulses, int iterations,
                   const SoftKernels& kernels, Arena& arena, TaskSystem& tasks);
 // Moves the particles with the velocities that they have now.

@@ -59,17 +59,16 @@ struct Band {
 template <int Width>
 class RopeSolver {
  public:
-  RopeSolver(SoftBody& body, const RopeSettings& settings, Arena& arena)
+  RopeSolver(SoftBody& body, const RopeSettings& settings, RopeStep& step)
       : body_(body),
         particles_(body.particles),
         chain_(body.chain),
         settings_(settings),
         h_(double(settings.step)),
-        band_{arena.make<double>(std::size_t(kUnknowns * body.particles.count) * (Width + 1)),
-              kUnknowns * body.particles.count},
-        right_(arena.make<double>(std::size_t(kUnknowns * body.particles.count))),
-        place_(arena.make<DVec3>(std::size_t(body.particles.count))),
-        speed_(arena.make<DVec3>(std::size_t(body.particles.count))) {}
+        band_{step.band, kUnknowns * body.particles.count},
+        right_(step.right),
+        place_(step.place),
+        speed_(step.velocity) {}
 
   RopeReport run() {
     for (int i = 0; i < particles_.count; ++i) at(speed_, i) = {};
@@ -87,7 +86,7 @@ class RopeSolver {
       report.longest = largest_error();
       if (report.longest < kSmallError) break;
     }
-    finish();
+    for (int i = 0; i < particles_.count; ++i) particles_.set_velocity(i, to_float(at(speed_, i)));
     return report;
   }
 
@@ -223,14 +222,6 @@ class RopeSolver {
     return worst;
   }
 
-  void finish() {
-    for (int i = 0; i < particles_.count; ++i) {
-      particles_.set_place(i, at(place_, i));
-      particles_.set_velocity(i, to_float(at(speed_, i)));
-    }
-    place_held(body_);
-  }
-
   SoftBody& body_;
   Particles& particles_;
   Chain& chain_;
@@ -241,12 +232,98 @@ class RopeSolver {
   std::span<DVec3> place_, speed_;
 };
 
+// Calls fn with the band of a step.
+template <class Fn>
+void with_band(const RopeStep& step, Fn&& fn) {
+  if (step.has_bending) fn(Band<10>{step.band, int(step.right.size())});
+  if (!step.has_bending) fn(Band<7>{step.band, int(step.right.size())});
+}
+
+// The entries of the inverse that lie in the band, in its form: column by column from the last, each from those behind it.
+template <int Width>
+void invert_in_band(Band<Width> factor, Band<Width> inverse) {
+  const auto entry = [&](int row, int col) {
+    return row < col ? inverse.column(row)[col - row] : inverse.column(col)[row - col];
+  };
+  for (int k = factor.size - 1; k >= 0; --k) {
+    const double* const own = factor.column(k);
+    const int reach = factor.size - 1 - k < Width ? factor.size - 1 - k : Width;
+    for (int r = reach; r >= 0; --r) {
+      double sum = r == 0 ? own[0] : 0.0;
+      for (int t = 1; t <= reach; ++t) sum -= own[t] * entry(k + t, k + r);
+      inverse.column(k)[r] = sum;
+    }
+  }
+}
+
 }  // namespace
+
+RopeStep begin_rope(SoftBody& body, const RopeSettings& settings, Arena& arena) {
+  RopeStep step;
+  const std::size_t count = std::size_t(body.particles.count);
+  step.h = double(settings.step);
+  step.has_bending = body.chain.bend_stiffness > 0.0;
+  step.band = arena.make<double>(kUnknowns * count * (step.has_bending ? 11 : 8));
+  step.right = arena.make<double>(kUnknowns * count);
+  step.place = arena.make<DVec3>(count);
+  step.velocity = arena.make<DVec3>(count);
+  step.report = step.has_bending ? RopeSolver<10>(body, settings, step).run()
+                                 : RopeSolver<7>(body, settings, step).run();
+  return step;
+}
+
+void find_rope_inverse_masses(RopeStep& step, Arena& arena) {
+  step.inverse = arena.make<Sym3>(step.place.size());
+  const ArenaScope scope(arena);
+  const std::span<double> room = arena.make<double>(step.band.size());
+  with_band(step, [&](auto factor) {
+    auto inverse = factor;
+    inverse.entries = room;
+    invert_in_band(factor, inverse);
+    for (std::size_t i = 0; i < step.inverse.size(); ++i) {
+      const double* const x = inverse.column(kUnknowns * int(i));
+      const double* const y = inverse.column(kUnknowns * int(i) + 1);
+      const double* const z = inverse.column(kUnknowns * int(i) + 2);
+      step.inverse[i] = {float(x[0]), float(y[0]), float(z[0]), float(x[1]), float(x[2]), float(y[1])};
+    }
+  });
+}
+
+void respond_rope(SoftBody& body, RopeStep& step, std::span<const Vec3> impulses, std::span<Vec3> change) {
+  for (double& one : step.right) one = 0.0;
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    if (body.particles.loose[i] == 0.0f) continue;
+    double* const right = &step.right[kUnknowns * i];
+    right[0] = double(impulses[i].x), right[1] = double(impulses[i].y), right[2] = double(impulses[i].z);
+  }
+  with_band(step, [&](auto band) { band.solve(step.right.data()); });
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    const double* const d = &step.right[kUnknowns * i];
+    change[i] = body.particles.loose[i] == 0.0f ? Vec3{} : to_float(DVec3{d[0], d[1], d[2]});
+  }
+}
+
+void add_rope_change(SoftBody& body, RopeStep& step, std::span<const Vec3> change, double scale) {
+  Particles& p = body.particles;
+  for (int i = 0; i < p.count; ++i) {
+    const DVec3 own = scale * DVec3(change[std::size_t(i)]);
+    step.velocity[std::size_t(i)] += own;
+    step.place[std::size_t(i)] += step.h * own;
+    p.set_velocity(i, to_float(step.velocity[std::size_t(i)]));
+    if (i > 0) body.chain.tension[i - 1] += scale * step.right[kUnknowns * std::size_t(i) + 3] / step.h;
+  }
+}
+
+void finish_rope(SoftBody& body, const RopeStep& step) {
+  for (int i = 0; i < body.particles.count; ++i) body.particles.set_place(i, step.place[std::size_t(i)]);
+  place_held(body);
+}
 
 RopeReport step_rope(SoftBody& body, const RopeSettings& settings, Arena& arena) {
   const ArenaScope scope(arena);
-  if (body.chain.bend_stiffness > 0.0) return RopeSolver<10>(body, settings, arena).run();
-  return RopeSolver<7>(body, settings, arena).run();
+  const RopeStep step = begin_rope(body, settings, arena);
+  finish_rope(body, step);
+  return step.report;
 }
 
 }  // namespace gyre

@@ -30,6 +30,29 @@ struct RopeReport {
   double longest = 0.0;  // largest |C| / l0 at the end
 };
 
+// A sub-step between its parts: the factor of the last iteration and its result. Its memory is the arena's.
+struct RopeStep {
+  RopeReport report;
+  double h = 0.0;
+  bool has_bending = false;
+  std::span<double> band, right;
+  std::span<DVec3> place, velocity;  // at the end of the sub-step
+  std::span<Sym3> inverse;           // by particle, if find_rope_inverse_masses() was called
+};
+
+// Finds the velocities at the end of the sub-step, as if nothing touched the rope, and sets those of the particles.
+RopeStep begin_rope(SoftBody& body, const RopeSettings& settings, Arena& arena);
+// The blocks of the inverse of the whole matrix that belong to single particles, 1/kg: how a particle's velocity answers an impulse on it,
+// with all others moving along. By the recurrence for a factored band (K. Takahashi, J. Fagan, M. Chen, 1973), in linear time.
+void find_rope_inverse_masses(RopeStep& step, Arena& arena);
+// The exact change of velocity by impulses (N s, by particle).
+void respond_rope(SoftBody& body, RopeStep& step, std::span<const Vec3> impulses, std::span<Vec3> change);
+// Adds a change that respond_rope() found.
+void add_rope_change(SoftBody& body, RopeStep& step, std::span<const Vec3> change, double scale);
+// Moves the particles.
+void finish_rope(SoftBody& body, const RopeStep& step);
+
+// All of a sub-step of a rope that touches nothing.
 RopeReport step_rope(SoftBody& body, const RopeSettings& settings, Arena& arena);
 
 }  // namespace gyre

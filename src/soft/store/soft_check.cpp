@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kLargest = 1.0e12f;   // of lengths and stiffness, in their units
 constexpr double kFarthest = 1.0e12;  // m
-constexpr std::size_t kMostElements = 8u << 20;
+constexpr std::size_t kMaxElements = 8u << 20;
 
 template <class... Args>
 Error refused(const char* format, Args... args) {
@@ -66,9 +66,9 @@ Error good_elements(std::span<const Vec3> vertices, std::span<const std::uint32_
   if (indices.empty() || indices.size() % corners != 0)
     return refused("%s has %zu indices; it must have %zu for each, and at least one", element, indices.size(),
                    corners);
-  if (indices.size() / corners > kMostElements)
+  if (indices.size() / corners > kMaxElements)
     return refused("%s has %zu elements; at most %zu are possible", element, indices.size() / corners,
-                   kMostElements);
+                   kMaxElements);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     e = within_bounds("vertices", i, DVec3(vertices[i]));
     if (e) return e;

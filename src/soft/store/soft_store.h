@@ -32,7 +32,7 @@ struct SoftAttachment {
 struct SoftContact {
   std::uint32_t particle = 0;
   std::uint32_t shape = 0;
-  std::int32_t body = kWorldAnchor;  // kWorldAnchor: it does not move
+  std::int32_t body = 0;             // of the shape; it may be a fixed one
   std::uint32_t triangle = 0;        // of a mesh or height field
   Vec3 normal{};                     // unit, out of the shape, world axes, when the step began
   Vec3

@@ -1,0 +1,198 @@
+#include "dynamics/soft_contacts.h"
+
+#include "geometry/query/point_query.h"
+#include "math/rotation.h"
+#include "rigid/sleep/island.h"
+#include "task/parallel.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int kParticlesPerBlock = 128;
+// A surface is in reach if it is within the way of the vertex in the step, with this share more for what changes its speed, and within this
+// share of the length of an edge.
+constexpr float kReachShare = 1.5f;
+constexpr float kSpeculativeEdge = 0.25f;
+// A vertex so near to an attachment, in lengths of an edge, does not collide with the body that it is attached to.
+constexpr float kAttachedShare = 1.1f;
+
+struct Candidate {
+  std::uint32_t shape = 0;
+  std::uint32_t body = 0;
+  Pose pose;  // world_from_shape
+  float static_friction = 0.0f, dynamic_friction = 0.0f;
+};
+
+class ContactFinder {
+ public:
+  ContactFinder(RigidWorld& w, SoftEntry& entry, Array<std::uint32_t>& shapes_near, Arena& arena,
+                float seconds)
+      : w_(w),
+        entry_(entry),
+        p_(entry.body.particles),
+        seconds_(seconds),
+        fall_(seconds * length(w.settings.gravity)),
+        arena_(arena) {
+    list_candidates(shapes_near);
+  }
+
+  void run(TaskSystem& tasks) {
+    if (candidates_.empty()) return entry_.contacts.clear();
+    const std::size_t count = std::size_t(p_.count);
+    const std::span<SoftContact> room = arena_.make<SoftContact>(count * kMaxVertexContacts);
+    const std::span<std::uint8_t> found = arena_.make<std::uint8_t>(count);
+    for_blocks(tasks, p_.count, kParticlesPerBlock, [&](int begin, int end, int) {
+      for (int i = begin; i < end; ++i)
+        found[std::size_t(i)] =
+            std::uint8_t(find(i, room.subspan(std::size_t(i) * kMaxVertexContacts, kMaxVertexContacts)));
+    });
+    Array<SoftContact>& contacts = entry_.contacts;
+    const std::span<SoftContact> before = arena_.make<SoftContact>(contacts.size());
+    for (std::size_t k = 0; k < before.size(); ++k) before[k] = contacts[k];
+    contacts.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < found[i]; ++k) contacts.push_back(room[i * kMaxVertexContacts + k]);
+    }
+    keep_impulses(before);
+  }
+
+ private:
+  float reach_of(int i) const {
+    const float way = seconds_ * length(p_.velocity(i)) + seconds_ * fall_;
+    return entry_.radius + kReachShare * way + kSpeculativeEdge * entry_.size;
+  }
+
+  void list_candidates(Array<std::uint32_t>& shapes_near) {
+    DVec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+    for (int i = 0; i < p_.count; ++i) {
+      const DVec3 at = p_.place(i);
+      const double reach = double(reach_of(i));
+      low = {min(low.x, at.x - reach), min(low.y, at.y - reach), min(low.z, at.z - reach)};
+      high = {max(high.x, at.x + reach), max(high.y, at.y + reach), max(high.z, at.z + reach)};
+    }
+    shapes_near.clear();
+    const Aabb box = grow({to_float(low), to_float(high)}, 1.0e-6f * float(max(length(low), length(high))));
+    w_.broadphase->query(w_.shapes.proxies, box, shapes_near);
+    candidates_ = arena_.make<Candidate>(shapes_near.size());
+    std::size_t count = 0;
+    const SoftSettings& settings = entry_.settings();
+    Proxy own;
+    own.filter = settings.filter, own.body = kNoIndex, own.motion = ProxyMotion::moving;
+    const Material material{.static_friction = settings.static_friction,
+                            .dynamic_friction = settings.dynamic_friction,
+                            .restitution = 0.0f};
+    for (const std::uint32_t shape : shapes_near) {
+      const Proxy& proxy = w_.shapes.proxies[shape];
+      if (proxy.sensor || !may_pair(own, proxy)) continue;
+      const std::uint32_t body = w_.shapes.bodies[shape];
+      const ContactSurface surface = combine_materials(w_, material, w_.shapes.materials[shape]);
+      candidates_[count++] = {shape, body, origin_pose(w_.bodies, body) * w_.shapes.body_from_shape[shape],
+                              surface.static_friction, surface.dynamic_friction};
+    }
+    candidates_ = candidates_.first(count);
+  }
+
+  bool is_attached_near(int i, std::uint32_t body) const {
+    for (const SoftAttachment& one : entry_.attachments) {
+      if (one.body != std::int32_t(body)) continue;
+      if (one.particle == std::uint32_t(i)) return true;
+      const double apart = length(p_.place(i) - p_.place(int(one.particle)));
+      if (apart <= double(kAttachedShare * entry_.size)) return true;
+    }
+    return false;
+  }
+
+  // Writes the nearest contacts of a particle, ascending by shape; returns how many.
+  int find(int i, std::span<SoftContact> out) const {
+    const DVec3 at = p_.place(i);
+    int count = 0;
+    for (const Candidate& candidate : candidates_) {
+      const BodyMotion& motion = w_.bodies.motion[candidate.body];
+      const Vec3 arm = difference(at, w_.bodies.poses[candidate.body].center);
+      const float own = length(point_velocity(motion, arm));
+      const double reach = double(reach_of(i) + kReachShare * seconds_ * own);
+      if (is_beyond(w_.shapes.proxies[candidate.shape].fat_box, at, reach)) continue;
+      PointDistance found;
+      const DQuat turn = to_double(candidate.pose.orientation);
+      const DVec3 local = rotate_inverse(turn, at - candidate.pose.position);
+      if (!find_point_distance(w_.shapes.colliders[candidate.shape].shape, local, reach, found)) continue;
+      if (is_attached_near(i, candidate.body)) continue;
+      SoftContact contact;
+      contact.particle = std::uint32_t(i), contact.shape = candidate.shape;
+      contact.body = std::int32_t(candidate.body);
+      contact.triangle = found.triangle;
+      contact.normal = to_float(rotate(turn, found.normal));
+      const DVec3 on_surface = candidate.pose.position + rotate(turn, found.on_surface);
+      contact.from_body = difference(on_surface, w_.bodies.poses[candidate.body].center);
+      contact.gap = float(found.distance) - entry_.radius;
+      contact.static_friction = candidate.static_friction;
+      contact.dynamic_friction = candidate.dynamic_friction;
+      count = insert(out, count, contact);
+    }
+    return count;
+  }
+
+  static bool is_beyond(const Aabb& box, DVec3 at, double reach) {
+    return at.x < double(box.low.x) - reach || at.x > double(box.high.x) + reach ||
+           at.y < double(box.low.y) - reach || at.y > double(box.high.y) + reach ||
+           at.z < double(box.low.z) - reach || at.z > double(box.high.z) + reach;
+  }
+
+  // Keeps the nearest ones if there is no room for all; shapes come ascending.
+  static int insert(std::span<SoftContact> out, int count, const SoftContact& contact) {
+    if (count < kMaxVertexContacts) {
+      out[std::size_t(count)] = contact;
+      return count + 1;
+    }
+    std::size_t farthest = 0;
+    for (std::size_t k = 1; k < out.size(); ++k)
+      if (out[k].gap > out[farthest].gap) farthest = k;
+    if (contact.gap >= out[farthest].gap) return count;
+    for (std::size_t k = farthest; k + 1 < out.size(); ++k) out[k] = out[k + 1];
+    out[out.size() - 1] = contact;
+    return count;
+  }
+
+  // Both lists ascend by particle, then shape.
+  void keep_impulses(std::span<const SoftContact> before) {
+    std::size_t k = 0;
+    for (SoftContact& contact : entry_.contacts) {
+      const auto key = [](const SoftContact& c) { return std::uint64_t(c.particle) << 32 | c.shape; };
+      while (k < before.size() && key(before[k]) < key(contact)) ++k;
+      if (k < before.size() && key(before[k]) == key(contact)) contact.impulse = before[k].impulse;
+    }
+  }
+
+  RigidWorld& w_;
+  SoftEntry& entry_;
+  const Particles& p_;
+  float seconds_;
+  float fall_;  // m/s, what gravity adds in the step
+  Arena& arena_;
+  std::span<Candidate> candidates_{};
+};
+
+// Wakes bodies that are touched or held. An awake one does not fall asleep meanwhile.
+void wake_bodies(RigidWorld& w, const SoftEntry& entry) {
+  for (const SoftContact& contact : entry.contacts) {
+    if (contact.gap <= 0.0f || contact.impulse != Vec3{}) wake(w, std::uint32_t(contact.body));
+  }
+  for (const SoftAttachment& attachment : entry.attachments) {
+    if (attachment.body != kWorldAnchor) wake(w, std::uint32_t(attachment.body));
+  }
+}
+
+}  // namespace
+
+void find_soft_contacts(RigidWorld& w, SoftStore& soft, Array<std::uint32_t>& shapes_near, Arena& arena,
+                        TaskSystem& tasks, float seconds) {
+  soft.for_each([&](SoftEntry& entry) {
+    const ArenaScope scope(arena);
+    ContactFinder(w, entry, shapes_near, arena, seconds).run(tasks);
+    wake_bodies(w, entry);
+  });
+  refresh_awake(w.bodies);
+}
+
+}  // namespace gyre

@@ -1,0 +1,100 @@
+// Ropes, cloths and solids within the sub-steps of a batch: their own step, and the rows that couple them with bodies and with each other.
+//
+// A row is a vertex against a point of a body: an attachment (all three directions) or a contact (normal and friction). The coupled system is
+// never assembled: each body of soft matter tells how all its vertices respond to impulses on some of them, and bodies do so too.
+//
+// Attachments are linear. They are solved together by conjugate gradients on their impulses, preconditioned by each row's own 3 x 3 block, so
+// that a rope between heavy bodies, or a body on a stiff sheet, is right at any ratio of masses. Contacts are solved in rounds: sweeps of
+// sequential impulses find impulses with the block of each vertex alone, which does not know what moves along with it; of these the share is
+// taken that minimises the energy of the coupled system, found from the true response. A round never makes the system worse, whatever masses
+// and stiffnesses meet.
+//
+// The impulses of a half-step are the start of the next: they act on vertices as forces from outside, so that they spread through the
+// whole body exactly, and on bodies as the change by contacts does.
+//
+// In: contacts and attachments of a step, bodies, particles. Out: velocities of both, and impulses.
+#pragma once
+
+#include "base/arena/arena.h"
+#include "rigid/store/rigid_world.h"
+#include "soft/solver/soft_step.h"
+#include "task/task_system.h"
+
+#include <memory>
+#include <vector>
+
+namespace gyre {
+
+// A row of three: a vertex against a point of a body.
+struct SoftRow {
+  std::uint32_t member = 0;  // index in SoftSolve::members
+  std::uint32_t particle = 0;
+  std::int32_t body = -1;    // -1: none that the row reads
+  std::uint32_t source = 0;  // index among the entry's contacts or attachments
+  bool is_contact = false;
+  float static_friction = 0.0f, dynamic_friction = 0.0f;
+  Vec3 normal{};              // contacts: out of the body, now
+  Vec3 arm{};                 // from the body's centre of mass, now
+  Vec3 bias{};                // m/s, added to the relative velocity: what is wanted is that both cancel
+  Sym3 compliance{};          // 1/kg, of both sides
+  Sym3 inverse{};             // its inverse
+  Sym3 particle_inverse{};    // 1/kg, of the vertex alone
+  std::int32_t touched = -1;  // index of the body in SoftScratch::touched
+  Vec3 impulse{};             // N s on the vertex
+  Vec3 error{};               // m/s: relative velocity and bias; zero is wanted
+  Vec3 step{};                // N s: the change of impulse that is tried
+  Vec3 direction{};           // N s: of conjugate gradients
+};
+
+// Memory of one body of soft matter, which lasts; its arena is used within a half-step.
+struct SoftWork {
+  Arena arena;
+  TaskSystem tasks;  // serial
+  Arena::Mark mark{};
+  SoftStep step;
+  Array<Vec3> impulses, change;                                  // by particle
+  std::uint32_t first_row = 0, first_contact = 0, last_row = 0;  // its attachments, then its contacts
+};
+
+// A change of velocity of a body, m/s and rad/s.
+struct VelocityChange {
+  Vec3 linear{}, angular{};
+};
+
+struct SoftScratch {
+  std::vector<std::unique_ptr<SoftWork>> works;  // by slot
+  Array<std::uint32_t> shapes_near;
+  Array<std::uint32_t> touched;  // bodies that move and are touched or held by soft matter, ascending
+  Array<std::uint32_t> slots;    // of all there are
+  Array<SoftRow> rows;
+  Array<VelocityChange> changes;  // of touched bodies, by the impulses that are tried
+};
+
+// The context of the stages below.
+struct SoftSolve {
+  RigidWorld* w = nullptr;
+  SoftStore* store = nullptr;
+  SoftScratch* scratch = nullptr;
+  const SoftKernels* kernels = nullptr;
+  std::span<const std::uint32_t> members{};  // slots; empty: the batch has no soft matter
+  float h = 0.0f;                            // s, of a half-step
+  float warm_scale = 0.0f;                   // of the impulses of the last step
+  double time = 0.0;                         // s, when the step began
+};
+
+// Before batches are found: lists slots and touched bodies, and marks these as constrained.
+void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch);
+// Makes the rows of a step; holds vertices that are attached to what does not yield.
+void make_soft_rows(SoftSolve& s);
+
+// Stages. Members are independent of each other; the others have one block.
+void begin_soft_members(SoftSolve& s, int begin, int end);
+// The impulses of the last half-step on bodies.
+void warm_start_soft_rows(SoftSolve& s, int begin, int end);
+void solve_soft_rows(SoftSolve& s, int begin, int end);
+void finish_soft_members(SoftSolve& s, int begin, int end);
+
+// Returns the impulses to contacts and attachments.
+void keep_soft_rows(SoftSolve& s);
+
+}  // namespace gyre

@@ -1,0 +1,104 @@
+#include "soft/solver/soft_step.h"
+
+#include "soft/solver/explicit_step.h"
+#include "soft/solver/soft_pass.h"
+
+namespace gyre {
+
+namespace {
+
+// Iterations by which impulses spread through a body. Each reaches the neighbours of those before; what is missing is found by the rows of the
+// next half-step.
+constexpr int kSpreadIterations = 8;
+
+ExplicitScheme scheme_of(SoftIntegrator integrator) {
+  switch (integrator) {
+    case SoftIntegrator::explicit_euler:
+      return ExplicitScheme::explicit_euler;
+    case SoftIntegrator::rk4:
+      return ExplicitScheme::rk4;
+    case SoftIntegrator::verlet:
+      return ExplicitScheme::verlet;
+    default:
+      return ExplicitScheme::semi_implicit_euler;
+  }
+}
+
+}  // namespace
+
+SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, const SoftKernels& kernels,
+                         Arena& arena, TaskSystem& tasks) {
+  SoftStep step;
+  step.h = settings.step;
+  const SoftIntegrator integrator = entry.settings().integrator;
+  if (integrator != SoftIntegrator::implicit) {
+    step.method = SoftMethod::explicit_scheme;
+    step_explicit(entry.body, {settings.step, settings.gravity, scheme_of(integrator)}, kernels, arena,
+                  tasks);
+  } else if (entry.kind == SoftKind::rope) {
+    step.method = SoftMethod::rope;
+    step.rope = begin_rope(entry.body, {settings.step, settings.gravity}, arena);
+    if (!entry.contacts.empty() || !entry.attachments.empty()) find_rope_inverse_masses(step.rope, arena);
+  } else {
+    ImplicitSettings implicit;
+    implicit.step = settings.step;
+    implicit.gravity = settings.gravity;
+    step.implicit = begin_implicit(entry.body, implicit, kernels, arena, tasks);
+  }
+  return step;
+}
+
+Sym3 inverse_mass(const SoftEntry& entry, const SoftStep& step, std::uint32_t particle) {
+  const Particles& p = entry.body.particles;
+  if (p.loose[particle] == 0.0f) return {};
+  if (step.method == SoftMethod::rope) return step.rope.inverse[particle];
+  if (step.method == SoftMethod::conjugate_gradients) return inverse_mass(step.implicit, int(particle));
+  const float inverse = 1.0f / p.mass[particle];
+  return {inverse, inverse, inverse, 0.0f, 0.0f, 0.0f};
+}
+
+void respond(SoftEntry& entry, SoftStep& step, std::span<const Vec3> impulses, std::span<Vec3> change,
+             const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
+  const Particles& p = entry.body.particles;
+  const std::size_t count = std::size_t(p.count);
+  if (step.method == SoftMethod::rope)
+    return respond_rope(entry.body, step.rope, impulses.first(count), change.first(count));
+  if (step.method == SoftMethod::explicit_scheme) {
+    for (std::size_t i = 0; i < count; ++i)
+      change[i] = p.loose[i] == 0.0f ? Vec3{} : (1.0f / p.mass[i]) * impulses[i];
+    return;
+  }
+  const ArenaScope scope(arena);
+  const VectorRows given = make_vectors(arena, impulses.size()), found = make_vectors(arena, impulses.size());
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    const Vec3 one = i < count && p.loose[i] != 0.0f ? impulses[i] : Vec3{};
+    given.x[i] = one.x, given.y[i] = one.y, given.z[i] = one.z;
+  }
+  find_response(entry.body, step.implicit, given, found, kSpreadIterations, kernels, arena, tasks);
+  for (std::size_t i = 0; i < count; ++i) change[i] = {found.x[i], found.y[i], found.z[i]};
+}
+
+void add_change(SoftEntry& entry, SoftStep& step, std::span<const Vec3> change, float scale) {
+  Particles& p = entry.body.particles;
+  const std::size_t count = std::size_t(p.count);
+  if (step.method == SoftMethod::rope)
+    return add_rope_change(entry.body, step.rope, change.first(count), double(scale));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 own = scale * change[i];
+    p.set_velocity(int(i), p.velocity(int(i)) + own);
+    if (step.method != SoftMethod::explicit_scheme) continue;
+    // An explicit step has moved its particles already.
+    const DVec3 moved = double(step.h) * DVec3(own);
+    p.set_place(int(i), p.place(int(i)) + moved);
+    Array<double>(&kept)[3] = entry.body.moved;
+    if (!kept[0].empty()) kept[0][i] += moved.x, kept[1][i] += moved.y, kept[2][i] += moved.z;
+  }
+}
+
+void finish_soft_step(SoftEntry& entry, SoftStep& step, const SoftKernels& kernels, TaskSystem& tasks) {
+  if (step.method == SoftMethod::rope) finish_rope(entry.body, step.rope);
+  if (step.method == SoftMethod::conjugate_gradients)
+    finish_implicit(entry.body, step.implicit, kernels, tasks);
+}
+
+}  // namespace gyre

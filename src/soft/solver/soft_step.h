@@ -1,0 +1,40 @@
+// A sub-step of any rope, cloth or solid in four parts, so that contacts can act between them: begin() finds the velocities at the end of the
+// sub-step as if nothing touched it; respond() tells how impulses would change them; add_change() adds such a change; finish() moves the
+// particles. Ropes are solved exactly (soft/solver/rope_step.h), other implicit bodies by conjugate gradients (implicit_step.h), explicit ones
+// answer with their masses alone (explicit_step.h).
+#pragma once
+
+#include "soft/solver/implicit_step.h"
+#include "soft/solver/rope_step.h"
+#include "soft/store/soft_store.h"
+
+namespace gyre {
+
+enum class SoftMethod : std::uint8_t { conjugate_gradients, rope, explicit_scheme };
+
+struct SoftStepSettings {
+  float step = 0.0f;  // s
+  Vec3 gravity{};     // m/s^2
+};
+
+// Memory of the sub-step is the arena's.
+struct SoftStep {
+  SoftMethod method = SoftMethod::conjugate_gradients;
+  float h = 0.0f;  // s
+  ImplicitStep implicit;
+  RopeStep rope;
+};
+
+SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, const SoftKernels& kernels,
+                         Arena& arena, TaskSystem& tasks);
+// How a particle's velocity answers an impulse on it, 1/kg; zero if it is held. Of a rope: all of it moves along; else its neighbours are held
+// still, which is too little: respond() tells the rest.
+Sym3 inverse_mass(const SoftEntry& entry, const SoftStep& step, std::uint32_t particle);
+// The change of velocity of all particles by impulses on them (N s). Both have padded_rows(count) elements.
+void respond(SoftEntry& entry, SoftStep& step, std::span<const Vec3> impulses, std::span<Vec3> change,
+             const SoftKernels& kernels, Arena& arena, TaskSystem& tasks);
+// Adds `scale` times the change that respond() found last.
+void add_change(SoftEntry& entry, SoftStep& step, std::span<const Vec3> change, float scale);
+void finish_soft_step(SoftEntry& entry, SoftStep& step, const SoftKernels& kernels, TaskSystem& tasks);
+
+}  // namespace gyre

@@ -1,0 +1,308 @@
+// Ropes, cloths and solids in a world: laws that hold whatever the masses and stiffnesses are.
+#include "determinism/scenes.h"
+#include "memory_sink.h"
+
+#include <gyre/gyre.h>
+#include <gyre/replay.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gyre {
+namespace {
+
+constexpr float kStep = 1.0f / 60.0f;
+
+World make_world(Vec3 gravity = {0, -9.81f, 0}, int threads = 1, int width = 0) {
+  WorldDef def;
+  def.gravity = gravity;
+  def.threads = threads;
+  def.simd_width = width;
+  return std::move(*World::create(def));
+}
+
+BodyId add_ball(World& world, DVec3 at, float radius, float mass, BodyType type = BodyType::dynamic) {
+  BodyDef body;
+  body.type = type;
+  body.pose.position = at;
+  if (mass > 0.0f) body.mass = mass;
+  return world.add_body(body, ShapeDef{.geometry = Sphere{radius}});
+}
+BodyId add_box(World& world, DVec3 at, Vec3 half, float mass) {
+  BodyDef body;
+  body.pose.position = at;
+  body.mass = mass;
+  return world.add_body(body, ShapeDef{.geometry = Box{half}});
+}
+void add_ground(World& world) { scenes::add_fixed(world, {0, 0, 0}, Plane{}); }
+
+void step(World& world, int steps) {
+  for (int i = 0; i < steps; ++i) world.step(kStep);
+}
+
+double lowest(const SoftVertices& v) {
+  double low = 1e300;
+  for (std::size_t i = 0; i < v.size(); ++i) low = std::fmin(low, v.y[i]);
+  return low;
+}
+double fastest(const SoftVertices& v) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < v.size(); ++i) most = std::fmax(most, double(length(v.velocity(i))));
+  return most;
+}
+double rope_length(const SoftVertices& v) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < v.size(); ++i) sum += length(v.position(i) - v.position(i - 1));
+  return sum;
+}
+
+ClothDef sheet(float size, int cells, DVec3 at) {
+  ClothDef def;
+  def.grid = ClothGrid{{size, size}, {cells, cells}};
+  def.pose.position = at;
+  return def;
+}
+
+// A rope of 1 kg carries 10 t, from the world and from a body of 20 t, whose joint lets it slide sideways only.
+TEST(SoftMatter, ARopeCarriesTenThousandTimesItsMass) {
+  for (const bool between_bodies : {false, true}) {
+    World world = make_world();
+    RopeDef def{.points = {{0, 10, 0}, {0, 0, 0}}, .segments = 100};
+    const SoftId rope = world.add_rope(def);
+    const BodyId load = add_box(world, {0, -0.5, 0}, {0.5f, 0.5f, 0.5f}, 10000.0f);
+    ASSERT_TRUE(world.attach(rope, 100, load));
+    if (between_bodies) {
+      const BodyId hook = add_box(world, {0, 10.5, 0}, {0.5f, 0.5f, 0.5f}, 20000.0f);
+      world.add_joint(SliderDef{.a = hook, .anchor = {0, 10.5, 0}, .axis = {1, 0, 0}});
+      ASSERT_TRUE(world.attach(rope, 0, hook));
+    } else {
+      ASSERT_TRUE(world.pin(rope, 0));
+    }
+    for (int i = 0; i < 120; ++i) {
+      world.step(kStep);
+      ASSERT_NEAR(rope_length(world.vertices(rope)), 10.0, 0.01) << i;
+    }
+    EXPECT_LT(length(world.linear_velocity(load)), 1.0e-3f);
+    EXPECT_NEAR(world.pose(load).position.y, -0.5, 0.01);
+  }
+}
+
+// Balls from a gram to half a ton fall onto a sheet of 0.8 kg whose rim is held: none falls through, and no energy comes from nothing.
+TEST(SoftMatter, ATrampolineThrowsBallsOfAnyMass) {
+  for (const float mass : {0.001f, 1.0f, 500.0f}) {
+    World world = make_world();
+    ClothDef def = sheet(2, 20, {0, 1, 0});
+    def.stretch_stiffness = 5.0e4f;
+    def.shear_stiffness = 1.0e4f;
+    const SoftId cloth = world.add_cloth(def);
+    for (int i = 0; i <= 20; ++i)
+      for (const int vertex : {i, i + 21 * 20, 21 * i, 21 * i + 20}) world.pin(cloth, vertex);
+    const BodyId ball = add_ball(world, {0.05, 1.6, 0.03}, 0.3f, mass);
+    const auto total = [&] {
+      const Energy e = world.energy();
+      return e.kinetic + e.potential + e.soft_elastic;
+    };
+    const double before = total(), scale = double(mass + 0.8f) * 9.81;
+    for (int i = 0; i < 150; ++i) {
+      world.step(kStep);
+      ASSERT_GT(world.pose(ball).position.y, 0.0) << mass << " kg, step " << i;
+      ASSERT_LT(total(), before + 0.02 * scale) << mass << " kg, step " << i;
+    }
+  }
+}
+
+TEST(SoftMatter, ClothRestsOnShapesOfEveryKind) {
+  const auto hull = cook_hull(std::vector<Vec3>{{-0.4f, -0.3f, -0.4f}, {0.4f, -0.3f, -0.4f}, {0.4f, -0.3f, 0.4f},
+                                                          {-0.4f, -0.3f, 0.4f}, {-0.3f, 0.3f, -0.3f}, {0.3f, 0.3f, -0.3f},
+                                                          {0.3f, 0.3f, 0.3f}, {-0.3f, 0.3f, 0.3f}});
+  ASSERT_TRUE(hull);
+  std::vector<float> heights(25, 0.0f);
+  heights[12] = 0.3f;
+  const auto field = cook_height_field({.heights = heights, .columns = 5, .rows = 5, .spacing = 0.5f});
+  ASSERT_TRUE(field);
+  const std::vector<Vec3> corners{{-1, 0.1f, -1}, {1, 0.1f, -1}, {1, 0.1f, 1}, {-1, 0.1f, 1}, {0, 0.3f, 0}};
+  const std::vector<std::uint32_t> faces{0, 4, 1, 1, 4, 2, 2, 4, 3, 3, 4, 0};
+  const auto mesh = cook_mesh({.vertices = corners, .indices = faces});
+  ASSERT_TRUE(mesh);
+  const AnyShape shapes[] = {Sphere{0.4f}, Box{{0.4f, 0.3f, 0.4f}}, Capsule{0.3f, 0.3f}, Cylinder{0.4f, 0.3f},
+                             Cone{0.4f, 0.3f}, *hull, Plane{}, *mesh, *field};
+  for (const AnyShape& shape : shapes) {
+    World world = make_world();
+    scenes::add_fixed(world, {0, 0, 0}, shape);
+    const SoftId cloth = world.add_cloth(sheet(0.6f, 12, {0, 0.75, 0}));
+    step(world, 45);
+    const SoftVertices v = world.vertices(cloth);
+    int near = 0;
+    double deepest = 0.0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const auto point = world.closest_point({Sphere{0.0001f}, {v.position(i), {}}}, 0.02);
+      const auto inside = world.penetration({Sphere{0.0001f}, {v.position(i), {}}});
+      near += point.has_value();
+      if (inside) deepest = std::fmax(deepest, double(inside->depth));
+    }
+    EXPECT_GT(near, 5) << "kind " << shape.index();
+    EXPECT_LT(deepest, 0.002) << "kind " << shape.index();
+    EXPECT_GT(lowest(v), -0.4) << "kind " << shape.index();
+  }
+}
+
+// Two bodies that fly apart and a cloth between them: nothing acts from outside.
+TEST(SoftMatter, MomentumIsKept) {
+  World world = make_world({});
+  const SoftId cloth = world.add_cloth(sheet(1, 10, {0, 0, 0}));
+  const BodyId a = add_box(world, {-0.7, 0, 0}, {0.1f, 0.2f, 0.3f}, 3.0f), b = add_ball(world, {0.7, 0, 0}, 0.1f, 0.5f);
+  for (const int j : {0, 5, 10}) world.attach(cloth, 11 * j, a);
+  world.attach(cloth, 11 * 5 + 10, b);
+  const BodyId thrown = add_ball(world, {0, 1, 0}, 0.15f, 2.0f);
+  world.set_velocity(a, {-1, 0.5f, 0}, {0, 1, 2});
+  world.set_velocity(b, {3, 0, 0.3f}, {});
+  world.set_velocity(thrown, {0, -3, 0}, {1, 0, 0});
+  const Momentum before = world.momentum();
+  step(world, 90);
+  const Momentum after = world.momentum();
+  EXPECT_LT(length(after.linear - before.linear), 1.0e-4 * 20.0);
+  // Backward Euler turns along the tangent: it is right to the first order of the step.
+  EXPECT_LT(length(after.angular - before.angular), 0.1 * (1.0 + length(before.angular)));
+}
+
+TEST(SoftMatter, PinsFollowAMovingBodyWithoutLag) {
+  World world = make_world();
+  BodyDef def;
+  def.type = BodyType::kinematic;
+  def.linear_velocity = {5, 0, 0};
+  def.angular_velocity = {0, 0, 6};
+  const BodyId arm = world.add_body(def, ShapeDef{.geometry = Box{{0.5f, 0.1f, 0.1f}}});
+  const SoftId rope = world.add_rope({.points = {{0.5, 0, 0}, {0.5, -2, 0}}, .segments = 20});
+  const SoftId cloth = world.add_cloth(sheet(1, 8, {-0.5, -0.6, 0}));
+  ASSERT_TRUE(world.attach(rope, 0, arm));
+  ASSERT_TRUE(world.attach(cloth, 0, arm));
+  const Vec3 local = rotate_inverse(world.pose(arm).orientation, to_float(world.vertices(cloth).position(0) - world.pose(arm).position));
+  for (int i = 0; i < 60; ++i) {
+    world.step(kStep);
+    const Pose pose = world.pose(arm);
+    const DVec3 end = pose.position + DVec3(rotate(pose.orientation, Vec3{0.5f, 0, 0})),
+                corner = pose.position + DVec3(rotate(pose.orientation, local));
+    ASSERT_LT(length(world.vertices(rope).position(0) - end), 1.0e-4) << i;
+    ASSERT_LT(length(world.vertices(cloth).position(0) - corner), 1.0e-4) << i;
+  }
+}
+
+World make_mixture(int threads, int width) {
+  World world = make_world({0, -9.81f, 0}, threads, width);
+  add_ground(world);
+  ClothDef cloth = sheet(2, 14, {0, 2, 0});
+  cloth.links = ClothLinks::membrane;
+  world.add_cloth(cloth);
+  const SoftId rope = world.add_rope({.points = {{2, 3, 0}, {2, 1, 0}}, .segments = 16, .bend_stiffness = 0.01f});
+  world.pin(rope, 0);
+  world.attach(rope, 16, add_ball(world, {2, 0.8, 0}, 0.2f, 5.0f));
+  SolidDef jelly;
+  jelly.box = SolidBox{{0.3f, 0.3f, 0.3f}, {3, 3, 3}};
+  jelly.pose.position = {-1.5, 0.6, 0};
+  world.add_solid(jelly);
+  add_ball(world, {0.1, 1.2, 0.05}, 0.4f, 2.0f);
+  add_box(world, {-1.5, 1.6, 0}, {0.2f, 0.2f, 0.2f}, 3.0f);
+  for (int i = 0; i < 6; ++i) add_box(world, {0.5, 0.2 + 0.42 * i, 1.5}, {0.2f, 0.2f, 0.2f}, 1.0f);
+  FieldDef wind;
+  wind.velocity = {1, 0, 0.5f};
+  world.add_field(wind);
+  return world;
+}
+
+TEST(SoftMatter, ThreadsAndWidthsDoNotChangeABit) {
+  World plain = make_mixture(1, 1);
+  step(plain, 60);
+  const std::uint64_t expected = plain.hash();
+  for (const int threads : {2, 8}) {
+    for (const int width : {4, 8, 16}) {
+      World world = make_mixture(threads, width);
+      step(world, 60);
+      EXPECT_EQ(world.hash(), expected) << threads << " threads, width " << width;
+    }
+  }
+}
+
+TEST(SoftMatter, SavesRestoresRollsBackAndReplays) {
+  World world = make_mixture(1, 0);
+  MemorySink sink;
+  Recorder recorder(world, sink);
+  step(world, 40);
+  const std::vector<std::byte> saved = save_snapshot(world);
+  Rollback rollback(4);
+  rollback.save(world);
+  const std::uint64_t at_forty = world.hash();
+  step(world, 20);
+  const std::uint64_t expected = world.hash();
+  ASSERT_TRUE(recorder.finish());
+  auto loaded = load_snapshot(saved);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_EQ(loaded->hash(), at_forty);
+  step(*loaded, 20);
+  EXPECT_EQ(loaded->hash(), expected);
+  ASSERT_TRUE(rollback.restore(world, 40));
+  EXPECT_EQ(world.hash(), at_forty);
+  step(world, 20);
+  EXPECT_EQ(world.hash(), expected);
+  auto replay = Replay::open(sink.bytes);
+  ASSERT_TRUE(replay) << replay.error().message;
+}
+
+TEST(SoftMatter, ExplicitEulerExplodesAndTheOthersUpToTheirStep) {
+  // A weight of 2 m on a chain of stiff springs: w = 2 sqrt(k / m) is the fastest oscillation of a long chain.
+  const float density = 0.5f, stiffness = 400.0f, cell = 0.1f;
+  const double w = 2.0 * std::sqrt(double(stiffness / cell) / double(density * cell));
+  const auto grows = [&](SoftIntegrator integrator, double share) {
+    World world = make_world({});
+    RopeDef def{.points = {{0, 0, 0}, {1, 0, 0}}, .segments = 10, .links = RopeLinks::springs,
+                .linear_density = density, .stretch_stiffness = stiffness};
+    def.settings.integrator = integrator;
+    const SoftId rope = world.add_rope(def);
+    world.pin(rope, 0), world.pin(rope, 10);
+    std::vector<Vec3> velocities(11);
+    for (int i = 1; i < 10; ++i) velocities[std::size_t(i)] = {i % 2 == 0 ? 0.01f : -0.01f, 0, 0};
+    world.set_vertices(rope, {}, velocities);
+    // A step has two half-steps for each of its four sub-steps.
+    const float seconds = float(8.0 * share * 2.0 / w);
+    const double before = world.energy().kinetic;
+    for (int i = 0; i < 200 && world.energy().kinetic < 1.0e3 * before; ++i) world.step(seconds);
+    const Energy after = world.energy();
+    return after.kinetic + after.soft_elastic > 100.0 * before;
+  };
+  EXPECT_TRUE(grows(SoftIntegrator::explicit_euler, 0.1));
+  EXPECT_FALSE(grows(SoftIntegrator::semi_implicit_euler, 0.9));
+  EXPECT_TRUE(grows(SoftIntegrator::semi_implicit_euler, 1.1));
+  EXPECT_FALSE(grows(SoftIntegrator::verlet, 0.9));
+  EXPECT_TRUE(grows(SoftIntegrator::verlet, 1.1));
+  EXPECT_FALSE(grows(SoftIntegrator::rk4, 1.2));
+  EXPECT_TRUE(grows(SoftIntegrator::rk4, 1.6));
+  EXPECT_FALSE(grows(SoftIntegrator::implicit, 20.0));
+}
+
+TEST(SoftMatter, BadDefinitionsAreRefusedWithTheReason) {
+  World world = make_world();
+  const auto refused = [&](auto&& call, const char* words) {
+    const bool done = bool(call());
+    EXPECT_FALSE(done) << words;
+    ASSERT_FALSE(world.problems().empty()) << words;
+    EXPECT_NE(std::string(world.problems().back().message).find(words), std::string::npos) << world.problems().back().message;
+  };
+  refused([&] { return world.add_rope({.points = {{0, 0, 0}}}); }, "at least 2");
+  refused([&] { return world.add_rope({.points = {{0, 0, 0}, {0, 0, 0}}}); }, "needs a length");
+  refused([&] { return world.add_cloth({}); }, "neither grid nor vertices");
+  refused([&] { return world.add_cloth({.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, .triangles = {0, 1, 2}}); }, "no area");
+  refused([&] { return world.add_cloth({.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, .triangles = {0, 1, 3}}); }, "has vertex 3");
+  refused([&] { return world.add_cloth({.grid = ClothGrid{}, .area_density = 0.0f}); }, "area_density is 0");
+  refused([&] { return world.add_solid({}); }, "neither box nor vertices");
+  refused([&] { return world.add_solid({.box = SolidBox{}, .poisson_ratio = 0.5f}); }, "poisson_ratio is 0.5");
+  refused([&] { return world.add_solid({.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, .tetrahedra = {0, 1, 2, 3}}); },
+          "no volume");
+  const SoftId rope = world.add_rope({.points = {{0, 0, 0}, {1, 0, 0}}});
+  refused([&] { return world.pin(rope, 2); }, "vertex is 2");
+  refused([&] { return world.attach(rope, 0, BodyId{}); }, "does not exist");
+  ASSERT_TRUE(world.remove_soft(rope));
+  refused([&] { return world.pin(rope, 0); }, "does not exist");
+}
+
+}  // namespace
+}  // namespace gyre
