@@ -75,18 +75,18 @@ std::uint32_t CutLattice::id(LatticePoint p) const {
 
 DVec3 CutLattice::position(LatticePoint p) const {
   const Moved* const moved = moved_.find(id(p));
-  return moved != nullptr ? moved->position : place(p);
+  return moved != nullptr ? moved->position : rest_position(p);
 }
 
 void CutLattice::find_far_blocks() {
   for (int axis = 0; axis < 3; ++axis) blocks_[axis] = cells_[axis] / kBlock + 1;
   // From the centre of a block to its corner, a cell, and some for rounding.
-  const double reach = (0.8660254037844387 * kBlock + 1.001) * cell_;
+  const double distance = (0.8660254037844387 * kBlock + 1.001) * cell_;
   for (int k = 0; k < blocks_[2]; ++k) {
     for (int j = 0; j < blocks_[1]; ++j) {
       for (int i = 0; i < blocks_[0]; ++i) {
         const LatticePoint center{(2 * i + 1) * kBlock, (2 * j + 1) * kBlock, (2 * k + 1) * kBlock};
-        far_.push_back(field_.nearest(place(center), reach).triangle == SurfaceField::kNoTriangle);
+        far_.push_back(field_.nearest(rest_position(center), distance).triangle == SurfaceField::kNoTriangle);
       }
     }
   }
@@ -110,7 +110,7 @@ void CutLattice::classify_all() {
 
 void CutLattice::classify(LatticePoint p) {
   const std::uint32_t self = id(p);
-  const DVec3 at = place(p);
+  const DVec3 at = rest_position(p);
   SurfaceField::Nearest nearest{cell_, SurfaceField::kNoTriangle};
   if (!is_far(p)) nearest = field_.nearest(at, cell_);
   if (nearest.triangle == SurfaceField::kNoTriangle) {
@@ -137,12 +137,12 @@ void CutLattice::classify(LatticePoint p) {
 void CutLattice::find_cuts(LatticePoint p) {
   const std::uint32_t self = id(p);
   if (sides_[self] <= 0) return;
-  const DVec3 from = place(p);
+  const DVec3 from = rest_position(p);
   for (int d = 0; d < kDirections; ++d) {
     const LatticePoint q = neighbour(p, d);
     const std::uint32_t other = id(q);
     if (other == kNoPoint || sides_[other] >= 0) continue;
-    const DVec3 to = place(q);
+    const DVec3 to = rest_position(q);
     const SurfaceField::Crossing crossing = field_.first_crossing(from, to);
     LatticeCut cut;
     cut.fraction = crossing.fraction;

@@ -42,7 +42,7 @@ class CutLattice {
   std::uint32_t point_count() const { return std::uint32_t(sides_.size()); }
   std::uint32_t id(LatticePoint p) const;
   std::int8_t side(std::uint32_t id) const { return sides_[id]; }
-  // For the points of a part that is given up, none of which has an edge to an inner point of another.
+  // Leaves out an inner point. Its inner neighbours must be left out too.
   void set_outside(std::uint32_t id) { sides_[id] = -1; }
   // The neighbour along an edge; direction d + 7 is opposite to d.
   static LatticePoint neighbour(LatticePoint p, int direction);
@@ -66,7 +66,7 @@ class CutLattice {
   void classify_all();
   void find_cuts(LatticePoint p);
   void move_point(LatticePoint p);
-  DVec3 place(LatticePoint p) const { return origin_ + 0.5 * cell_ * DVec3(p.x, p.y, p.z); }
+  DVec3 rest_position(LatticePoint p) const { return origin_ + 0.5 * cell_ * DVec3(p.x, p.y, p.z); }
   bool contains(LatticePoint p) const;
 
   const SurfaceField& field_;

@@ -31,13 +31,13 @@ void unite_across_faces(const CutLattice& lattice, const DisjointSets& sets, Lat
   const auto on_surface = [&](LatticePoint q) { return lattice.side(lattice.id(q)) == 0; };
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    for (const int turn : {-1, 1}) {
+    for (const int sign : {-1, 1}) {
       // Inner points are a cell or more from the border.
-      const std::uint32_t other = lattice.id(moved_by(moved_by(p, u, 2), v, 2 * turn));
+      const std::uint32_t other = lattice.id(moved_by(moved_by(p, u, 2), v, 2 * sign));
       if (lattice.side(other) <= 0) continue;
-      const LatticePoint middle = moved_by(moved_by(p, u, 1), v, turn);
+      const LatticePoint middle = moved_by(moved_by(p, u, 1), v, sign);
       if (!on_surface(moved_by(middle, axis, 1)) || !on_surface(moved_by(middle, axis, -1))) continue;
-      if (on_surface(moved_by(p, u, 2)) || on_surface(moved_by(p, v, 2 * turn))) sets.unite(id, other);
+      if (on_surface(moved_by(p, u, 2)) || on_surface(moved_by(p, v, 2 * sign))) sets.unite(id, other);
     }
   }
 }

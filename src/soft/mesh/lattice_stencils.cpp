@@ -69,9 +69,9 @@ void cut_through_middle(StencilTetrahedra& out, int a, int b, int c, int d, cons
   ++leaves[leaves[1] > leaves[2] ? 1 : leaves[2] > leaves[1] ? 2 : leaves[1] == 0 ? 1 : 2];
   int order[3] = {};
   for (int i = 0; i < 3; ++i) order[2 - leaves[i]] = i;
-  const bool turned = order[0] == 0 ? order[1] == 2 : order[0] == 1 ? order[1] == 0 : order[1] == 1;
+  const bool is_odd_order = order[0] == 0 ? order[1] == 2 : order[0] == 1 ? order[1] == 0 : order[1] == 1;
   // The columns in order, seen from the top, turn as a-c-d do: (a, c, d, b) has the handedness of (a, b, c, d).
-  add_prism(out, prism, order[0], order[1], order[2], is_odd(a, c, d, b) != turned);
+  add_prism(out, prism, order[0], order[1], order[2], is_odd(a, c, d, b) != is_odd_order);
 }
 
 }  // namespace

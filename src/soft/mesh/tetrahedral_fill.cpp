@@ -30,9 +30,9 @@ struct CheckedSurface {
   DVec3 low, size;                       // m, the box
   double side = 0.0;                     // m, its longest
   double volume = 0.0;                   // m^3
-  Array<double> part_volume;             // m^3, by component; negative for holes
-  int parts = 0;                         // components that are no holes
-  double smallest_part = 0.0;            // m^3
+  Array<double> component_volume;        // m^3, by component; negative for holes
+  int solid_components = 0;              // components that are no holes
+  double smallest_component = 0.0;       // m^3
 
   DVec3 corner(std::size_t triangle, std::size_t i) const {
     return DVec3(vertices[triangles[3 * triangle + i]]);
@@ -71,7 +71,7 @@ void set_box(CheckedSurface& out) {
   out.side = max(out.size.x, max(out.size.y, out.size.z));
 }
 
-void find_parts(const std::vector<std::uint32_t>& welded, CheckedSurface& out) {
+void find_components(const std::vector<std::uint32_t>& welded, CheckedSurface& out) {
   out.component.resize(out.vertices.size());
   const DisjointSets sets(out.component);
   for (std::uint32_t i = 0; i < out.component.size(); ++i) sets.unite(i, welded[i]);
@@ -80,17 +80,17 @@ void find_parts(const std::vector<std::uint32_t>& welded, CheckedSurface& out) {
     sets.unite(out.triangles[i], out.triangles[i + 2]);
   }
   sets.flatten();
-  out.part_volume.resize(out.vertices.size());
+  out.component_volume.resize(out.vertices.size());
   const DVec3 middle = out.low + 0.5 * out.size;
   for (std::size_t t = 0; t < out.triangles.size() / 3; ++t) {
     const DVec3 a = out.corner(t, 0) - middle, b = out.corner(t, 1) - middle, c = out.corner(t, 2) - middle;
-    out.part_volume[out.component[out.triangles[3 * t]]] += dot(a, cross(b, c)) / 6.0;
+    out.component_volume[out.component[out.triangles[3 * t]]] += dot(a, cross(b, c)) / 6.0;
   }
-  out.smallest_part = out.volume;
-  for (const double volume : out.part_volume) {
+  out.smallest_component = out.volume;
+  for (const double volume : out.component_volume) {
     if (!(volume > 0.0)) continue;
-    ++out.parts;
-    out.smallest_part = min(out.smallest_part, volume);
+    ++out.solid_components;
+    out.smallest_component = min(out.smallest_component, volume);
   }
 }
 
@@ -112,7 +112,7 @@ Error check_surface(std::span<const Vec3> vertices, std::span<const std::uint32_
   const Result<Solid> solid = closed_mesh_solid(vertices, out.triangles, {}, 1.0);
   if (!solid) return solid.error();
   out.volume = solid->mass;
-  find_parts(welded, out);
+  find_components(welded, out);
   for (const Vec3& v : vertices) out.scaled.push_back((DVec3(v) - out.low) / out.side);
   return {};
 }
@@ -120,8 +120,8 @@ Error check_surface(std::span<const Vec3> vertices, std::span<const std::uint32_
 // What a resolution gave, before anything is said about it.
 struct Filling {
   TetrahedralMesh mesh;
-  Array<bool> reached;  // by component
-  int pieces = 0;       // that share no face
+  Array<bool> filled;  // by component
+  int pieces = 0;      // that share no face
   bool too_many = false;
   bool flat = false;  // rounding to float left a tetrahedron without volume
 };
@@ -133,7 +133,7 @@ class LatticeFill {
       : surface_(surface), lattice_(lattice), out_(out) {
     point_vertex_.assign(lattice.point_count(), kNone);
     cut_vertex_.assign(lattice.cut_count(), kNone);
-    out_.reached.assign(surface.vertices.size(), false);
+    out_.filled.assign(surface.vertices.size(), false);
   }
   void run();
 
@@ -149,8 +149,8 @@ class LatticeFill {
     out_.mesh.vertices.push_back(to_float(surface_.low + surface_.side * scaled));
     return std::uint32_t(out_.mesh.vertices.size() - 1);
   }
-  void reach(std::uint32_t triangle) {
-    out_.reached[surface_.component[surface_.triangles[3 * std::size_t(triangle)]]] = true;
+  void mark_component(std::uint32_t triangle) {
+    out_.filled[surface_.component[surface_.triangles[3 * std::size_t(triangle)]]] = true;
   }
 
   const CheckedSurface& surface_;
@@ -163,7 +163,7 @@ std::uint32_t LatticeFill::vertex_of(LatticePoint p) {
   const std::uint32_t id = lattice_.id(p);
   std::uint32_t& vertex = point_vertex_[id];
   if (vertex != kNone) return vertex;
-  if (lattice_.side(id) == 0) reach(lattice_.triangle_of(id));
+  if (lattice_.side(id) == 0) mark_component(lattice_.triangle_of(id));
   vertex = add_vertex(lattice_.position(p));
   return vertex;
 }
@@ -171,7 +171,7 @@ std::uint32_t LatticeFill::vertex_of(LatticePoint p) {
 std::uint32_t LatticeFill::vertex_of_cut(std::uint32_t index) {
   std::uint32_t& vertex = cut_vertex_[index];
   if (vertex != kNone) return vertex;
-  reach(lattice_.cut(index).triangle);
+  mark_component(lattice_.cut(index).triangle);
   vertex = add_vertex(lattice_.cut(index).position);
   return vertex;
 }
@@ -278,17 +278,17 @@ int largest_resolution(const CheckedSurface& surface) {
   return resolution;
 }
 
-// The first triangle of a part that no tetrahedron touches; or none.
-std::uint32_t find_unreached(const CheckedSurface& surface, const Filling& filling) {
+// The first triangle of a component that no tetrahedron touches; or none.
+std::uint32_t find_unfilled(const CheckedSurface& surface, const Filling& filling) {
   for (std::size_t t = 0; t < surface.triangles.size() / 3; ++t) {
     const std::uint32_t component = surface.component[surface.triangles[3 * t]];
-    if (surface.part_volume[component] > 0.0 && !filling.reached[component]) return std::uint32_t(t);
+    if (surface.component_volume[component] > 0.0 && !filling.filled[component]) return std::uint32_t(t);
   }
   return SurfaceField::kNoTriangle;
 }
 
 // A reason to refuse what a resolution gave. `detail` is the number of a triangle or vertex, or the share of the volume in percent.
-enum class FillFault { none, too_many, flat, empty_part, pieces, volume, thin_part };
+enum class FillFault { none, too_many, flat, empty_component, pieces, volume, thin_feature };
 struct FillCheck {
   FillFault fault = FillFault::none;
   double detail = 0.0;
@@ -296,10 +296,10 @@ struct FillCheck {
 
 FillCheck check_filling(const CheckedSurface& surface, Filling& filling, int resolution) {
   if (filling.too_many) return {FillFault::too_many, 0.0};
-  const std::uint32_t part = find_unreached(surface, filling);
-  if (part != SurfaceField::kNoTriangle) return {FillFault::empty_part, double(part)};
+  const std::uint32_t unfilled = find_unfilled(surface, filling);
+  if (unfilled != SurfaceField::kNoTriangle) return {FillFault::empty_component, double(unfilled)};
   if (filling.flat) return {FillFault::flat, 0.0};
-  if (filling.pieces != surface.parts) return {FillFault::pieces, double(filling.pieces)};
+  if (filling.pieces != surface.solid_components) return {FillFault::pieces, double(filling.pieces)};
   TetrahedralMesh& mesh = filling.mesh;
   mesh.surface_volume = surface.volume;
   const double share = mesh.filled_volume / surface.volume;
@@ -308,9 +308,9 @@ FillCheck check_filling(const CheckedSurface& surface, Filling& filling, int res
   Array<double> distance;
   mesh.surface.triangles.assign(surface.triangles);
   mesh.surface.points = embed_points(mesh.vertices, mesh.tetrahedra, cell, surface.vertices, distance);
-  const double reach = max(kFillReachCells * cell, kFillReachShare * surface.side);
+  const double max_uncovered = max(kMaxUncoveredCells * cell, kMaxUncoveredShare * surface.side);
   for (const std::uint32_t i : surface.triangles) {
-    if (distance[i] > reach) return {FillFault::thin_part, double(i)};
+    if (distance[i] > max_uncovered) return {FillFault::thin_feature, double(i)};
   }
   return {};
 }
@@ -320,7 +320,7 @@ FillCheck fill(const CheckedSurface& surface, const SurfaceField& field, int res
     return {FillFault::too_many, 0.0};
   CutLattice lattice(field, surface.size / surface.side, resolution);
   const double cell = surface.side / resolution, point_volume = 0.5 * cell * cell * cell;
-  const double dropped = min(kDroppedShare * surface.volume, 0.25 * surface.smallest_part);
+  const double dropped = min(kDroppedShare * surface.volume, 0.25 * surface.smallest_component);
   out.pieces = drop_small_pieces(lattice, dropped / point_volume);
   LatticeFill(surface, lattice, out).run();
   return check_filling(surface, out, resolution);
@@ -357,22 +357,24 @@ Error fault_error(const CheckedSurface& surface, const SurfaceField& field, cons
                            ? make_error(kCode, "use resolution %d", better)
                            : make_error(kCode, "no resolution within the limits keeps it: make it thicker");
   const unsigned number = unsigned(check.detail);
-  if (check.fault == FillFault::empty_part) {
-    return make_error(kCode,
-                      "mesh: the connected part with triangle %u is too thin for resolution %d and has no "
-                      "tetrahedron; %s",
-                      number, resolution, advice.message);
+  if (check.fault == FillFault::empty_component) {
+    return make_error(
+        kCode,
+        "mesh: the connected component with triangle %u is too thin for resolution %d and has no "
+        "tetrahedron; %s",
+        number, resolution, advice.message);
   }
   if (check.fault == FillFault::pieces) {
-    return make_error(kCode,
-                      "mesh: has %d connected parts and would have %u at resolution %d, whose cells are too "
-                      "large for it; %s",
-                      surface.parts, number, resolution, advice.message);
+    return make_error(
+        kCode,
+        "mesh: has %d connected components and would have %u at resolution %d, whose cells are too "
+        "large for it; %s",
+        surface.solid_components, number, resolution, advice.message);
   }
-  if (check.fault == FillFault::thin_part) {
-    return make_error(kCode,
-                      "mesh: the part with vertex %u is too thin for resolution %d and has no tetrahedra; %s",
-                      number, resolution, advice.message);
+  if (check.fault == FillFault::thin_feature) {
+    return make_error(
+        kCode, "mesh: the surface at vertex %u is too thin for resolution %d and has no tetrahedra; %s",
+        number, resolution, advice.message);
   }
   return make_error(kCode, "mesh: resolution %d fills %.0f %% of its volume; allowed are %.0f to %.0f %%; %s",
                     resolution, check.detail, 100.0 * (1.0 - kFillVolumeShare),

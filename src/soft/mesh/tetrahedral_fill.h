@@ -2,7 +2,7 @@
 //
 // In: vertices in metres, triangles, and the number of cells along the longest side of the surface's box. Out: tetrahedra of positive volume
 // whose boundary is close to the surface (within a fraction of a cell), and the surface's vertices as weighted sums of their corners. A
-// surface that is inside out is turned. The same input gives the same bits everywhere.
+// surface that is inside out is reversed. The same input gives the same bits everywhere.
 // Method: isosurface stuffing. Dihedral angles are within kMinDihedral and kMaxDihedral, whatever the surface.
 // Source: F. Labelle, J. R. Shewchuk, "Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral Angles", 2007.
 // docs/decisions/tetrahedral-fill.md has the measurements.
@@ -26,8 +26,8 @@ constexpr std::uint32_t kMaxFillTetrahedra = 2'000'000;
 constexpr double kMinDihedral = 9.2, kMaxDihedral = 161.7, kMinVolumeShare = 0.025;
 // The share of the surface's volume by which that of the tetrahedra may differ.
 constexpr double kFillVolumeShare = 0.15;
-// A surface vertex farther than both from all tetrahedra belongs to a part that is too thin for the cells.
-constexpr double kFillReachCells = 2.0, kFillReachShare = 0.1;  // cells; of the longest side
+// A surface vertex farther than both from all tetrahedra belongs to a feature that is too thin for the cells.
+constexpr double kMaxUncoveredCells = 2.0, kMaxUncoveredShare = 0.1;  // cells; of the longest side
 
 struct TetrahedralMesh {
   Array<Vec3> vertices;
@@ -38,8 +38,8 @@ struct TetrahedralMesh {
 };
 
 // Refuses: indices out of range or not in threes, vertices that are not finite, a triangle without area, an edge that is not shared evenly,
-// a surface that crosses itself or encloses no volume, a resolution out of range, more than kMaxFillTetrahedra, and parts that are too
-// thin, with the resolution that keeps them.
+// a surface that crosses itself or encloses no volume, a resolution out of range, more than kMaxFillTetrahedra, and features that are
+// too thin, with a resolution that keeps them.
 Result<TetrahedralMesh> fill_with_tetrahedra(std::span<const Vec3> vertices,
                                              std::span<const std::uint32_t> triangles, int resolution);
 

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
+#include <cstdio>
 #include <map>
 #include <string>
 
@@ -228,7 +230,7 @@ TEST(TetrahedralFill, HasTheSameBitsEverywhere) {
   EXPECT_EQ(hash_of(*mesh), 14476920132039837394u) << "of another compiler or processor";
 }
 
-TEST(TetrahedralFill, TurnsASurfaceThatIsInsideOut) {
+TEST(TetrahedralFill, ReversesASurfaceThatIsInsideOut) {
   TestMesh surface = bunny_mesh(3);
   const Result<TetrahedralMesh> mesh = fill_mesh(surface, 12);
   surface.flip();
@@ -250,6 +252,36 @@ TEST(TetrahedralFill, AcceptsVerticesThatSeveralTrianglesRepeat) {
   ASSERT_TRUE(mesh && same) << same.error().message;
   EXPECT_EQ(mesh->vertices, same->vertices);
   EXPECT_EQ(mesh->tetrahedra, same->tetrahedra);
+}
+
+// The table of docs/decisions/tetrahedral-fill.md.
+TEST(LongTetrahedralFill, PrintsItsFigures) {
+  struct Row {
+    const char* name;
+    TestMesh mesh;
+  };
+  const Row rows[] = {
+      {"sphere", ball_mesh(5)}, {"torus", torus_mesh(1.0f, 0.4f, 128, 32)}, {"bunny", bunny_mesh(5)}};
+  for (const Row& row : rows) {
+    for (const int resolution : {8, 16, 32, 48}) {
+      double best = 1.0e300;
+      Result<TetrahedralMesh> mesh = fill_mesh(row.mesh, resolution);
+      for (int i = 0; i < 5; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        mesh = fill_mesh(row.mesh, resolution);
+        best =
+            std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      }
+      ASSERT_TRUE(mesh) << mesh.error().message;
+      expect_quality(row.mesh, *mesh, resolution);
+      const TetrahedronQuality quality = quality_of(*mesh);
+      const double count = double(mesh->tetrahedra.size()) / 4.0, cell = side_of(row.mesh) / resolution;
+      std::printf("| %s | %d | %.0f | %.1f | %.1f | %.1f to %.1f | %.3f | %.2f |\n", row.name, resolution,
+                  count, 1.0e3 * best, 1.0e7 * best / count, quality.smallest_angle, quality.largest_angle,
+                  quality.smallest_volume * 12.0 / (cell * cell * cell),
+                  100.0 * (1.0 - mesh->filled_volume / mesh->surface_volume));
+    }
+  }
 }
 
 // ------------------------------------------------------------------------------------------------------------ thin parts
@@ -289,12 +321,12 @@ TEST(TetrahedralFillThinParts, ABarThatBreaksIsRefusedWithAResolution) {
       {{0, -1}, {0.5f, -1}, {0.5f, -0.4f}, {0.1f, -0.4f}, {0.1f, 0.4f}, {0.5f, 0.4f}, {0.5f, 1}, {0, 1}}, 16,
       false);
   expect_advice(moved(surface, {{}, normalized(Quat{1, 2, 3, 9})}), 10,
-                "has 1 connected parts and would have 2 at resolution 10");
+                "has 1 connected components and would have 2 at resolution 10");
 }
 TEST(TetrahedralFillThinParts, PartsCloserThanACellAreRefusedWithAResolution) {
   TestMesh surface = box_mesh({-0.52f, 0, 0}, {0.5f, 0.5f, 0.5f});
   surface.add(box_mesh({0.52f, 0, 0}, {0.5f, 0.5f, 0.5f}));
-  expect_advice(surface, 8, "has 2 connected parts and would have 1 at resolution 8");
+  expect_advice(surface, 8, "has 2 connected components and would have 1 at resolution 8");
 }
 TEST(TetrahedralFillThinParts, APartTooThinForAnyResolutionSaysSo) {
   const std::string message = refusal_of(box_mesh({}, {0.5f, 0.5f, 1.0e-4f}), 16);
