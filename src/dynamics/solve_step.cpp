@@ -252,11 +252,13 @@ struct HalfStepping {
   int count = 0;
   float h = 0.0f;  // s, duration of each
   float warm_scale = 0.0f;
+  int parts = 1;  // half-steps of a sub-step
 };
 
 HalfStepping plan_half_steps(RigidWorld& w, float seconds, bool by_rows) {
   HalfStepping plan;
-  plan.count = by_rows ? w.settings.substeps : kHalfStepsPerSubstep * w.settings.substeps;
+  plan.parts = by_rows ? 1 : kHalfStepsPerSubstep;
+  plan.count = plan.parts * w.settings.substeps;
   plan.h = seconds / float(plan.count);
   plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
   // Pieces of a step up to an impact may be very short. What one of these leaves is mostly rounding.
@@ -332,7 +334,8 @@ void add_soft(BatchContext& batch, SoftStore& soft, SoftScratch& scratch, const 
                 .scratch = &scratch,
                 .kernels = &select_soft_kernels(batch.kernels.width),
                 .members = scratch.slots,
-                .h = plan.h,
+                .h = float(plan.parts) * plan.h,
+                .parts = plan.parts,
                 .warm_scale = plan.warm_scale,
                 .time = batch.w.now};
   make_soft_rows(batch.soft);
