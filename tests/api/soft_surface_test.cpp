@@ -2,6 +2,7 @@
 #include <gyre/gyre.h>
 #include <gyre/replay.h>
 
+#include "determinism/scenes.h"
 #include "soft/mesh/tetrahedral_fill_test_meshes.h"
 
 #include <gtest/gtest.h>
@@ -52,6 +53,31 @@ TEST(SoftSurface, CanBeReadAndSaved) {
   EXPECT_TRUE(surface_of(*loaded, same) == surface_of(world, ball));
   EXPECT_LT(length(surface_of(world, ball)[7] - 2.0 * places[7]), 1.0e-5);
   EXPECT_EQ(loaded->hash(), world.hash());
+}
+
+// Under its own weight a ball flattens a little; its fine surface stays above the ground, and it comes to rest.
+TEST(SoftSurface, LiesOnTheGround) {
+  World world = new_world();
+  scenes::add_fixed(world, {0, 0, 0}, Plane{});
+  SolidDef def = ball_def(6);
+  def.pose.position = {0, 1.1, 0};
+  def.young_modulus = 5.0e5f;
+  def.poisson_ratio = 0.3f;
+  def.settings.damping = 0.02f;
+  const SoftId ball = world.add_solid(def);
+  ASSERT_TRUE(world.exists(ball));
+  const double potential = world.soft_info(ball).mass * 9.81;
+  for (int i = 0; i < 150; ++i) world.step(1.0f / 60.0f);
+  double low = 1.0e300, high = -1.0e300;
+  for (const DVec3 p : surface_of(world, ball)) {
+    low = min(low, p.y);
+    high = max(high, p.y);
+  }
+  EXPECT_GT(low, -0.05);
+  EXPECT_LT(low, 0.05);
+  EXPECT_GT(high, 1.6);
+  EXPECT_LT(high, 2.05);
+  EXPECT_LT(world.soft_info(ball).kinetic_energy, 1.0e-3 * potential);
 }
 
 TEST(SoftSurface, IsThatOfFilledSolidsAlone) {

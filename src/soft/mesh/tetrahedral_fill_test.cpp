@@ -202,7 +202,7 @@ TEST(TetrahedralFill, TheVolumeConvergesWithTheSquareOfTheCells) {
 TEST(TetrahedralFill, KeepsItsBoundsInAnyTurn) {
   testing_random::Random random;
   TetrahedronQuality worst;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 24; ++i) {
     const Transform pose{random.vector(-3.0f, 3.0f), random.turn(3.0f)};
     const float scale = random.real(0.01f, 20.0f);
     const TestMesh surface = moved(i % 2 == 0 ? bunny_mesh(3) : gear_mesh(5), pose, scale);
@@ -329,7 +329,7 @@ TEST(TetrahedralFillThinParts, PartsCloserThanACellAreRefusedWithAResolution) {
   expect_advice(surface, 8, "has 2 connected components and would have 1 at resolution 8");
 }
 TEST(TetrahedralFillThinParts, APartTooThinForAnyResolutionSaysSo) {
-  const std::string message = refusal_of(box_mesh({}, {0.5f, 0.5f, 1.0e-4f}), 16);
+  const std::string message = refusal_of(box_mesh({}, {0.5f, 0.5f, 1.0e-4f}), 90);
   EXPECT_TRUE(has(message, "no resolution within the limits keeps it")) << message;
 }
 
