@@ -376,7 +376,7 @@ Error fault_error(const CheckedSurface& surface, const SurfaceField& field, cons
         kCode, "mesh: the surface at vertex %u is too thin for resolution %d and has no tetrahedra; %s",
         number, resolution, advice.message);
   }
-  return make_error(kCode, "mesh: resolution %d fills %.0f %% of its volume; allowed are %.0f to %.0f %%; %s",
+  return make_error(kCode, "mesh: resolution %d fills %.1f %% of its volume; allowed are %.0f to %.0f %%; %s",
                     resolution, check.detail, 100.0 * (1.0 - kFillVolumeShare),
                     100.0 * (1.0 + kFillVolumeShare), advice.message);
 }

@@ -201,7 +201,6 @@ TEST(TetrahedralFill, TheVolumeConvergesWithTheSquareOfTheCells) {
 
 TEST(TetrahedralFill, KeepsItsBoundsInAnyTurn) {
   testing_random::Random random;
-  TetrahedronQuality worst;
   for (int i = 0; i < 24; ++i) {
     const Transform pose{random.vector(-3.0f, 3.0f), random.turn(3.0f)};
     const float scale = random.real(0.01f, 20.0f);
