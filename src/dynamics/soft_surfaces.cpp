@@ -1,6 +1,7 @@
 #include "dynamics/soft_surfaces.h"
 
 #include "dynamics/soft_solve.h"
+#include "soft/contact/surface_crossings.h"
 
 namespace gyre {
 
@@ -95,6 +96,17 @@ void add_forces_of_surfaces(SoftSolve& s, std::uint32_t member) {
     const Vec3 force = rate * all.contacts.totals[first + std::uint32_t(i)];
     p.fx[i] += force.x, p.fy[i] += force.y, p.fz[i] += force.z;
   }
+}
+
+long count_soft_crossings(const SoftStore& store, Arena& arena) {
+  Array<PlacedSurface> placed;
+  Array<DVec3> positions;
+  store.for_each([&](const SoftEntry& entry) {
+    if (entry.contact_surface == nullptr) return;
+    placed.push_back({entry.contact_surface.get(), std::uint32_t(positions.size())});
+    for (int i = 0; i < entry.body.particles.count; ++i) positions.push_back(entry.body.particles.place(i));
+  });
+  return count_crossings(placed, positions, arena);
 }
 
 void solve_soft_surfaces(SoftSolve& s, int, int) {

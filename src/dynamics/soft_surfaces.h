@@ -7,6 +7,7 @@
 #include "base/arena/arena.h"
 #include "base/container/array.h"
 #include "soft/contact/surface_contacts.h"
+#include "soft/store/soft_store.h"
 
 #include <gyre/math.h>
 
@@ -37,6 +38,10 @@ struct SoftSurfaces {
 void begin_soft_surfaces(SoftSolve& s);
 // Adds the impulses of the last sub-step to the forces from outside.
 void add_forces_of_surfaces(SoftSolve& s, std::uint32_t member);
+
+// Pairs of an edge and a triangle that cross now, of all cloths and solids: exact, and 0 unless they began crossed or were held so. Not for
+// every step: it looks at all of them.
+long count_soft_crossings(const SoftStore& store, Arena& arena);
 
 // Stages, each of one block.
 void solve_soft_surfaces(SoftSolve& s, int begin, int end);
