@@ -83,8 +83,9 @@ ROOMS = {
         "mesh": [],
         "elements": ["body", "mesh"],
         "kernels": ["body"],
-        "store": ["elements"],
+        "store": ["elements", "contact"],
         "solver": ["store", "kernels"],
+        "contact": ["body"],
     },
     "io": {
         "codec": [],

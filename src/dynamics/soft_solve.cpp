@@ -482,6 +482,7 @@ void make_soft_rows(SoftSolve& s) {
   scratch.carried.resize(scratch.rows.size());
   for (const SoftRow& row : scratch.rows)
     if (row.touched >= 0 && row.grip != SoftGrip::open) ++scratch.grips[row.touched];
+  begin_soft_surfaces(s);
 }
 
 void begin_soft_members(SoftSolve& s, int begin, int end) {
@@ -495,6 +496,7 @@ void begin_soft_members(SoftSolve& s, int begin, int end) {
     for (int pass = 0; pass < kGripPasses; ++pass) {
       set_field_forces(*s.w, entry, s.time, s.h);
       add_rows(s, m);
+      add_forces_of_surfaces(s, m);
       work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels,
                                   work.arena, work.tasks);
       find_carried_steps(s, m);

@@ -23,6 +23,7 @@
 #pragma once
 
 #include "base/arena/arena.h"
+#include "dynamics/soft_surfaces.h"
 #include "rigid/store/rigid_world.h"
 #include "soft/solver/soft_step.h"
 #include "task/task_system.h"
@@ -82,6 +83,7 @@ struct SoftScratch {
   Array<std::uint32_t> grips;     // rows that grip each touched body
   // Of touched bodies: the change by the impulses that are tried; what the other half-steps of the sub-step are to bring.
   Array<VelocityChange> changes, pending;
+  SoftSurfaces surfaces;
 };
 
 // The context of the stages below.

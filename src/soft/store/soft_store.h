@@ -5,6 +5,7 @@
 #include "base/container/array.h"
 #include "base/container/slot_map.h"
 #include "soft/body/soft_body.h"
+#include "soft/contact/soft_surface.h"
 #include "soft/mesh/embedded_surface.h"
 
 #include <gyre/soft.h>
@@ -63,6 +64,7 @@ struct SoftEntry {
       triangles;  // of the surface, three vertices each, seen from outside counter-clockwise; none of a rope
   // Of a solid that was made of a surface: what was given, carried along by its tetrahedra, for pictures.
   EmbeddedSurface surface;
+  std::shared_ptr<const SoftSurface> touch_surface;  // of the triangles; null: there are none
   Array<SoftRest> rest{SoftRest{}};  // one
   float radius = 0.0f;               // m: half the thickness, which the surface keeps from shapes
   float size = 0.0f;                 // m: the mean length of its edges, by which speculative distances go
