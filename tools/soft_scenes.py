@@ -40,7 +40,7 @@ def rope_bridge():
         bodies.append({"name": f"plank {k + 1}", "position": [x, high - 0.03, 0], "color": ("#cf9a62", "#b98250", "#dcae7a")[k % 3],
                        "shapes": [{"type": "box", "half_extents": [0.2, 0.025, width], "material": "wood"}]})
     bodies.append({"name": "ball", "position": [-half + 1.5, high + 0.1, 0], "linear_velocity": [0.5, 0, 0], "color": "#666b78",
-                   "shapes": [{"type": "sphere", "radius": 0.25, "density": 400}]})
+                   "shapes": [{"type": "sphere", "radius": 0.25, "density": 400, "rolling_friction": 0.02}]})
     ropes = []
     for side, z in (("near", width), ("far", -width)):
         for edge, shift in (("left", -1), ("right", 1)):
