@@ -94,7 +94,9 @@ TEST_F(SoftCommandLine, FiguresCountSoftMatter) {
   EXPECT_NEAR(std::stod(first[column("px")]), 1000, 1);
   EXPECT_NEAR(std::stod(first[column("py")]), -9.81 * 0.01 * 1000.3, 1);
   EXPECT_NEAR(std::stod(first[column("kinetic_energy")]), 500, 6);
-  EXPECT_NEAR(std::stod(first[column("potential_energy")]), 9.81 * (1000 * 0.6 + 0.1 * 2 + 0.2 * 3), 2);
+  // In a step of four sub-steps the jelly falls g h^2 5 / 8.
+  const double start = 9.81 * (1000 * 0.6 + 0.1 * 2 + 0.2 * 3), fallen = 1000 * 9.81 * 9.81 * 1e-4 * 5 / 8;
+  EXPECT_NEAR(std::stod(first[column("potential_energy")]), start - fallen, 0.1);
   EXPECT_GT(std::stod(last[column("soft_elastic_energy")]), 0);
   EXPECT_EQ(std::stod(last[column("elastic_energy")]), 0);
   for (const char* name : {"crossings", "liquid_volume", "liquid_particles", "smoke_mass", "max_divergence",
