@@ -27,20 +27,23 @@ struct SoftAttachment {
   Vec3 impulse{};  // N s on the vertex in the last half-step, where the body yields: the warm start
 };
 
+// How a contact held its vertex in the last sub-step.
+enum class SoftGrip : std::uint8_t { open, slides, sticks };
+
 // A vertex near a shape, found once a step. The shape's surface is a plane here, which moves with the body.
 struct SoftContact {
   std::uint32_t particle = 0;
   std::uint32_t shape = 0;
-  std::int32_t body = 0;       // of the shape; it may be a fixed one
-  std::uint32_t triangle = 0;  // of a mesh or height field
-  Vec3 normal{};               // unit, out of the shape, world axes, when the step began
-  Vec3
-      from_body{};  // from the body's centre of mass to the point on the surface, world axes, when the step began
+  std::int32_t body = 0;                            // of the shape; it may be a fixed one
+  std::uint32_t triangle = 0;                       // of a mesh or height field
+  Vec3 normal{};     // unit, out of the shape, world axes, when the step began
+  Vec3 from_body{};  // from the body's centre of mass to the point on the surface, likewise
   float gap = 0.0f;  // m, of vertex and surface less the thickness, when the step began
   float static_friction = 0.0f;
   float dynamic_friction = 0.0f;
   Vec3 surface_velocity{};  // m/s, of a conveyor belt, world axes
   Vec3 impulse{};           // N s on the vertex in the last half-step: the warm start
+  SoftGrip grip = SoftGrip::open;
 };
 
 // Rest, as of bodies.
