@@ -5,6 +5,7 @@
 #include "base/container/array.h"
 #include "base/container/slot_map.h"
 #include "soft/body/soft_body.h"
+#include "soft/mesh/embedded_surface.h"
 
 #include <gyre/soft.h>
 
@@ -60,6 +61,8 @@ struct SoftEntry {
   Array<SoftContact> contacts;        // ascending by particle, then shape
   Array<std::uint32_t>
       triangles;  // of the surface, three vertices each, seen from outside counter-clockwise; none of a rope
+  // Of a solid that was made of a surface: what was given, carried along by its tetrahedra, for pictures.
+  EmbeddedSurface surface;
   Array<SoftRest> rest{SoftRest{}};  // one
   float radius = 0.0f;               // m: half the thickness, which the surface keeps from shapes
   float size = 0.0f;                 // m: the mean length of its edges, by which speculative distances go
@@ -69,6 +72,17 @@ struct SoftEntry {
     return std::visit([](const auto& one) -> const SoftSettings& { return one.settings; }, *def);
   }
 };
+
+// Where a point of the embedded surface is. The corners are taken from the first, so that the rounding of the weights does not grow with
+// the distance from the origin.
+inline DVec3 surface_position(const SoftEntry& entry, std::size_t point) {
+  const EmbeddedPoint& embedded = entry.surface.points[point];
+  const DVec3 first = entry.body.particles.place(int(embedded.corner[0]));
+  DVec3 sum = first;
+  for (int k = 1; k < 4; ++k)
+    sum += double(embedded.weight[k]) * (entry.body.particles.place(int(embedded.corner[k])) - first);
+  return sum;
+}
 
 struct SoftStore {
   IdPool ids;
