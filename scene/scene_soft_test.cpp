@@ -17,6 +17,7 @@ namespace {
 
 const std::string kMeshes =
     R"("meshes": {"sheet": {"vertices": [[0,0,0],[1,0,0],[1,0,1],[0,0,1]], "triangles": [[0,2,1],[0,3,2]]},)"
+    R"( "ball": {"vertices": [[1,0,0],[-1,0,0],[0,1,0],[0,-1,0],[0,0,1],[0,0,-1]], "triangles": [[0,2,4],[2,1,4],[1,3,4],[3,0,4],[2,0,5],[1,2,5],[3,1,5],[0,3,5]]},)"
     R"( "line": {"vertices": [[0,0,0],[1,0,0],[2,0,0],[0,0,1]], "triangles": [[0,1,2],[0,3,1]]}}, )";
 const std::string kBodies =
     R"("bodies": [{"name": "pole", "type": "static"}, {"name": "load", "position": [2, 0, 0], "shapes": [)"
@@ -164,6 +165,15 @@ TEST(SceneSoft, RefusesBadSoftBodies) {
       {tets_with("[[0, 1, 2, 3]]"), at + "/vertices/4", "vertices[4]", "no mass"},
       {solid_with(R"("vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]])"), at + "/tetrahedra", "found nothing",
        "\"tetrahedra\""},
+      {solid_with(R"("mesh": "bear")"), at + "/mesh", "\"bear\"", "the name of a mesh"},
+      {solid_with(R"("mesh": "sheet")"), at + "/mesh", "is open", "closed surfaces"},
+      {solid_with(R"("mesh": "ball", "resolution": 1)"), at + "/resolution", "found 1", "from 2 to 128"},
+      {solid_with(R"("mesh": "ball", "resolution": 129)"), at + "/resolution", "found 129", "at most 128"},
+      {solid_with(R"("mesh": "ball", "box": {})"), at + "/box", "beside \"mesh\"", "\"tetrahedra\""},
+      {solid_with(R"("mesh": "ball", "resolution": 4, "pinned": [0, 9999])"), at + "/pinned/1",
+       "found vertex 9999", "from 0 to"},
+      {solid_with(R"("mesh": "ball", "resolution": 4, "state": {"positions": [[0,0,0]]})"),
+       at + "/state/positions", "has 1 entries", "there are"},
       {box_with(R"("density": 0)"), at + "/density", "found 0", "above 0"},
       {box_with(R"("young_modulus": 0)"), at + "/young_modulus", "found 0", "above 0"},
       {box_with(R"("poisson_ratio": 0.5)"), at + "/poisson_ratio", "found 0.5", "below 0.5"},
@@ -361,6 +371,20 @@ TEST(SceneSoft, WhatIsRemovedIsLeftOutOfTheFinalScene) {
   EXPECT_EQ(left.cloths[0].name, "d");
   EXPECT_EQ(left.ropes[0].holds, (std::vector<SceneHold>{{2, 0}, {0, -1}}));  // the end at the load is free
   EXPECT_TRUE(read_scene(write_scene(left)));
+}
+
+TEST(SceneSoft, AMeshIsFilled) {
+  const SceneRunner runner = run(
+      solid_with(R"("mesh": "ball", "resolution": 6, "density": 300, "position": [0, 5, 0], "pinned": [0])"),
+      3);
+  const SoftInfo info = runner.world().soft_info(runner.soft_bodies()[0]);
+  EXPECT_NEAR(info.mass, 300 * 4.0 / 3, 0.1);  // of an octahedron with radius 1
+  EXPECT_GT(info.vertices, 30);
+  const std::string text = write_scene(runner.final_scene());
+  const SceneRunner rest = run(text, 1);
+  EXPECT_EQ(rest.world().soft_info(rest.soft_bodies()[0]).vertices, info.vertices);
+  EXPECT_EQ(rest.scene().soft_bodies[0].resolution, 6);
+  EXPECT_EQ(rest.scene().soft_bodies[0].holds.size(), 1u);
 }
 
 // The lesson of the course: of equal chains explicit Euler explodes, the others do not.
