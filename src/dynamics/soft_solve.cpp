@@ -16,6 +16,8 @@ constexpr int kRounds = 2, kSweeps = 2;
 constexpr double kContactTolerance = 1.0e-3;
 // The inertia of a fixed body that a vertex carries, in its own masses: beyond what hangs on it, below what rounding would show.
 constexpr float kGripShare = 1.0e3f;
+// How often a sub-step is solved because contacts open or begin to slide.
+constexpr int kGripPasses = 3;
 // A contact lets go when the vertex is further away than this share of the length of an edge.
 constexpr float kReleaseShare = 0.02f;
 // Friction below this share of its bound sticks.
@@ -190,6 +192,36 @@ void find_carried_steps(SoftSolve& s, std::uint32_t member) {
     row.carried_step = carried.inertia * (carried.target - p.velocity(carried.particle));
   }
 }
+// Contacts that pull open, those that stick beyond their cones slide. True if there are any.
+bool loosen_grips(SoftSolve& s, std::uint32_t member) {
+  const SoftWork& work = work_of(s, member);
+  bool any = false;
+  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+    SoftRow& row = s.scratch->rows[k];
+    if (!row.is_contact || row.carried < 0) continue;
+    const Vec3 impulse = row.impulse + row.carried_step;
+    const float normal = dot(row.normal, impulse);
+    SoftGrip grip = row.grip;
+    if (!(normal >= 0.0f)) {
+      grip = SoftGrip::open;
+    } else if (grip == SoftGrip::sticks &&
+               length(impulse - normal * row.normal) > row.static_friction * normal) {
+      grip = SoftGrip::slides;
+    }
+    any = any || grip != row.grip;
+    row.grip = grip;
+  }
+  return any;
+}
+
+// The velocities, and what else the solution of an implicit sub-step changes.
+void copy_motion(const SoftBody& from, SoftBody& to) {
+  to.particles.vx = from.particles.vx, to.particles.vy = from.particles.vy,
+  to.particles.vz = from.particles.vz;
+  for (int axis = 0; axis < 3; ++axis) to.pull[axis] = from.pull[axis];
+  to.chain.tension = from.chain.tension;
+}
+
 std::span<const CarriedInertia> carried_by(SoftSolve& s, std::uint32_t member) {
   const SoftWork& work = work_of(s, member);
   return s.scratch->carried.view().subspan(work.first_row, work.carried);
@@ -458,11 +490,18 @@ void begin_soft_members(SoftSolve& s, int begin, int end) {
     SoftWork& work = work_of(s, m);
     work.mark = work.arena.mark();
     move_held(s, entry);
-    set_field_forces(*s.w, entry, s.time, s.h);
-    add_rows(s, m);
-    work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels, work.arena,
-                                work.tasks);
-    find_carried_steps(s, m);
+    const bool is_implicit = entry.settings().integrator == SoftIntegrator::implicit;
+    if (is_implicit && work.first_row != work.last_row) copy_motion(entry.body, work.before);
+    for (int pass = 0; pass < kGripPasses; ++pass) {
+      set_field_forces(*s.w, entry, s.time, s.h);
+      add_rows(s, m);
+      work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels,
+                                  work.arena, work.tasks);
+      find_carried_steps(s, m);
+      if (!is_implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
+      work.arena.release(work.mark);
+      copy_motion(work.before, entry.body);
+    }
   }
 }
 

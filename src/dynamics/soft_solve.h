@@ -5,7 +5,8 @@
 // that grip the body; of a fixed body kGripShare times its own mass. A contact that sticks does so in all directions, one that slides
 // along its normal. The vertex and this part move as one through the whole solve, so a rope between heavy bodies, or over a pulley with loads
 // of a thousand times its mass, knows what it is held by. The body then gets the momentum that its part has gained, and the difference
-// that is left is the start of the next sub-step.
+// that is left is the start of the next sub-step. A contact that pulls opens, and one that sticks beyond its cone slides: then the sub-step is solved
+// anew, kGripPasses times at most.
 //
 // Contacts are solved further in rounds: sweeps of sequential impulses find impulses with the block of each vertex alone, which does not know
 // what moves along with it; of these the share is taken that minimises the energy of the coupled system, found from the true
@@ -60,6 +61,7 @@ struct SoftWork {
   TaskSystem tasks;  // serial
   Arena::Mark mark{};
   SoftStep step;
+  SoftBody before;                            // what a sub-step that is solved anew begins with
   Array<Vec3> impulses, change;               // by particle
   std::uint32_t first_row = 0, last_row = 0;  // in SoftScratch::rows
   std::uint32_t carried = 0;                  // rows that carry, from first_row on in SoftScratch::carried
