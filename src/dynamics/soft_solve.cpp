@@ -349,13 +349,16 @@ void solve_contacts_in_rounds(SoftSolve& s) {
 
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   scratch.slots.clear(), scratch.touched.clear();
-  store.ids.for_each_live([&](std::uint32_t slot) { scratch.slots.push_back(slot); });
+  store.ids.for_each_live([&](std::uint32_t slot) {
+    if (store.entries[slot].is_awake()) scratch.slots.push_back(slot);
+  });
   while (scratch.works.size() < store.entries.size()) scratch.works.push_back(std::make_unique<SoftWork>());
   // Bodies are marked, and then listed in order.
   const auto touch = [&](std::int32_t body) {
     if (moves(w, body)) w.bodies.flags[std::size_t(body)].constraint_use = kPoseRead;
   };
   store.for_each([&](const SoftEntry& entry) {
+    if (!entry.is_awake()) return;
     for (const SoftContact& contact : entry.contacts) touch(contact.body);
     for (const SoftAttachment& attachment : entry.attachments) touch(attachment.body);
   });
