@@ -34,6 +34,12 @@ void label_bodies(Recorder& recorder, const SceneRunner& runner) {
     }
     recorder.label(runner.bodies()[body], scene.bodies[body].name, colors);
   }
+  runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
+    const SoftInfo info = runner.world().soft_info(id);
+    const SceneColor color = resolved_soft_color(scene, info.kind, std::size_t(info.user_data));
+    const TrackColor stored{color.red, color.green, color.blue};
+    recorder.label_soft(id, soft.name, {&stored, 1});
+  });
 }
 
 }  // namespace gyre
