@@ -1,8 +1,10 @@
 // What a recorder is told of a scene. See scene_labels.h.
 #include "scene/scene_labels.h"
 
+#include "scene/json_document.h"
 #include "scene/json_writer.h"
 #include "scene/scene_color.h"
+#include "scene/scene_reader.h"
 
 namespace gyre {
 
@@ -20,6 +22,20 @@ std::string scene_note(const Scene& scene) {
   }
   json.end_object();
   return json.take();
+}
+
+// A scene of nothing but the view is read as any scene is.
+std::optional<SceneView> view_of_note(std::string_view note) {
+  std::string text;
+  try {
+    const Json members = parse_document(note, "note", {});
+    if (!members.is_object() || !members.contains("view")) return {};
+    text = Json{{"gyre_scene", 1}, {"view", members.at("view")}}.dump();
+  } catch (const SceneError&) {
+    return {};
+  }
+  const SceneResult<Scene> scene = read_scene(text);
+  return scene ? scene->view : std::nullopt;
 }
 
 void label_bodies(Recorder& recorder, const SceneRunner& runner) {

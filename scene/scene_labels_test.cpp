@@ -59,5 +59,18 @@ TEST(SceneLabels, ARecordingKnowsNamesColoursAndView) {
   EXPECT_NE(note.find("\"field_of_view\": 0.5"), std::string::npos) << note;
 }
 
+TEST(SceneLabels, TheViewOfANoteIsThatOfTheScene) {
+  Scene scene;
+  EXPECT_FALSE(view_of_note(scene_note(scene)));
+  scene.view = SceneView{.eye = {1, 2, 3.5}, .target = {0, 1, 0}, .field_of_view = 0.5f};
+  const std::optional<SceneView> view = view_of_note(scene_note(scene));
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->eye, scene.view->eye);
+  EXPECT_EQ(view->target, scene.view->target);
+  EXPECT_EQ(view->field_of_view, 0.5f);
+  for (const char* other : {"", "{}", "[]", "{\"view\": 3}", "{\"view\": {\"eye\": [1]}}", "{\"view\": "})
+    EXPECT_FALSE(view_of_note(other)) << other;
+}
+
 }  // namespace
 }  // namespace gyre
