@@ -48,7 +48,10 @@ test("the README's first example prints what it says", () => {
 });
 
 test("the README's other examples run", async () => {
-  const [, , rest] = readme.split('```js\n').map((part) => part.split('```')[0]);
+  const [, , soft, rest] = readme.split('```js\n').map((part) => part.split('```')[0]);
+  writeFileSync(join(folder, 'soft.js'), soft);
+  const height = Number(execFileSync(process.execPath, ['soft.js'], { cwd: folder, encoding: 'utf8', timeout: 60000 }));
+  assert.ok(Math.abs(height - 0.5) < 0.02, `the middle of the cloth is at ${height} m`);
   const scene = JSON.stringify({ gyre_scene: 1, bodies: [{ name: 'ball', shapes: [{ type: 'sphere', radius: 0.5 }] }] });
   const code = `import { load } from 'gyre-physics';
 globalThis.fetch = async () => ({ text: async () => ${JSON.stringify(scene)} });

@@ -1,6 +1,7 @@
-// The hand. On a body that can move it pulls; a click without moving selects; everywhere else it is the camera's.
+// The hand. On a body that can move, and on ropes, cloths and solids, it pulls; a click without moving selects a body; everywhere else it is
+// the camera's.
 import { Vector3 } from 'three';
-import { BodyFlag } from '../protocol';
+import { BodyFlag, type Command } from '../protocol';
 import * as store from '../state/store';
 import type { Surroundings } from './surroundings';
 
@@ -11,7 +12,7 @@ interface Press {
   x: number;
   y: number;
   key: number | null;
-  grabbed: Vector3 | null; // where in the scene the body was taken hold of
+  grabbed: Vector3 | null; // where in the scene something was taken hold of
 }
 
 export class Pointer {
@@ -43,15 +44,26 @@ export class Pointer {
     // A second finger means the camera.
     if (this.touches.size > 1) return this.letGo();
     if (event.button !== 0 || !frame) return;
-    const picked = viewer.picker.pick(viewer.bodies, event.clientX, event.clientY);
-    this.press = { id: event.pointerId, x: event.clientX, y: event.clientY, key: picked?.key ?? null, grabbed: null };
-    const movable = picked && (frame.flags[picked.row]! & BodyFlag.dynamic) !== 0 && store.scene.peek()?.live;
-    if (!movable || event.ctrlKey || event.metaKey || event.shiftKey) return;
-    this.press.grabbed = picked.point;
+    const { key, hold } = this.under(event.clientX, event.clientY);
+    this.press = { id: event.pointerId, x: event.clientX, y: event.clientY, key, grabbed: null };
+    if (!hold || event.ctrlKey || event.metaKey || event.shiftKey) return;
+    this.press.grabbed = new Vector3(...hold.at);
     viewer.rig.controls.enabled = false;
     viewer.stage.renderer.domElement.setPointerCapture(event.pointerId);
     viewer.stage.renderer.domElement.style.cursor = 'grabbing';
-    viewer.playback.command({ do: 'grab', key: picked.key, at: picked.point.toArray() });
+    viewer.playback.command(hold);
+  }
+
+  // The body under the pointer, if nothing soft is before it, and how to take hold of what is there.
+  private under(x: number, y: number): { key: number | null; hold: Extract<Command, { at: unknown; do: 'grab' | 'grab_soft' }> | null } {
+    const { picker, bodies, softs, playback } = this.viewer;
+    const live = store.scene.peek()?.live === true;
+    const soft = picker.pickSoft(softs, bodies, x, y);
+    if (soft) return { key: null, hold: live ? { do: 'grab_soft', key: soft.key, at: soft.point.toArray() } : null };
+    const body = picker.pick(bodies, x, y);
+    if (!body) return { key: null, hold: null };
+    const movable = live && (playback.frame!.flags[body.row]! & BodyFlag.dynamic) !== 0;
+    return { key: body.key, hold: movable ? { do: 'grab', key: body.key, at: body.point.toArray() } : null };
   }
 
   private move(event: PointerEvent): void {
@@ -101,8 +113,6 @@ export class Pointer {
     const { viewer } = this;
     const frame = viewer.playback.frame;
     if (!frame || frame.flags.length > 4000) return;
-    const picked = viewer.picker.pick(viewer.bodies, this.at.x, this.at.y);
-    const movable = picked && (frame.flags[picked.row]! & BodyFlag.dynamic) !== 0 && store.scene.peek()?.live;
-    viewer.stage.renderer.domElement.style.cursor = movable ? 'grab' : '';
+    viewer.stage.renderer.domElement.style.cursor = this.under(this.at.x, this.at.y).hold ? 'grab' : '';
   }
 }

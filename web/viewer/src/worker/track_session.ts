@@ -24,7 +24,7 @@ import type { WorldAtFrame, WorldBehind } from './world_behind';
 
 const NO_STATS: Stats = {
   stepMs: 0, stageMs: [], bodies: 0, awake: 0, pairs: 0, touching: 0, contactPoints: 0, kinetic: 0, potential: 0, elastic: 0,
-  linear: [0, 0, 0], angular: [0, 0, 0], maxPenetration: 0,
+  linear: [0, 0, 0], angular: [0, 0, 0], maxPenetration: 0, softs: 0, softVertices: 0,
 };
 
 const NEEDS_WORLD: ReadonlySet<OverlayName> = new Set<OverlayName>(['contacts', 'friction', 'bounds', 'tree', 'islands', 'mass', 'joints', 'velocities']);
@@ -88,7 +88,7 @@ export class TrackSession implements Session {
   private bounds(): Box {
     const { ids, models, poses } = this.at;
     const bodies = Array.from(ids, (id, row) => this.describeBody(id, 0, models[row]!));
-    return extent(bodies, poses, (surface) => this.source.vertices(surface));
+    return extent(bodies, poses, (surface) => this.source.vertices(surface), new Float32Array(0));
   }
 
   advance(steps: number, _commands: readonly Command[]): Promise<FrameMessage> {
@@ -123,6 +123,7 @@ export class TrackSession implements Session {
         poses: poses.slice(), // the page takes it over
         velocities: world ? world.velocities() : new Float32Array(6 * count),
         flags,
+        softVertices: new Float32Array(0),
         stats: world ? world.stats() : { ...NO_STATS, bodies: count, awake: awakeCount },
         measured: world !== null,
         links: world ? world.links() : new Float32Array(0),
@@ -153,7 +154,7 @@ export class TrackSession implements Session {
       this.sent.set(key, model);
       added.push({ ...this.describeBody(ids[row]!, key, model), ...(world ? world.mass(ids[row]!) : {}) });
     });
-    return { number: ++this.structure, keys, added, surfaces: this.source.takeSurfaces() };
+    return { number: ++this.structure, keys, added, surfaces: this.source.takeSurfaces(), softs: [] };
   }
 
   private nameOf(id: number): string {

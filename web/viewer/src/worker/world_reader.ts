@@ -55,10 +55,12 @@ export function readStats(world: World, stepMs: number): Stats {
     contactPoints: counts.contactPoints,
     kinetic: energy.kinetic,
     potential: energy.potential,
-    elastic: energy.elastic,
+    elastic: energy.elastic + energy.softElastic,
     linear: momentum.linear,
     angular: momentum.angular,
     maxPenetration: world.maxPenetration(),
+    softs: counts.softs,
+    softVertices: counts.softVertices,
   };
 }
 

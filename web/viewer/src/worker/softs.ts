@@ -1,0 +1,42 @@
+// Ropes, cloths and solids of a world: what the page is told about them once, and their vertices in each frame.
+import { type SoftId, SoftKind, type World } from 'gyre-physics';
+import type { SoftDescription, SoftKind as SoftKindName, Vec3 } from '../protocol';
+
+export function softKindName(kind: number): SoftKindName {
+  return kind === SoftKind.rope ? 'rope' : kind === SoftKind.cloth ? 'cloth' : 'solid';
+}
+
+export function describeSoft(world: World, id: SoftId, look: Pick<SoftDescription, 'key' | 'name' | 'color'>): SoftDescription {
+  const { kind, vertices, radius } = world.softInfo(id);
+  return { ...look, kind: softKindName(kind), vertices, radius, triangles: world.softTriangles(id).slice() };
+}
+
+// 3 a vertex, of all of them in this order.
+export function readSoftVertices(world: World, ids: ArrayLike<SoftId>, origin: Vec3): Float32Array<ArrayBuffer> {
+  if (ids.length === 0) return new Float32Array(0);
+  const out = new Float32Array(3 * world.stats().softVertices);
+  let to = 0;
+  for (let i = 0; i < ids.length; i++) {
+    const { x, y, z } = world.vertices(ids[i]!);
+    for (let k = 0; k < x.length; k++) {
+      out[to++] = x[k]! - origin[0];
+      out[to++] = y[k]! - origin[1];
+      out[to++] = z[k]! - origin[2];
+    }
+  }
+  return out;
+}
+
+// The vertex that is nearest to a place in the world, of those that are not held already; -1 if all are.
+export function nearestVertex(world: World, id: SoftId, [px, py, pz]: Vec3, held: ReadonlySet<number>): number {
+  const { x, y, z } = world.vertices(id);
+  let best = -1;
+  let least = Infinity;
+  for (let i = 0; i < x.length; i++) {
+    const distance = (x[i]! - px) ** 2 + (y[i]! - py) ** 2 + (z[i]! - pz) ** 2;
+    if (distance >= least || held.has(i)) continue;
+    least = distance;
+    best = i;
+  }
+  return best;
+}
