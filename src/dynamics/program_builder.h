@@ -151,6 +151,8 @@ class ProgramBuilder {
   bool is_fused() const { return is_fused_; }
   bool has_swept_joints() const { return joint_slices_ > 0; }
   bool has_joints() const { return articulations_ > 0 || simd_articulations_ > 0 || has_swept_joints(); }
+  // Soft matter moves once in a whole sub-step. True for its first half-step.
+  bool begins_soft(int half_step) const { return half_step % batch_.soft.parts == 0; }
   bool is_solved_as_rows() const { return batch_.rows != nullptr; }
   bool has_fields() const { return fields_ > 0; }
   // True if no stage comes between forces and the warm start of bodies.

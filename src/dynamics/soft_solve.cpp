@@ -12,6 +12,8 @@ namespace {
 
 // Rounds of a half-step, and sweeps over all contacts in each.
 constexpr int kRounds = 2, kSweeps = 2;
+// Rounds end when they would take less than this share of the energy that a fall in the half-step gives to the vertices in contact.
+constexpr double kContactTolerance = 1.0e-3;
 // Conjugate gradients on attachments: iterations at most, and the share of the energy of the error that is left.
 constexpr int kAttachmentIterations = 8;
 constexpr double kAttachmentTolerance = 1.0e-8;
@@ -49,8 +51,12 @@ Quat orientation_now(const RigidWorld& w, std::int32_t body) {
   return moves(w, body) ? w.bodies.orientations[b] : w.bodies.poses[b].orientation;
 }
 
-Vec3 velocity_of_body(const RigidWorld& w, const SoftRow& row) {
-  return row.body < 0 ? Vec3{} : point_velocity(w.bodies.motion[std::size_t(row.body)], row.arm);
+// With what the body is still to get in this sub-step.
+Vec3 velocity_of_body(const SoftSolve& s, const SoftRow& row) {
+  if (row.touched < 0) return {};
+  const VelocityChange& pending = s.scratch->pending[row.touched];
+  return point_velocity(s.w->bodies.motion[std::size_t(row.body)], row.arm) + pending.linear +
+         cross(pending.angular, row.arm);
 }
 // The index of a body that is touched and moves; -1 if it is none.
 std::int32_t find_touched(const SoftScratch& scratch, std::int32_t body) {
@@ -185,7 +191,7 @@ Vec3 next_impulse(const SoftRow& row, Vec3 impulse, Vec3 error) {
 
 Vec3 error_of(SoftSolve& s, const SoftRow& row) {
   const Vec3 own = entry_of(s, row.member).body.particles.velocity(int(row.particle));
-  return own - velocity_of_body(*s.w, row) + row.bias;
+  return own - velocity_of_body(s, row) + row.bias;
 }
 
 // The change of the relative velocity by impulses that are tried.
@@ -248,8 +254,12 @@ void take_steps(SoftSolve& s, bool contacts, float share) {
   }
   for (std::size_t k = 0; k < s.scratch->touched.size(); ++k) {
     BodyMotion& motion = s.w->bodies.motion[s.scratch->touched[k]];
-    motion.linear_velocity += share * s.scratch->changes[k].linear;
-    motion.angular_velocity += share * s.scratch->changes[k].angular;
+    const Vec3 linear = share * s.scratch->changes[k].linear, angular = share * s.scratch->changes[k].angular;
+    const float now = 1.0f / float(s.parts);
+    motion.linear_velocity += now * linear;
+    motion.angular_velocity += now * angular;
+    VelocityChange& pending = s.scratch->pending[k];
+    pending.linear += (1.0f - now) * linear, pending.angular += (1.0f - now) * angular;
   }
 }
 
@@ -294,18 +304,33 @@ void sweep_contacts(SoftSolve& s) {
   });
 }
 
+// The energy that the steps take from the coupled system, to the first order.
+double slope_of(SoftSolve& s) {
+  double slope = 0.0;
+  for_each_row(s, true, [&](const SoftRow& row) { slope -= double(dot(row.step, row.error)); });
+  return slope;
+}
 // The share of the steps that is best, at most all of them: contacts would leave their cones.
-float best_share(SoftSolve& s) {
-  double slope = 0.0, curvature = 0.0;
-  for_each_row(s, true, [&](const SoftRow& row) {
-    slope -= double(dot(row.step, row.error));
-    curvature += double(dot(row.step, tried_change(s, row)));
-  });
+float best_share(SoftSolve& s, double slope) {
+  double curvature = 0.0;
+  for_each_row(s, true,
+               [&](const SoftRow& row) { curvature += double(dot(row.step, tried_change(s, row))); });
   if (!(slope > 0.0)) return 0.0f;
   return curvature > slope ? float(slope / curvature) : 1.0f;
 }
 
+// The kinetic energy of what a fall in the half-step gives to all soft matter that touches something.
+double energy_of_fall(SoftSolve& s) {
+  const double fall = double(s.h) * double(length(s.w->settings.gravity));
+  double mass = 0.0;
+  for_each_row(s, true, [&](const SoftRow& row) {
+    mass += double(entry_of(s, row.member).body.particles.mass[row.particle]);
+  });
+  return mass * fall * fall;
+}
+
 void solve_contacts_in_rounds(SoftSolve& s) {
+  const double wanted = kContactTolerance * energy_of_fall(s);
   for (int round = 0; round < kRounds; ++round) {
     for_each_row(s, true, [&](SoftRow& row) {
       row.step = {};
@@ -313,8 +338,10 @@ void solve_contacts_in_rounds(SoftSolve& s) {
     });
     clear_tried(s, true);
     for (int n = 0; n < kSweeps; ++n) sweep_contacts(s);
+    const double slope = slope_of(s);
+    if (!(slope > wanted)) return;
     respond_to_steps(s, true);
-    take_steps(s, true, best_share(s));
+    take_steps(s, true, best_share(s, slope));
   }
 }
 
@@ -322,13 +349,16 @@ void solve_contacts_in_rounds(SoftSolve& s) {
 
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   scratch.slots.clear(), scratch.touched.clear();
-  store.ids.for_each_live([&](std::uint32_t slot) { scratch.slots.push_back(slot); });
+  store.ids.for_each_live([&](std::uint32_t slot) {
+    if (store.entries[slot].is_awake()) scratch.slots.push_back(slot);
+  });
   while (scratch.works.size() < store.entries.size()) scratch.works.push_back(std::make_unique<SoftWork>());
   // Bodies are marked, and then listed in order.
   const auto touch = [&](std::int32_t body) {
     if (moves(w, body)) w.bodies.flags[std::size_t(body)].constraint_use = kPoseRead;
   };
   store.for_each([&](const SoftEntry& entry) {
+    if (!entry.is_awake()) return;
     for (const SoftContact& contact : entry.contacts) touch(contact.body);
     for (const SoftAttachment& attachment : entry.attachments) touch(attachment.body);
   });
@@ -341,7 +371,7 @@ void make_soft_rows(SoftSolve& s) {
   SoftScratch& scratch = *s.scratch;
   const RigidWorld& w = *s.w;
   scratch.rows.clear();
-  scratch.changes.resize(scratch.touched.size());
+  scratch.changes.resize(scratch.touched.size()), scratch.pending.resize(scratch.touched.size());
   for (std::uint32_t m = 0; m < s.members.size(); ++m) {
     SoftEntry& entry = entry_of(s, m);
     SoftWork& work = work_of(s, m);
@@ -394,12 +424,13 @@ void warm_start_soft_rows(SoftSolve& s, int, int) {
       const SoftAttachment& attachment = entry_of(s, row.member).attachments[row.source];
       row.arm = rotate(orientation_now(*s.w, row.body), attachment.local);
     }
-    push_body(*s.w, row, -row.impulse);
+    push_body(*s.w, row, (-1.0f / float(s.parts)) * row.impulse);
   }
 }
 
 void solve_soft_rows(SoftSolve& s, int, int) {
   if (s.scratch->rows.empty()) return;
+  for (VelocityChange& pending : s.scratch->pending) pending = {};
   for (SoftRow& row : s.scratch->rows) prepare_row(s, row);
   bool any_attached = false, any_contact = false;
   for (const SoftRow& row : s.scratch->rows) (row.is_contact ? any_contact : any_attached) = true;

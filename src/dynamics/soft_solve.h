@@ -9,7 +9,11 @@
 // taken that minimises the energy of the coupled system, found from the true response. A round never makes the system worse, whatever masses
 // and stiffnesses meet.
 //
-// The impulses of a half-step are the start of the next: they act on vertices as forces from outside, so that they spread through the
+// Soft matter moves once in a whole sub-step, bodies in each of its half-steps. A vertex gets the impulse of a row at once; a body gets an
+// equal part of it in each half-step: the first when the row is solved, the others as the change by contacts, which starts the solve of
+// every half-step anew. So both get the same momentum.
+//
+// The impulses of a sub-step are the start of the next: they act on vertices as forces from outside, so that they spread through the
 // whole body exactly, and on bodies as the change by contacts does.
 //
 // In: contacts and attachments of a step, bodies, particles. Out: velocities of both, and impulses.
@@ -67,7 +71,8 @@ struct SoftScratch {
   Array<std::uint32_t> touched;  // bodies that move and are touched or held by soft matter, ascending
   Array<std::uint32_t> slots;    // of all there are
   Array<SoftRow> rows;
-  Array<VelocityChange> changes;  // of touched bodies, by the impulses that are tried
+  // Of touched bodies: the change by the impulses that are tried; what the other half-steps of the sub-step are to bring.
+  Array<VelocityChange> changes, pending;
 };
 
 // The context of the stages below.
@@ -77,7 +82,8 @@ struct SoftSolve {
   SoftScratch* scratch = nullptr;
   const SoftKernels* kernels = nullptr;
   std::span<const std::uint32_t> members{};  // slots; empty: the batch has no soft matter
-  float h = 0.0f;                            // s, of a half-step
+  float h = 0.0f;                            // s, of a sub-step of soft matter
+  int parts = 1;                             // half-steps of bodies in it
   float warm_scale = 0.0f;                   // of the impulses of the last step
   double time = 0.0;                         // s, when the step began
 };

@@ -252,11 +252,13 @@ struct HalfStepping {
   int count = 0;
   float h = 0.0f;  // s, duration of each
   float warm_scale = 0.0f;
+  int parts = 1;  // half-steps of a sub-step
 };
 
 HalfStepping plan_half_steps(RigidWorld& w, float seconds, bool by_rows) {
   HalfStepping plan;
-  plan.count = by_rows ? w.settings.substeps : kHalfStepsPerSubstep * w.settings.substeps;
+  plan.parts = by_rows ? 1 : kHalfStepsPerSubstep;
+  plan.count = plan.parts * w.settings.substeps;
   plan.h = seconds / float(plan.count);
   plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
   // Pieces of a step up to an impact may be very short. What one of these leaves is mostly rounding.
@@ -332,7 +334,8 @@ void add_soft(BatchContext& batch, SoftStore& soft, SoftScratch& scratch, const 
                 .scratch = &scratch,
                 .kernels = &select_soft_kernels(batch.kernels.width),
                 .members = scratch.slots,
-                .h = plan.h,
+                .h = float(plan.parts) * plan.h,
+                .parts = plan.parts,
                 .warm_scale = plan.warm_scale,
                 .time = batch.w.now};
   make_soft_rows(batch.soft);
@@ -421,8 +424,9 @@ void solve_step(RigidWorld& w, SoftStore& soft, SolveScratch& scratch, Arena& ar
   const bool shared = may_share_batches(w, tasks);
   begin_workers(scratch, shared ? std::size_t(tasks.worker_count()) : 0);
   const ArenaScope scope(arena);
+  scratch.soft.slots.clear(), scratch.soft.touched.clear();
   if (!soft.empty()) gather_soft(w, soft, scratch.soft);
-  const std::span<const std::uint32_t> united = soft.empty() ? std::span<const std::uint32_t>{} : scratch.soft.touched.view();
+  const std::span<const std::uint32_t> united = scratch.soft.touched.view();
   const IslandBatches all = find_batches(w, united, arena, tasks, batch_size(tasks.worker_count(), shared));
   const auto describe = [&](const IslandBatch& members, BatchScratch& own) {
     return describe_batch(w, own, kernels, members, all.local_index, seconds, plan);
@@ -438,7 +442,7 @@ void solve_step(RigidWorld& w, SoftStore& soft, SolveScratch& scratch, Arena& ar
     if (has_soft) keep_soft_rows(batch.soft);
   };
   // Soft matter that touches no moving body has a batch of its own.
-  if (!soft.empty() && all.united < 0) solve_together({}, true);
+  if (!scratch.soft.slots.empty() && all.united < 0) solve_together({}, true);
   for (std::size_t i = 0; i < all.batches.size(); ++i) {
     const bool has_soft = int(i) == all.united;
     if (!shared || !all.batches[i].is_small || has_soft) solve_together(all.batches[i], has_soft);

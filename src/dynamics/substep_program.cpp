@@ -36,17 +36,30 @@ void add_relaxation_of_simd(ProgramBuilder& p, bool are_prepared, bool last) {
   if (!are_prepared && last) p.simd_articulations<&Simd::prepare, &Simd::end_step>();
 }
 
+// A fused batch before the contacts of the first half-step, and after those of each.
+void add_first_fused(ProgramBuilder& p) {
+  p.fused<&FusedRun::prepare, &FusedRun::prepare_joints, &FusedRun::apply_forces,
+          &FusedRun::compute_joint_bias>();
+  p.contacts<warm_start_contacts>();
+  p.fused<&FusedRun::add_first_contact_change, &FusedRun::solve_joints_first>();
+}
+void add_fused_after_contacts(ProgramBuilder& p, bool last) {
+  if (last)
+    return p.fused<&FusedRun::add_contact_change, &FusedRun::solve_joints_after_contacts,
+                   &FusedRun::integrate_positions, &FusedRun::prepare_joints, &FusedRun::relax_joints_last,
+                   &FusedRun::finish>();
+  p.fused<&FusedRun::add_contact_change, &FusedRun::solve_joints_after_contacts,
+          &FusedRun::integrate_positions, &FusedRun::prepare_joints, &FusedRun::relax_joints,
+          &FusedRun::apply_forces_and_warm_start, &FusedRun::solve_joints>();
+}
+
 // One half-step: forces, warm start, joints, contacts, positions, relaxation. Kinds without blocks get no line. In a fused batch all stages
 // from the contacts of one half-step to those of the next are one line, run by run (dynamics/fused_stages.h).
-void add_half_step(ProgramBuilder& p, bool first, bool last) {
+void add_half_step(ProgramBuilder& p, int half_step, int count) {
+  const bool first = half_step == 0, last = half_step + 1 == count;
   const bool fused = p.is_fused(), has_swept = p.has_swept_joints(), has_joints = p.has_joints();
   const bool warm_start_with_forces = !first && p.can_warm_start_with_forces();
-  if (fused && first) {
-    p.fused<&FusedRun::prepare, &FusedRun::prepare_joints, &FusedRun::apply_forces,
-            &FusedRun::compute_joint_bias>();
-    p.contacts<warm_start_contacts>();
-    p.fused<&FusedRun::add_first_contact_change, &FusedRun::solve_joints_first>();
-  }
+  if (fused && first) add_first_fused(p);
   if (!fused) {
     // Forces, and restitution of points that meet in this half-step.
     p.field_bodies<record_field_velocities>();
@@ -55,7 +68,7 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
     p.coupling_springs<apply_spring_impulses>();
     if (warm_start_with_forces) p.bodies<apply_forces_and_warm_start>();
     if (!warm_start_with_forces) p.bodies<apply_forces>();
-    p.soft_members<begin_soft_members>();
+    if (p.begins_soft(half_step)) p.soft_members<begin_soft_members>();
     p.impacts<apply_contact_restitution>();
     // Warm start. Joints come before contacts, so that their impulses are not counted as contact change.
     p.all_joints<compute_second_order_bias>();
@@ -85,18 +98,11 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
   if (first) p.row_islands<solve_row_islands_first>();
   if (!first) p.row_islands<solve_row_islands>();
   p.contacts<solve_contacts>();
-  p.soft_rows<solve_soft_rows>();
+  if (p.begins_soft(half_step)) p.soft_rows<solve_soft_rows>();
   if (first || last) p.resting_trees<solve_resting_trees>();
   if (first) p.resting_structures<solve_resting_structures_first>();
   if (last) p.resting_structures<solve_resting_structures_last>();
-  if (fused && last)
-    return p.fused<&FusedRun::add_contact_change, &FusedRun::solve_joints_after_contacts,
-                   &FusedRun::integrate_positions, &FusedRun::prepare_joints, &FusedRun::relax_joints_last,
-                   &FusedRun::finish>();
-  if (fused)
-    return p.fused<&FusedRun::add_contact_change, &FusedRun::solve_joints_after_contacts,
-                   &FusedRun::integrate_positions, &FusedRun::prepare_joints, &FusedRun::relax_joints,
-                   &FusedRun::apply_forces_and_warm_start, &FusedRun::solve_joints>();
+  if (fused) return add_fused_after_contacts(p, last);
   // Articulations are solved again, so that their joints come last.
   if (has_joints) p.measured_bodies<add_contact_change>();
   p.joint_islands<begin_energy_gain>();
@@ -107,7 +113,7 @@ void add_half_step(ProgramBuilder& p, bool first, bool last) {
   if (has_joints) p.bodies<integrate_positions>();
   if (!has_joints) p.bodies<add_contact_change_and_integrate>();
   p.spinning_bodies<integrate_fast_spinning>();
-  p.soft_members<finish_soft_members>();
+  if (p.begins_soft(half_step + 1)) p.soft_members<finish_soft_members>();
   p.impacts<apply_delayed_contact_restitution>();
   // Joints are relaxed at the present poses, so that no velocity stays from the bias.
   p.stiffened_bodies<stiffen_bodies>();
@@ -160,7 +166,7 @@ void run_substeps(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   batch.motion.measured_blocks = count_blocks(int(count_measured(batch)), batch.kernels.width);
   ProgramBuilder program(batch, half_steps, arena);
   add_preparation(program);
-  for (int i = 0; i < half_steps; ++i) add_half_step(program, i == 0, i + 1 == half_steps);
+  for (int i = 0; i < half_steps; ++i) add_half_step(program, i, half_steps);
   add_completion(program);
   run_program(tasks, program.stages());
 }
