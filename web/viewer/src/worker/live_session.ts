@@ -24,7 +24,7 @@ import { Looks } from './looks';
 import { Past } from './past';
 import type { SceneText } from './scene_source';
 import type { Session } from './session';
-import { describeSoft, nearestVertex, readSoftVertices, softKindName } from './softs';
+import { describeSoft, readSoftVertices, softKindName } from './softs';
 import { throwableShape } from './throwables';
 import { readFlags, readLinks, readOverlays, readRows, readStats, reportOn, withNames } from './world_reader';
 
@@ -195,7 +195,6 @@ export class LiveSession implements Session {
     while (this.appliedHere < planned.length) this.do(planned[this.appliedHere++]!);
     const begin = performance.now();
     try {
-      this.hand.move(this.scene, this.settings.timeStep);
       this.scene.step();
     } catch (error) {
       this.problem = (error as Error).message;
@@ -266,8 +265,7 @@ export class LiveSession implements Session {
   // What the scene holds fast stays so.
   private grabSoft(id: SoftId, { key, at }: Extract<Command, { do: 'grab_soft' }>): void {
     if (!id || !this.scene.softExists(id)) return;
-    const vertex = nearestVertex(this.scene, id, this.inWorld(at), new Set(this.scene.softHeld[key]));
-    if (vertex >= 0) this.hand.grabVertex(this.scene, id, vertex);
+    this.hand.grabSoft(this.scene, id, this.inWorld(at), new Set(this.scene.softHeld[key]), 0);
   }
 
   // What sleeps does not feel gravity change by itself.

@@ -26,17 +26,3 @@ export function readSoftVertices(world: World, ids: ArrayLike<SoftId>, origin: V
   }
   return out;
 }
-
-// The vertex that is nearest to a place in the world, of those that are not held already; -1 if all are.
-export function nearestVertex(world: World, id: SoftId, [px, py, pz]: Vec3, held: ReadonlySet<number>): number {
-  const { x, y, z } = world.vertices(id);
-  let best = -1;
-  let least = Infinity;
-  for (let i = 0; i < x.length; i++) {
-    const distance = (x[i]! - px) ** 2 + (y[i]! - py) ** 2 + (z[i]! - pz) ** 2;
-    if (distance >= least || held.has(i)) continue;
-    least = distance;
-    best = i;
-  }
-  return best;
-}
