@@ -36,12 +36,26 @@ void look_at_links(const World& world, const Scene* scene, Sight& out) {
   }
 }
 
+void look_at_softs(const World& world, Sight& out) {
+  std::vector<SoftId> ids(world.softs({}));
+  world.softs(ids);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const SoftInfo info = world.soft_info(ids[i]);
+    const SoftVertices vertices = world.vertices(ids[i]);
+    out.softs.push_back({ids[i], info.kind, info.radius, world.soft_triangles(ids[i]), out.vertices.size(),
+                         vertices.size(), automatic_color(BodyType::dynamic, i)});
+    for (std::size_t k = 0; k < vertices.size(); ++k) out.vertices.push_back(vertices.position(k));
+  }
+}
+
 }  // namespace
 
 void look_at(const World& world, const Scene* scene, std::span<const BodyId> bodies, Sight& out) {
   out.bodies.clear();
   out.shapes.clear();
   out.links.clear();
+  out.softs.clear();
+  out.vertices.clear();
   out.down = normalized(world.gravity(), Vec3{0, -1, 0});
   const BodyColumns all = world.bodies();
   for (std::size_t i = 0; i < all.ids.size(); ++i) {
@@ -61,6 +75,7 @@ void look_at(const World& world, const Scene* scene, std::span<const BodyId> bod
     }
   }
   look_at_links(world, scene, out);
+  look_at_softs(world, out);
 }
 
 }  // namespace gyre

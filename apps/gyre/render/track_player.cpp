@@ -26,6 +26,13 @@ class TrackPlayer : public Player {
                               plane ? kGroundColor : automatic_color(model.type, i), shape.sensor});
       }
     }
+    for (std::size_t i = 0; i < frame.soft_ids.size(); ++i) {
+      const TrackSoft& soft = track_.softs()[frame.softs[i]];
+      const std::span<const DVec3> vertices = track_.soft_vertices(i);
+      out.softs.push_back({frame.soft_ids[i], soft.kind, soft.radius, soft.triangles, out.vertices.size(),
+                           vertices.size(), automatic_color(BodyType::dynamic, i)});
+      out.vertices.insert(out.vertices.end(), vertices.begin(), vertices.end());
+    }
     apply_track_colors(track_, out);
   }
   std::optional<SceneView> view() const override { return view_of_track(track_); }
@@ -79,6 +86,10 @@ void apply_track_colors(const PoseTrack& track, Sight& sight) {
     for (std::size_t k = 0; k < min(colors.size(), body.shape_count); ++k) {
       sight.shapes[body.first_shape + k].color = {colors[k].red, colors[k].green, colors[k].blue};
     }
+  }
+  for (SeenSoft& soft : sight.softs) {
+    const std::span<const TrackColor> colors = track.soft_label(soft.id).colors;
+    if (!colors.empty()) soft.color = {colors[0].red, colors[0].green, colors[0].blue};
   }
 }
 
