@@ -1,5 +1,5 @@
 // Scene files: the engine's own reader and runner.
-import { type BodyId, type JointId, type RecordOptions, type SoftId, type SteppingInput, type Vec3, writeStepping } from './generated.js';
+import { type BodyId, type JointId, type RecordOptions, type SteppingInput, type Vec3, writeStepping } from './generated.js';
 import type { Runtime } from './runtime.js';
 import type { Bytes, VectorInput } from './stream.js';
 import { type Recorder, World } from './world.js';
@@ -47,13 +47,6 @@ export class Scene extends World {
   readonly bodyNames: readonly string[];
   readonly sceneJoints: readonly JointId[];
   readonly jointNames: readonly string[];
-  /** Ropes, cloths and solids, in the order of the scene. */
-  readonly sceneSofts: readonly SoftId[];
-  readonly softNames: readonly string[];
-  /** Of each of them: its colour as 0xrrggbb. */
-  readonly softColors: readonly number[];
-  /** Of each of them: the vertices that the scene pins, or attaches to bodies. */
-  readonly softHeld: readonly (readonly number[])[];
   /** Of each shape of each body, in the order of the scene: the name of its material, empty if it has none. */
   readonly materialNames: readonly (readonly string[])[];
   /** Of each shape of each body: its colour as 0xrrggbb. What the scene leaves open has a colour from a fixed cycle. */
@@ -90,13 +83,6 @@ export class Scene extends World {
     this.view = looks.boolean()
       ? { eye: looks.vector(3) as Vec3, target: looks.vector(3) as Vec3, fieldOfView: looks.number() }
       : undefined;
-    runtime.begin();
-    const softs = runtime.call('gyre_scene_softs', pointer);
-    this.sceneSofts = Array.from(softs.array(Float64Array, 1));
-    const all = this.sceneSofts.map(() => ({ name: softs.text(), color: softs.number(), held: softs.fixed(softs.number(), () => softs.number()) }));
-    this.softNames = all.map(({ name }) => name);
-    this.softColors = all.map(({ color }) => color);
-    this.softHeld = all.map(({ held }) => held);
   }
 
   /** @internal */

@@ -80,7 +80,6 @@ export class LiveSession implements Session {
     this.origin = this.middle();
     this.settings = this.readSettings(threads, asked.simdWidth ?? 0);
     this.scene.sceneBodies.forEach((id) => this.keys.key(id));
-    this.scene.sceneSofts.forEach((id) => this.softKeys.key(id));
     this.past.keep({ step: 0, bytes: this.scene.saveSnapshot(), hand: null });
   }
 
@@ -262,10 +261,9 @@ export class LiveSession implements Session {
     return worldPart(this.scene.bodies().ids[0] ?? this.scene.softs()[0] ?? 0);
   }
 
-  // What the scene holds fast stays so.
-  private grabSoft(id: SoftId, { key, at }: Extract<Command, { do: 'grab_soft' }>): void {
+  private grabSoft(id: SoftId, { at }: Extract<Command, { do: 'grab_soft' }>): void {
     if (!id || !this.scene.softExists(id)) return;
-    this.hand.grabSoft(this.scene, id, this.inWorld(at), new Set(this.scene.softHeld[key]), 0);
+    this.hand.grabSoft(this.scene, id, this.inWorld(at), new Set(), 0);
   }
 
   // What sleeps does not feel gravity change by itself.
@@ -350,8 +348,8 @@ export class LiveSession implements Session {
   private describeSoft(id: SoftId): SoftDescription {
     const key = this.softKeys.key(id);
     const { scene } = this;
-    const name = scene.softNames[key] ?? `${softKindName(scene.softInfo(id).kind)} ${key + 1}`;
-    return describeSoft(scene, id, { key, name, color: scene.softColors[key] ?? null });
+    const name = `${softKindName(scene.softInfo(id).kind)} ${key + 1}`;
+    return describeSoft(scene, id, { key, name, color: null });
   }
 
   private describeBody(id: BodyId, key: number): BodyDescription {

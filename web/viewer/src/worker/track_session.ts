@@ -12,6 +12,7 @@ import {
   type OverlayName,
   type Quat,
   type SceneDescription,
+  type SoftDescription,
   type Stats,
   type Structure,
   type Vec3,
@@ -37,6 +38,7 @@ interface SceneNote {
 
 export class TrackSession implements Session {
   private readonly keys = new Keys();
+  private readonly softKeys = new Keys();
   private readonly note: SceneNote;
   private readonly sent = new Map<number, number>(); // key to model, as the page knows it
   private set = -1;
@@ -86,9 +88,9 @@ export class TrackSession implements Session {
   }
 
   private bounds(): Box {
-    const { ids, models, poses } = this.at;
+    const { ids, models, poses, softVertices } = this.at;
     const bodies = Array.from(ids, (id, row) => this.describeBody(id, 0, models[row]!));
-    return extent(bodies, poses, (surface) => this.source.vertices(surface), new Float32Array(0));
+    return extent(bodies, poses, (surface) => this.source.vertices(surface), softVertices);
   }
 
   advance(steps: number, _commands: readonly Command[]): Promise<FrameMessage> {
@@ -103,7 +105,7 @@ export class TrackSession implements Session {
   }
 
   frame(fresh = false): FrameMessage {
-    const { ids, models, awake, poses, time } = this.at;
+    const { ids, models, awake, poses, time, softIds, softVertices } = this.at;
     const world = this.world([...this.overlays].some((name) => NEEDS_WORLD.has(name)));
     const structure = this.restructure(world, fresh);
     const count = ids.length;
@@ -123,8 +125,8 @@ export class TrackSession implements Session {
         poses: poses.slice(), // the page takes it over
         velocities: world ? world.velocities() : new Float32Array(6 * count),
         flags,
-        softVertices: new Float32Array(0),
-        stats: world ? world.stats() : { ...NO_STATS, bodies: count, awake: awakeCount },
+        softVertices: softVertices.slice(),
+        stats: world ? world.stats() : { ...NO_STATS, bodies: count, awake: awakeCount, softs: softIds.length, softVertices: softVertices.length / 3 },
         measured: world !== null,
         links: world ? world.links() : new Float32Array(0),
         overlays: world ? world.overlays(this.overlays) : {},
@@ -154,7 +156,17 @@ export class TrackSession implements Session {
       this.sent.set(key, model);
       added.push({ ...this.describeBody(ids[row]!, key, model), ...(world ? world.mass(ids[row]!) : {}) });
     });
-    return { number: ++this.structure, keys, added, surfaces: this.source.takeSurfaces(), softs: [] };
+    return { number: ++this.structure, keys, added, surfaces: this.source.takeSurfaces(), softs: this.describeSofts() };
+  }
+
+  private describeSofts(): SoftDescription[] {
+    const { softIds, softs } = this.at;
+    return Array.from(softIds, (id, i) => {
+      const key = this.softKeys.key(id);
+      const surface = this.source.soft(softs[i]!);
+      const { name, colors } = this.source.softLabel(id);
+      return { ...surface, key, name: name || `${surface.kind} ${key + 1}`, color: colors[0] ?? null };
+    });
   }
 
   private nameOf(id: number): string {
