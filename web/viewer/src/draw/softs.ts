@@ -121,6 +121,10 @@ export class Softs {
     else color.set(soft.color);
   }
 
+  named(name: string): DrawnSoft | undefined {
+    return [...this.items.values()].find(({ soft }) => soft.name === name);
+  }
+
   // What can be picked.
   get toPick(): DrawnSoft[] {
     for (const item of this.items.values()) {
