@@ -48,13 +48,13 @@ export class Picker {
     return best;
   }
 
-  // What lies before everything that pick() finds.
-  pickSoft(softs: Softs, bodies: Bodies, x: number, y: number): PickedSoft | null {
+  // Soft matter that is nearer than `limit`.
+  pickSoft(softs: Softs, x: number, y: number, limit = Infinity): PickedSoft | null {
+    this.aim(x, y);
     let best: PickedSoft | null = null;
-    const body = this.pick(bodies, x, y); // aims, too
     for (const drawn of softs.toPick) {
       const hit = drawn.soft.kind === 'rope' ? this.onRope(drawn) : this.caster.intersectObject(drawn.mesh, false)[0];
-      if (hit && hit.distance < (best ?? body ?? { distance: Infinity }).distance) best = { key: drawn.soft.key, point: hit.point.clone(), distance: hit.distance };
+      if (hit && hit.distance < (best?.distance ?? limit)) best = { key: drawn.soft.key, point: hit.point.clone(), distance: hit.distance };
     }
     return best;
   }

@@ -58,9 +58,9 @@ export class Pointer {
   private under(x: number, y: number): { key: number | null; hold: Extract<Command, { at: unknown; do: 'grab' | 'grab_soft' }> | null } {
     const { picker, bodies, softs, playback } = this.viewer;
     const live = store.scene.peek()?.live === true;
-    const soft = picker.pickSoft(softs, bodies, x, y);
-    if (soft) return { key: null, hold: live ? { do: 'grab_soft', key: soft.key, at: soft.point.toArray() } : null };
     const body = picker.pick(bodies, x, y);
+    const soft = picker.pickSoft(softs, x, y, body?.distance);
+    if (soft) return { key: null, hold: live ? { do: 'grab_soft', key: soft.key, at: soft.point.toArray() } : null };
     if (!body) return { key: null, hold: null };
     const movable = live && (playback.frame!.flags[body.row]! & BodyFlag.dynamic) !== 0;
     return { key: body.key, hold: movable ? { do: 'grab', key: body.key, at: body.point.toArray() } : null };
