@@ -11,6 +11,7 @@ const STRIPE = 12; // radii of a rope from one stripe to the next
 
 export interface SoftMesh {
   readonly geometry: BufferGeometry;
+  readonly edge: number; // m, the mean length of its edges when it was first seen
   // `vertices`: 3 each, of this rope, cloth or solid alone.
   fill(vertices: Float32Array): void;
 }
@@ -29,6 +30,7 @@ function dynamic(count: number, width: number): BufferAttribute {
 
 class Skin implements SoftMesh {
   readonly geometry = new BufferGeometry();
+  readonly edge: number;
   private readonly sources: Uint32Array; // which vertex each drawn vertex is at
   private readonly corners: Uint32Array; // three drawn vertices a triangle
 
@@ -40,6 +42,7 @@ class Skin implements SoftMesh {
     this.geometry.setAttribute('position', dynamic(this.sources.length, 3));
     this.geometry.setAttribute('normal', dynamic(this.sources.length, 3));
     this.fill(vertices);
+    this.edge = meanEdge(triangles, vertices);
   }
 
   fill(vertices: Float32Array): void {
@@ -87,6 +90,12 @@ class Skin implements SoftMesh {
   }
 }
 
+function meanEdge(triangles: Uint32Array, vertices: Float32Array): number {
+  let sum = 0;
+  for (let i = 0; i < triangles.length; i++) sum += distance(vertices, triangles[i]!, triangles[i % 3 === 2 ? i - 2 : i + 1]!);
+  return sum / Math.max(triangles.length, 1);
+}
+
 function faceNormals(triangles: Uint32Array, p: Float32Array): Float32Array {
   const out = new Float32Array(triangles.length);
   for (let i = 0; i < triangles.length; i += 3) {
@@ -125,6 +134,7 @@ const product = (v: Float32Array, a: number, b: number): number => v[a]! * v[b]!
 // little as it can, so that the tube does not twist.
 class Tube implements SoftMesh {
   readonly geometry = new BufferGeometry();
+  readonly edge: number;
   private readonly rings: number;
 
   constructor(
@@ -147,6 +157,7 @@ class Tube implements SoftMesh {
     this.geometry.setAttribute('normal', dynamic(count, 3));
     this.geometry.setAttribute('uv', new BufferAttribute(stripes(soft, vertices), 2));
     this.fill(vertices);
+    this.edge = distance(vertices, 0, 1);
   }
 
   fill(vertices: Float32Array): void {

@@ -17,9 +17,9 @@ interface Item extends DrawnSoft {
   sphereIsOld: boolean;
 }
 
-// The other side of a cloth is a little darker; a rope has a stripe around it. Without textures, either lets the eye see a turn.
+// The back of a cloth is paler, as in the pictures of `gyre render`; a rope has a stripe around it. Without textures, either lets the eye see a turn.
 const FRAGMENT: Record<SoftKind, string> = {
-  cloth: 'diffuseColor.rgb *= gl_FrontFacing ? 1.0 : 0.72;',
+  cloth: 'if (!gl_FrontFacing) diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.73), 0.45);',
   rope: /* glsl */ `
     float turn = fract(vUv.x + vUv.y);
     float blur = max(fwidth(vUv.y), 1e-4);
@@ -28,12 +28,26 @@ const FRAGMENT: Record<SoftKind, string> = {
   solid: '',
 };
 
-function material(kind: SoftKind, quality: Quality): MeshStandardMaterial | MeshLambertMaterial {
+// Only the vertices of a cloth keep away from bodies: its flat triangles cut a little off what is round below them. So that the round does not
+// show through, a cloth is this part of its mean edge nearer to the eye than it is, in depth alone.
+const NEARER = 0.06;
+const DEPTH = /* glsl */ `
+  #include <project_vertex>
+  vec4 gyreNearer = projectionMatrix * (mvPosition + vec4(0.0, 0.0, gyreNear, 0.0));
+  gl_Position.z = gyreNearer.z / gyreNearer.w * gl_Position.w;
+`;
+
+function material(kind: SoftKind, quality: Quality, edge: number): MeshStandardMaterial | MeshLambertMaterial {
   const made = quality === 'high' ? new MeshStandardMaterial({ roughness: kind === 'solid' ? 0.45 : 0.85, metalness: 0 }) : new MeshLambertMaterial();
   if (kind === 'cloth') made.side = DoubleSide;
   if (kind === 'rope') made.defines = { ...made.defines, USE_UV: '' };
   made.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace('#include <color_fragment>', `#include <color_fragment>\n${FRAGMENT[kind]}`);
+    if (kind !== 'cloth') return;
+    shader.uniforms.gyreNear = { value: NEARER * edge };
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', '#include <common>\nuniform float gyreNear;')
+      .replace('#include <project_vertex>', DEPTH);
   };
   made.customProgramCacheKey = () => `gyre ${kind} ${quality}`;
   return made;
@@ -75,9 +89,9 @@ export class Softs {
   setQuality(quality: Quality): void {
     if (quality === this.quality) return;
     this.quality = quality;
-    for (const { soft, mesh } of this.items.values()) {
+    for (const { soft, mesh, shape } of this.items.values()) {
       const before = mesh.material as MeshStandardMaterial | MeshLambertMaterial;
-      const next = material(soft.kind, quality);
+      const next = material(soft.kind, quality, shape.edge);
       next.color.copy(before.color);
       mesh.material = next;
       before.dispose();
@@ -107,7 +121,7 @@ export class Softs {
 
   private add(soft: SoftDescription, first: number, vertices: Float32Array): void {
     const shape = softMesh(soft, vertices);
-    const mesh = new Mesh(shape.geometry, material(soft.kind, this.quality));
+    const mesh = new Mesh(shape.geometry, material(soft.kind, this.quality, shape.edge));
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.frustumCulled = false;
     this.items.set(soft.key, { soft, first, vertices, mesh, shape, sphereIsOld: true });
