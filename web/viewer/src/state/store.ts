@@ -14,6 +14,9 @@ export interface SceneEntry {
   thumbnail: string | null; // under scenes/
   bodies: number;
   joints: number;
+  ropes: number;
+  cloths: number;
+  softBodies: number;
 }
 
 export interface Notice {
