@@ -67,6 +67,19 @@ void add_rope(const SeenSoft& rope, const std::vector<Vec3>& vertices, float rad
   add_quads(list, first, std::uint32_t(tube.size()) / (kSides + 1), kSides + 1);
 }
 
+void add_mesh(const ShapeMesh& mesh, SceneColor color, Paint paint, DrawList& list) {
+  const auto first = std::uint32_t(list.vertices.size());
+  for (const MeshVertex& vertex : mesh.vertices)
+    list.vertices.push_back({vertex.position, vertex.normal, {color.red, color.green, color.blue}, paint});
+  for (const std::uint32_t index : mesh.indices) list.solid.push_back(first + index);
+}
+
+// The back of a cloth is paler than its front.
+SceneColor back_of(SceneColor color) {
+  const auto pale = [](std::uint8_t part) { return std::uint8_t((2 * int(part) + 3 * 222) / 5); };
+  return {pale(color.red), pale(color.green), pale(color.blue)};
+}
+
 void add_soft(const Sight& sight, const SeenSoft& soft, const Subject& subject, DrawList& list) {
   std::vector<Vec3> vertices;
   for (const DVec3& vertex : sight.vertices_of(soft)) vertices.push_back(difference(vertex, subject.origin));
@@ -75,16 +88,14 @@ void add_soft(const Sight& sight, const SeenSoft& soft, const Subject& subject, 
     add_rope(soft, vertices, max(soft.radius, 0.15f * subject.rod_radius), list);
     return;
   }
-  const bool cloth = soft.kind == SoftKind::cloth;
-  const ShapeMesh mesh = soft_surface_mesh(vertices, soft.triangles, !cloth);
-  const auto first = std::uint32_t(list.vertices.size());
-  for (const MeshVertex& vertex : mesh.vertices) {
-    list.vertices.push_back({vertex.position,
-                             vertex.normal,
-                             {soft.color.red, soft.color.green, soft.color.blue},
-                             cloth ? Paint::cloth : Paint::matter});
+  if (soft.kind == SoftKind::solid) {
+    add_mesh(solid_mesh(vertices, soft.triangles), soft.color, Paint::matter, list);
+    return;
   }
-  for (const std::uint32_t index : mesh.indices) list.solid.push_back(first + index);
+  const ClothMesh mesh = cloth_mesh(vertices, soft.triangles, soft.radius);
+  add_mesh(mesh.front, soft.color, Paint::sheet, list);
+  add_mesh(mesh.back, back_of(soft.color), Paint::sheet, list);
+  add_mesh(mesh.rim, soft.color, Paint::matter, list);
 }
 
 std::uint8_t toned(std::uint8_t part, float tone) { return std::uint8_t(float(part) * tone + 0.5f); }

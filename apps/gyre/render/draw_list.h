@@ -21,7 +21,7 @@ enum class Paint : std::uint8_t {
   matter,  // shaded, casts shadows
   ground,  // a plane of the world: with a grid, fading into the background
   floor,   // put under a scene that has no plane: without a grid
-  cloth,   // as matter, but its back is paler
+  sheet,   // one side of a cloth: as matter, but dull, and not to be seen from behind
 };
 
 struct DrawVertex {

@@ -94,10 +94,9 @@ float grid(vec3 place, vec3 normal) {
 
 void main() {
   vec3 normal = normalize(world_normal);
-  vec3 own = albedo;
   if (!gl_FrontFacing) {
+    if (painted == 3u) discard;
     normal = -normal;
-    if (painted == 3u) own = mix(albedo, vec3(0.72, 0.70, 0.66), 0.55);
   }
   float towards_sun = max(dot(normal, sun_direction), 0.0);
   float towards_sky = max(dot(normal, sky_direction), 0.0);
@@ -105,7 +104,7 @@ void main() {
   // Directions are evenly spread over the half of all that lies above: twice the mean of the cosine is 1 for what faces up.
   float sky = towards_sky > 0.0 ? 2.0 * towards_sky * reaches(sky_map, sky_from_world, sky_texel, normal, sky_direction) : 0.0;
   vec3 light = sun * sun_color + sky * sky_color + (0.5 - 0.5 * normal.y) * bounce_color;
-  vec3 color = own * light;
+  vec3 color = albedo * light;
   if (painted == 0u || painted == 3u) {
     vec3 half_way = normalize(sun_direction + normalize(eye - world_position));
     float gloss = pow(max(dot(normal, half_way), 0.0), 60.0);

@@ -3,6 +3,9 @@
 
 #include "render/turning.h"
 
+#include <set>
+#include <utility>
+
 namespace gyre {
 
 std::vector<Vec3> smooth_line(std::span<const Vec3> line, int pieces) {
@@ -44,11 +47,55 @@ std::vector<TubePoint> capped_tube(const std::vector<Vec3>& line, float radius, 
   return out;
 }
 
-ShapeMesh soft_surface_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles,
-                            bool sharp_edges) {
+ShapeMesh solid_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles) {
   constexpr float kSharpCosine = 0.64f;
-  constexpr float kNever = -2.0f;
-  return smooth_mesh(vertices, triangles, sharp_edges ? kSharpCosine : kNever);
+  return smooth_mesh(vertices, triangles, kSharpCosine);
+}
+
+namespace {
+
+// Edges that only one triangle has, in its direction.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> rim_edges(std::span<const std::uint32_t> triangles) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    edges.insert({triangles[i], triangles[i % 3 == 2 ? i - 2 : i + 1]});
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> rim;
+  for (const auto& [a, b] : edges)
+    if (edges.count({b, a}) == 0) rim.push_back({a, b});
+  return rim;
+}
+
+}  // namespace
+
+ClothMesh cloth_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles, float radius) {
+  std::vector<Vec3> normals(vertices.size());
+  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
+    const std::uint32_t a = triangles[t], b = triangles[t + 1], c = triangles[t + 2];
+    const Vec3 area = cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
+    for (const std::uint32_t vertex : {a, b, c}) normals[vertex] = normals[vertex] + area;
+  }
+  ClothMesh mesh;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec3 normal = normalized(normals[i], Vec3{0, 1, 0});
+    mesh.front.vertices.push_back({vertices[i] + radius * normal, normal});
+    mesh.back.vertices.push_back({vertices[i] - radius * normal, -normal});
+  }
+  mesh.front.indices.assign(triangles.begin(), triangles.end());
+  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3)
+    mesh.back.indices.insert(mesh.back.indices.end(), {triangles[t], triangles[t + 2], triangles[t + 1]});
+  for (const auto& [a, b] : rim_edges(triangles)) {
+    const Vec3 along = vertices[b] - vertices[a];
+    const auto first = std::uint32_t(mesh.rim.vertices.size());
+    for (const std::uint32_t vertex : {a, b}) {
+      const MeshVertex &over = mesh.front.vertices[vertex], &under = mesh.back.vertices[vertex];
+      const Vec3 outward = normalized(cross(along, over.normal), over.normal);
+      mesh.rim.vertices.push_back({over.position, outward});
+      mesh.rim.vertices.push_back({under.position, outward});
+    }
+    mesh.rim.indices.insert(mesh.rim.indices.end(),
+                            {first, first + 1, first + 3, first, first + 3, first + 2});
+  }
+  return mesh;
 }
 
 }  // namespace gyre
