@@ -180,10 +180,11 @@ TEST_F(CommandLine, StatsHaveARowAStep) {
   EXPECT_EQ(lines[0],
             "step,time,step_ms,bodies,awake,pairs,contacts,max_penetration,kinetic_energy,potential_energy,"
             "elastic_energy,px,py,pz,"
-            "lx,ly,lz");
+            "lx,ly,lz,soft_elastic_energy,crossings,liquid_volume,liquid_particles,smoke_mass,max_divergence,"
+            "pressure_residual");
   EXPECT_EQ(lines[1].rfind("1,0.01,", 0), 0u);
   EXPECT_EQ(lines[7].rfind("7,0.07,", 0), 0u);
-  EXPECT_EQ(std::count(lines[7].begin(), lines[7].end(), ','), 16);
+  EXPECT_EQ(std::count(lines[7].begin(), lines[7].end(), ','), 23);
 }
 
 TEST_F(CommandLine, TheHashIsOneLineAndTheSameForAnyThreads) {
