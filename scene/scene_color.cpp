@@ -33,4 +33,20 @@ SceneColor resolved_color(const Scene& scene, std::size_t body, std::size_t shap
   return automatic_color(owner.def.type, body);
 }
 
+SceneColor resolved_color(const Scene& scene, SoftKind kind, std::size_t index) {
+  const SceneSoft* soft = nullptr;
+  std::size_t before = 0;  // of other kinds
+  if (kind == SoftKind::rope) {
+    if (index < scene.ropes.size()) soft = &scene.ropes[index];
+  } else if (kind == SoftKind::cloth) {
+    before = scene.ropes.size();
+    if (index < scene.cloths.size()) soft = &scene.cloths[index];
+  } else {
+    before = scene.ropes.size() + scene.cloths.size();
+    if (index < scene.soft_bodies.size()) soft = &scene.soft_bodies[index];
+  }
+  if (soft == nullptr) return automatic_color(BodyType::fixed, 0);
+  return soft->color ? *soft->color : automatic_color(BodyType::dynamic, before + index);
+}
+
 }  // namespace gyre

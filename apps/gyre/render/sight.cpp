@@ -36,14 +36,17 @@ void look_at_links(const World& world, const Scene* scene, Sight& out) {
   }
 }
 
-void look_at_softs(const World& world, Sight& out) {
+void look_at_softs(const World& world, const Scene* scene, Sight& out) {
   std::vector<SoftId> ids(world.softs({}));
   world.softs(ids);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const SoftInfo info = world.soft_info(ids[i]);
     const SoftVertices vertices = world.vertices(ids[i]);
+    // Ropes, cloths and soft bodies of a scene carry their number among their kind as user data.
+    const SceneColor color =
+        scene ? resolved_color(*scene, info.kind, info.user_data) : automatic_color(BodyType::dynamic, i);
     out.softs.push_back({ids[i], info.kind, info.radius, world.soft_triangles(ids[i]), out.vertices.size(),
-                         vertices.size(), automatic_color(BodyType::dynamic, i)});
+                         vertices.size(), color});
     for (std::size_t k = 0; k < vertices.size(); ++k) out.vertices.push_back(vertices.position(k));
   }
 }
@@ -75,7 +78,7 @@ void look_at(const World& world, const Scene* scene, std::span<const BodyId> bod
     }
   }
   look_at_links(world, scene, out);
-  look_at_softs(world, out);
+  look_at_softs(world, scene, out);
 }
 
 }  // namespace gyre

@@ -1,4 +1,4 @@
-// Ropes, cloths and solids on the page: drawn where they are, of recordings forward and back.
+// Ropes, cloths and solids on the page: drawn where they are, of recordings forward and back; in live scenes the mouse drags them.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { BodyType, load, sphere } from '../../../web/gyre-physics/dist/index.js';
@@ -32,7 +32,19 @@ for (let i = 0; i <= STEPS; i++) {
 const whole = Buffer.from(recorder.finish());
 gyre.close();
 
-const viewer = viewerTests({ files: { 'soft.gyrec': whole } });
+const scene = Buffer.from(JSON.stringify({
+  gyre_scene: 1,
+  name: 'soft',
+  bodies: [
+    { name: 'ground', type: 'static', shapes: [{ type: 'plane' }] },
+    { name: 'weight', position: [-2, 1, 0], mass: 1, shapes: [{ type: 'sphere', radius: 0.2 }] },
+  ],
+  ropes: [{ name: 'line', points: [[-2, 2, 0], [-2, 1.2, 0]], segments: 8, attach: [{ end: 0, body: 'world' }, { end: 1, body: 'weight' }] }],
+  cloths: [{ name: 'flag', grid: { size: [1.2, 0.8], cells: [12, 8] }, position: [0, 2, 0], pinned: [0, 12] }],
+  soft_bodies: [{ name: 'jelly', box: { half_extents: [0.4, 0.4, 0.4], cells: [3, 3, 3] }, position: [2, 0.4, 0] }],
+}));
+
+const viewer = viewerTests({ files: { 'soft.gyrec': whole, 'soft.gyre.json': scene } });
 
 test('a recording shows the vertices forward and back', async (t) => {
   const page = await viewer.open(t, 'file=/files/soft.gyrec&play=0&quality=low', { width: 640, height: 400 });
@@ -70,6 +82,44 @@ test('a cloth has its colour, and the picture follows its motion', async (t) => 
   await settled(page);
   assert.ok((await corner()).y > high.y + 20, 'the corner hangs lower');
   assert.ok(changed(before, await page.screenshot()) > 0.02, 'the picture stayed as it was');
+  viewer.noErrors(page);
+});
+
+const middleOf = (page, name) =>
+  page.evaluate((wanted) => {
+    const vertices = window.gyre.vertices(wanted);
+    const at = 3 * Math.floor(vertices.length / 6);
+    return vertices.slice(at, at + 3);
+  }, name);
+
+test('the mouse drags ropes, cloths and solids, and lets them go', async (t) => {
+  const page = await viewer.open(t, 'file=/files/soft.gyre.json&play=0&quality=low', { width: 800, height: 500 });
+  await page.evaluate(() => window.gyre.advance(20));
+  const pinned = await page.evaluate(() => window.gyre.vertices('flag').slice(0, 3));
+  for (const name of ['jelly', 'flag', 'line']) {
+    await settled(page);
+    const before = await middleOf(page, name);
+    const { x, y } = await page.evaluate((place) => window.gyre.onPage(...place), before);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 30, y - 60, { steps: 3 });
+    await settled(page);
+    await page.evaluate(() => window.gyre.advance(20));
+    const after = await middleOf(page, name);
+    assert.ok(after[1] > before[1] + 0.05, `${name} was pulled up from ${before[1]} m to ${after[1]} m`);
+    assert.ok((await page.evaluate(() => window.gyre.names())).includes('hand'));
+    await page.mouse.up();
+    await settled(page);
+    await page.evaluate(() => window.gyre.advance(1));
+    assert.deepEqual(await page.evaluate(() => window.gyre.names()), ['ground', 'weight']);
+  }
+  // What the scene pins is never taken hold of, so it is still there.
+  assert.deepEqual(await page.evaluate(() => window.gyre.vertices('flag').slice(0, 3)), pinned);
+  const last = await page.evaluate(() => window.gyre.step);
+  const hash = await page.evaluate(() => window.gyre.hash());
+  await page.evaluate(() => window.gyre.seek(30));
+  await page.evaluate((step) => window.gyre.seek(step), last);
+  assert.equal(await page.evaluate(() => window.gyre.hash()), hash);
   viewer.noErrors(page);
 });
 

@@ -80,6 +80,7 @@ export class LiveSession implements Session {
     this.origin = this.middle();
     this.settings = this.readSettings(threads, asked.simdWidth ?? 0);
     this.scene.sceneBodies.forEach((id) => this.keys.key(id));
+    this.scene.sceneSofts.forEach((id) => this.softKeys.key(id));
     this.past.keep({ step: 0, bytes: this.scene.saveSnapshot(), hand: null });
   }
 
@@ -261,9 +262,14 @@ export class LiveSession implements Session {
     return worldPart(this.scene.bodies().ids[0] ?? this.scene.softs()[0] ?? 0);
   }
 
-  private grabSoft(id: SoftId, { at }: Extract<Command, { do: 'grab_soft' }>): void {
-    if (!id || !this.scene.softExists(id)) return;
-    this.hand.grabSoft(this.scene, id, this.inWorld(at), new Set(), 0);
+  // What the scene holds stays held; the hand is strong enough for the bodies that hang there.
+  private grabSoft(id: SoftId, { key, at }: Extract<Command, { do: 'grab_soft' }>): void {
+    const { scene } = this;
+    if (!id || !scene.softExists(id)) return;
+    const holds = scene.softHolds[key] ?? [];
+    const loads = new Set(holds.map(({ body }) => body).filter((body) => body >= 0));
+    const load = [...loads].reduce((sum, body) => sum + scene.massProperties(scene.sceneBodies[body]!).mass, 0);
+    this.hand.grabSoft(scene, id, this.inWorld(at), new Set(holds.map(({ vertex }) => vertex)), load);
   }
 
   // What sleeps does not feel gravity change by itself.
@@ -348,8 +354,8 @@ export class LiveSession implements Session {
   private describeSoft(id: SoftId): SoftDescription {
     const key = this.softKeys.key(id);
     const { scene } = this;
-    const name = `${softKindName(scene.softInfo(id).kind)} ${key + 1}`;
-    return describeSoft(scene, id, { key, name, color: null });
+    const name = scene.softNames[key] ?? `${softKindName(scene.softInfo(id).kind)} ${key + 1}`;
+    return describeSoft(scene, id, { key, name, color: scene.softColors[key] ?? null });
   }
 
   private describeBody(id: BodyId, key: number): BodyDescription {
