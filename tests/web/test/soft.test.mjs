@@ -123,6 +123,22 @@ test('the mouse drags ropes, cloths and solids, and lets them go', async (t) => 
   viewer.noErrors(page);
 });
 
+test('a click on a cloth tells of it, and it can be removed', async (t) => {
+  const page = await viewer.open(t, 'file=/files/soft.gyre.json&play=0&quality=low', { width: 1280, height: 720 });
+  await settled(page);
+  const { x, y } = await page.evaluate((place) => window.gyre.onPage(...place), await middleOf(page, 'flag'));
+  await page.mouse.click(x, y);
+  await page.locator('.body-head h2').waitFor();
+  assert.equal(await page.locator('.body-head h2').innerText(), 'flag');
+  const text = await page.locator('.panel-body').innerText();
+  assert.match(text, /Vertices\s+117/);
+  assert.match(text, /Mass\s+[\d.]+ kg/);
+  await page.keyboard.press('Delete');
+  await page.waitForFunction(() => window.gyre.vertices('flag') === null);
+  assert.equal(await page.evaluate(() => window.gyre.stats.softs), 2);
+  viewer.noErrors(page);
+});
+
 // Of the picture, 0 to 255 each.
 async function color(page, x, y) {
   return page.evaluate(([px, py]) => {

@@ -205,6 +205,15 @@ export interface BodyReport {
   kinetic: number;
   words: string; // why it is awake or asleep, by the engine
 }
+export interface SoftReport {
+  key: number;
+  name: string;
+  kind: SoftKind;
+  vertices: number;
+  triangles: number; // of the surface
+  // Of a recording without a world behind it there is no more.
+  state: { awake: boolean; mass: number; kinetic: number; elastic: number; contacts: number } | null;
+}
 export type DoubleVec3 = [number, number, number];
 
 // ------------------------------------------------------------------------------------------------------------------ requests
@@ -224,6 +233,7 @@ export type Command =
   | { do: 'release' }
   | { do: 'throw'; what: Throwable; size: number; density: number; from: Vec3; velocity: Vec3 }
   | { do: 'remove'; key: number }
+  | { do: 'remove_soft'; key: number }
   | { do: 'push'; key: number; at: Vec3; impulse: Vec3 }
   | { do: 'wake'; key: number; awake: boolean }
   | { do: 'gravity'; value: Vec3 }
@@ -240,6 +250,7 @@ export interface Requests {
   overlays: { ask: { names: OverlayName[] }; answer: FrameMessage };
   configure: { ask: { settings: NewWorldSettings }; answer: { scene: SceneDescription; frame: FrameMessage } };
   inspect: { ask: { key: number }; answer: BodyReport | null };
+  inspect_soft: { ask: { key: number }; answer: SoftReport | null };
   hash: { ask: Record<string, never>; answer: string };
   save: { ask: { what: 'scene' | 'snapshot' }; answer: { name: string; bytes: Uint8Array } };
 }

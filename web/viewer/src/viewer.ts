@@ -166,6 +166,7 @@ export class Viewer {
       this.updateOverlays(between.to);
       this.stage.lightAround(store.following.peek() ? this.rig.controls.target : this.center);
     }
+    this.softs.highlight(store.selectedSoft.peek(), this.stage.colors.selection);
     this.pointer.update();
     this.rig.update(seconds);
     this.stage.render();

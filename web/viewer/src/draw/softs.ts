@@ -1,5 +1,5 @@
 // Ropes, cloths and solids on the screen: one mesh each, whose vertices move with every picture.
-import { DoubleSide, Group, type Material, Mesh, MeshLambertMaterial, MeshStandardMaterial } from 'three';
+import { type Color, DoubleSide, Group, type Material, Mesh, MeshLambertMaterial, MeshStandardMaterial } from 'three';
 import type { Frame, SoftDescription, SoftKind, Structure } from '../protocol';
 import type { Quality } from '../state/preferences';
 import { bodyColor } from './palette';
@@ -133,6 +133,15 @@ export class Softs {
     const { color } = mesh.material as MeshStandardMaterial | MeshLambertMaterial;
     if (soft.color === null) bodyColor(soft.key, color);
     else color.set(soft.color);
+  }
+
+  // Lets it glow a little; null: none.
+  highlight(key: number | null, color: Color): void {
+    for (const { soft, mesh } of this.items.values()) {
+      const { emissive } = mesh.material as MeshStandardMaterial | MeshLambertMaterial;
+      if (soft.key === key) emissive.copy(color).multiplyScalar(0.3);
+      else emissive.set(0);
+    }
   }
 
   named(name: string): DrawnSoft | undefined {

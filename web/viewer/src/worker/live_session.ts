@@ -11,6 +11,7 @@ import type {
   RunSettings,
   SceneDescription,
   SoftDescription,
+  SoftReport,
   Structure,
   Vec3,
   WorldSettings,
@@ -24,7 +25,7 @@ import { Looks } from './looks';
 import { Past } from './past';
 import type { SceneText } from './scene_source';
 import type { Session } from './session';
-import { describeSoft, readSoftVertices, softKindName } from './softs';
+import { describeSoft, readSoftVertices, reportOnSoft, softKindName } from './softs';
 import { throwableShape } from './throwables';
 import { readFlags, readLinks, readOverlays, readRows, readStats, reportOn, withNames } from './world_reader';
 
@@ -241,6 +242,9 @@ export class LiveSession implements Session {
         case 'remove':
           if (this.hand.state?.body === idOf(command.key)) this.hand.release(scene);
           return scene.removeBody(idOf(command.key));
+        case 'remove_soft':
+          if (this.hand.state?.grip) this.hand.release(scene);
+          return scene.removeSoft(this.softKeys.id(command.key, world));
         case 'push':
           return scene.addImpulseAt(idOf(command.key), command.impulse, this.inWorld(command.at));
         case 'wake':
@@ -353,9 +357,11 @@ export class LiveSession implements Session {
 
   private describeSoft(id: SoftId): SoftDescription {
     const key = this.softKeys.key(id);
-    const { scene } = this;
-    const name = scene.softNames[key] ?? `${softKindName(scene.softInfo(id).kind)} ${key + 1}`;
-    return describeSoft(scene, id, { key, name, color: scene.softColors[key] ?? null });
+    return describeSoft(this.scene, id, { key, name: this.softName(id, key), color: this.scene.softColors[key] ?? null });
+  }
+
+  private softName(id: SoftId, key: number): string {
+    return this.scene.softNames[key] ?? `${softKindName(this.scene.softInfo(id).kind)} ${key + 1}`;
   }
 
   private describeBody(id: BodyId, key: number): BodyDescription {
@@ -377,6 +383,11 @@ export class LiveSession implements Session {
     const id = this.keys.id(key, this.worldNumber());
     if (!id || !this.scene.bodyExists(id)) return null;
     return reportOn(this.gyre, this.scene, id, key, this.nameOf(key), withNames(this.scene.explain(id).words, this.ids, (other) => this.nameOf(this.keys.key(other))));
+  }
+
+  inspectSoft(key: number): SoftReport | null {
+    const id = this.softKeys.id(key, this.worldNumber());
+    return id && this.scene.softExists(id) ? reportOnSoft(this.scene, id, key, this.softName(id, key)) : null;
   }
 
   // -------------------------------------------------------------------------------------------------------------- settings

@@ -1,6 +1,6 @@
 // Ropes, cloths and solids of a world: what the page is told about them once, and their vertices in each frame.
 import { type SoftId, SoftKind, type World } from 'gyre-physics';
-import type { SoftDescription, SoftKind as SoftKindName, Vec3 } from '../protocol';
+import type { SoftDescription, SoftKind as SoftKindName, SoftReport, Vec3 } from '../protocol';
 
 export function softKindName(kind: number): SoftKindName {
   return kind === SoftKind.rope ? 'rope' : kind === SoftKind.cloth ? 'cloth' : 'solid';
@@ -25,4 +25,10 @@ export function readSoftVertices(world: World, ids: ArrayLike<SoftId>, origin: V
     }
   }
   return out;
+}
+
+export function reportOnSoft(world: World, id: SoftId, key: number, name: string): SoftReport {
+  const { kind, vertices, awake, mass, kineticEnergy, elasticEnergy, contacts } = world.softInfo(id);
+  const state = { awake, mass, kinetic: kineticEnergy, elastic: elasticEnergy, contacts };
+  return { key, name, kind: softKindName(kind), vertices, triangles: world.softTriangles(id).length / 3, state };
 }

@@ -13,6 +13,7 @@ import {
   type Quat,
   type SceneDescription,
   type SoftDescription,
+  type SoftReport,
   type Stats,
   type Structure,
   type Vec3,
@@ -164,9 +165,12 @@ export class TrackSession implements Session {
     return Array.from(softIds, (id, i) => {
       const key = this.softKeys.key(id);
       const surface = this.source.soft(softs[i]!);
-      const { name, colors } = this.source.softLabel(id);
-      return { ...surface, key, name: name || `${surface.kind} ${key + 1}`, color: colors[0] ?? null };
+      return { ...surface, key, name: this.softName(id, surface.kind), color: this.source.softLabel(id).colors[0] ?? null };
     });
+  }
+
+  private softName(id: number, kind: string): string {
+    return this.source.softLabel(id).name || `${kind} ${this.softKeys.key(id) + 1}`;
   }
 
   private nameOf(id: number): string {
@@ -212,6 +216,16 @@ export class TrackSession implements Session {
       kinetic: 0,
       words: '',
     };
+  }
+
+  inspectSoft(key: number): SoftReport | null {
+    const { softIds, softs } = this.at;
+    const row = Array.prototype.findIndex.call(softIds, (id: number) => this.softKeys.key(id) === key);
+    if (row < 0) return null;
+    const { kind, vertices, triangles } = this.source.soft(softs[row]!);
+    const name = this.softName(softIds[row]!, kind);
+    const report = this.world(true)?.softReport(softIds[row]!, key, name);
+    return report ?? { key, name, kind, vertices, triangles: triangles.length / 3, state: null };
   }
 
   hash(): string {

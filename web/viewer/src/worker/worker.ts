@@ -31,6 +31,7 @@ const handlers: Handlers = {
     return { scene: opened().describe(), frame: opened().frame() };
   },
   inspect: ({ key }) => opened().inspect(key),
+  inspect_soft: ({ key }) => opened().inspectSoft(key),
   hash: () => opened().hash(),
   save: ({ what }) => opened().save(what),
 };
