@@ -36,7 +36,7 @@ void label_bodies(Recorder& recorder, const SceneRunner& runner) {
   }
   runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
     const SoftInfo info = runner.world().soft_info(id);
-    const SceneColor color = resolved_color(scene, info.kind, info.user_data);
+    const SceneColor color = resolved_color(scene, info.kind, std::size_t(info.user_data));
     colors.assign(1, {color.red, color.green, color.blue});
     recorder.label_soft(id, soft.name, colors);
   });

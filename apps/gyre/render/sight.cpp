@@ -43,8 +43,8 @@ void look_at_softs(const World& world, const Scene* scene, Sight& out) {
     const SoftInfo info = world.soft_info(ids[i]);
     const SoftVertices vertices = world.vertices(ids[i]);
     // Ropes, cloths and soft bodies of a scene carry their number among their kind as user data.
-    const SceneColor color =
-        scene ? resolved_color(*scene, info.kind, info.user_data) : automatic_color(BodyType::dynamic, i);
+    const SceneColor color = scene ? resolved_color(*scene, info.kind, std::size_t(info.user_data))
+                                   : automatic_color(BodyType::dynamic, i);
     out.softs.push_back({ids[i], info.kind, info.radius, world.soft_triangles(ids[i]), out.vertices.size(),
                          vertices.size(), color});
     for (std::size_t k = 0; k < vertices.size(); ++k) out.vertices.push_back(vertices.position(k));
