@@ -10,25 +10,56 @@ std::string soft_pointer(const char* section, std::size_t index) {
   return std::string("/") + section + "/" + std::to_string(index);
 }
 
-// The engine's messages begin with the member that they are about: settings.positions[3], box.half_extents.y. Returns the
-// pointer to it below an entry; empty if it is none of the format.
+constexpr std::string_view kSoftMembers[] = {"points",
+                                             "segments",
+                                             "radius",
+                                             "linear_density",
+                                             "stretch_stiffness",
+                                             "bend_stiffness",
+                                             "vertices",
+                                             "triangles",
+                                             "tetrahedra",
+                                             "area_density",
+                                             "shear_stiffness",
+                                             "thickness",
+                                             "grid",
+                                             "box",
+                                             "density",
+                                             "young_modulus",
+                                             "poisson_ratio",
+                                             "state",
+                                             "damping",
+                                             "position",
+                                             "orientation",
+                                             "mesh",
+                                             "resolution",
+                                             "static_friction",
+                                             "dynamic_friction"};
+
+// The engine's messages begin with the member that they are about: settings.positions[3], surface.mesh. Returns the pointer to it
+// below an entry; empty if it is none of the format.
 std::string member_pointer(std::string_view message) {
-  std::string out = "/";
-  for (const char c : message.substr(0, message.find(' '))) {
+  std::string path;
+  for (const char c : message.substr(0, message.find_first_of(" :"))) {
     if (c == '.' || c == '[') {
-      out += '/';
+      path += '/';
     } else if (c != ']') {
-      out += c;
+      path += c;
     }
   }
   for (const auto& [from, to] :
-       {std::pair{"/settings/positions", "/state/positions"},
-        std::pair{"/settings/velocities", "/state/velocities"}, std::pair{"/settings", ""},
-        std::pair{"/pose", ""}, std::pair{"/surface", "/mesh"}}) {
-    const std::size_t size = std::string_view(from).size();
-    if (out.compare(0, size, from) == 0) return to + out.substr(size);
+       {std::pair<std::string_view, const char*>{"settings/positions", "state/positions"},
+        {"settings/velocities", "state/velocities"},
+        {"settings/", ""},
+        {"pose/", ""},
+        {"surface/", ""}}) {
+    if (path.compare(0, from.size(), from) == 0) path = to + path.substr(from.size());
   }
-  return out;
+  const std::string_view first = std::string_view(path).substr(0, path.find('/'));
+  for (const std::string_view member : kSoftMembers) {
+    if (member == first) return "/" + path;
+  }
+  return {};
 }
 
 }  // namespace
@@ -39,9 +70,7 @@ bool WorldBuilder::blame_soft(const std::string& pointer, const SceneSoft& soft)
   // Vertices and triangles stand in the mesh, not in the entry.
   const bool is_of_mesh = member.compare(0, 10, "/triangles") == 0 || member.compare(0, 9, "/vertices") == 0;
   if (is_of_mesh && pointer.compare(0, 7, "/cloths") == 0) member = "/mesh";
-  const bool known = member.size() > 1 &&
-                     member.find_first_not_of("/_0123456789abcdefghijklmnopqrstuvwxyz") == std::string::npos;
-  return fail(pointer + (known ? member : std::string()), "\"" + soft.name + "\": " + why);
+  return fail(pointer + member, "\"" + soft.name + "\": " + why);
 }
 
 bool WorldBuilder::hold(const SceneSoft& soft, SoftId id, const std::string& pointer) {

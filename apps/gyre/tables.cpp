@@ -76,7 +76,7 @@ bool TraceTable::add_rows(const SceneRunner& runner) {
   }
   bool written = true;
   runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
-    written = written && add_vertices(begin, soft.name, world.vertices(id), world.soft_info(id).awake);
+    written = written && add_vertices(begin, soft.name, world.vertices(id), true);
   });
   return written;
 }
