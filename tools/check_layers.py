@@ -80,7 +80,8 @@ ROOMS = {
     },
     "soft": {
         "body": [],
-        "elements": ["body"],
+        "mesh": [],
+        "elements": ["body", "mesh"],
         "kernels": ["body"],
         "store": ["elements"],
         "solver": ["store", "kernels"],

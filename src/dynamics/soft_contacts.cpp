@@ -171,7 +171,8 @@ class ContactFinder {
     for (SoftContact& contact : entry_.contacts) {
       const auto key = [](const SoftContact& c) { return std::uint64_t(c.particle) << 32 | c.shape; };
       while (k < before.size() && key(before[k]) < key(contact)) ++k;
-      if (k < before.size() && key(before[k]) == key(contact)) contact.impulse = before[k].impulse;
+      if (k < before.size() && key(before[k]) == key(contact))
+        contact.impulse = before[k].impulse, contact.grip = before[k].grip;
     }
   }
 

@@ -234,6 +234,18 @@ std::span<const std::uint32_t> World::soft_triangles(SoftId soft) const {
   if (!exists(soft)) return {};
   return state_->soft.entries[soft.index].triangles.view();
 }
+std::size_t World::soft_surface(SoftId soft, std::span<DVec3> out) const {
+  if (!exists(soft)) return 0;
+  const FloatMode mode;
+  const SoftEntry& entry = state_->soft.entries[soft.index];
+  const std::size_t count = entry.surface.points.size();
+  for (std::size_t i = 0; i < min(count, out.size()); ++i) out[i] = surface_position(entry, i);
+  return count;
+}
+std::span<const std::uint32_t> World::soft_surface_triangles(SoftId soft) const {
+  if (!exists(soft)) return {};
+  return state_->soft.entries[soft.index].surface.triangles.view();
+}
 
 const char* to_string(SoftKind kind) {
   switch (kind) {

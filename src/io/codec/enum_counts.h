@@ -3,6 +3,7 @@
 
 #include "collision/broadphase/proxy.h"
 #include "io/codec/bytes.h"
+#include "soft/store/soft_store.h"
 
 #include <gyre/defs.h>
 #include <gyre/fields.h>
@@ -47,6 +48,8 @@ template <>
 inline constexpr int kEnumCount<ClothLinks> = int(ClothLinks::membrane) + 1;
 template <>
 inline constexpr int kEnumCount<SolidModel> = int(SolidModel::neo_hookean) + 1;
+template <>
+inline constexpr int kEnumCount<SoftGrip> = int(SoftGrip::sticks) + 1;
 template <>
 inline constexpr int kEnumCount<ProxyMotion> = int(ProxyMotion::moving) + 1;
 

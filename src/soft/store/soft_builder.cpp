@@ -5,6 +5,7 @@
 #include "soft/elements/cloth.h"
 #include "soft/elements/rope.h"
 #include "soft/elements/solid.h"
+#include "soft/mesh/tetrahedral_fill.h"
 
 #include <cmath>
 
@@ -145,6 +146,16 @@ void add_outer_faces(std::span<const std::uint32_t> tetrahedra, const SoftBody& 
   }
 }
 
+// The mass is that of the surface's volume, which the tetrahedra do not have exactly.
+void build_filled(const SolidSurface& surface, const Pose& pose, SolidMaterial material, SoftEntry& entry) {
+  Result<TetrahedralMesh> mesh =
+      fill_with_tetrahedra(surface.vertices, surface.triangles, surface.resolution);
+  material.density = float(double(material.density) * mesh->surface_volume / mesh->filled_volume);
+  entry.body = tetrahedral_solid(placed(mesh->vertices, pose), mesh->tetrahedra, material);
+  add_outer_faces(mesh->tetrahedra, entry.body, entry.triangles);
+  entry.surface = std::move(mesh->surface);
+}
+
 void build(const SolidDef& def, SoftEntry& entry) {
   entry.kind = SoftKind::solid;
   const SolidMaterial material{.density = def.density,
@@ -157,6 +168,8 @@ void build(const SolidDef& def, SoftEntry& entry) {
     const int cells[3] = {def.box->cells[0], def.box->cells[1], def.box->cells[2]};
     entry.body = box_solid(def.box->half_extents, cells, pose, material);
     add_outer_faces(box_tetrahedra(cells), entry.body, entry.triangles);
+  } else if (def.surface) {
+    build_filled(*def.surface, pose, material, entry);
   } else {
     entry.body = tetrahedral_solid(placed(def.vertices, pose), def.tetrahedra, material);
     add_outer_faces(def.tetrahedra, entry.body, entry.triangles);
