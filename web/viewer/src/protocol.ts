@@ -212,7 +212,7 @@ export interface SoftReport {
   vertices: number;
   triangles: number; // of the surface
   // Of a recording without a world behind it there is no more.
-  state: { awake: boolean; mass: number; kinetic: number; elastic: number; contacts: number } | null;
+  state: { mass: number; kinetic: number; elastic: number; contacts: number } | null;
 }
 export type DoubleVec3 = [number, number, number];
 

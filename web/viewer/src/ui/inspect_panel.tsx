@@ -31,7 +31,7 @@ function OnSoft({ report, viewer }: { report: SoftReport; viewer: Viewer }): JSX
     <>
       <div class="body-head">
         <h2>{report.name}</h2>
-        <span class={`badge ${state?.awake ? 'awake' : ''}`}>{state ? (state.awake ? 'awake' : 'asleep') : KINDS[report.kind]}</span>
+        <span class="badge">{KINDS[report.kind]}</span>
       </div>
       {store.scene.value?.live && (
         <div class="body-actions">
@@ -40,7 +40,7 @@ function OnSoft({ report, viewer }: { report: SoftReport; viewer: Viewer }): JSX
           </button>
         </div>
       )}
-      <Section title={KINDS[report.kind]}>
+      <Section title="Matter">
         <dl>
           <Row name="Vertices">{report.vertices.toLocaleString('en')}</Row>
           {report.triangles > 0 && <Row name="Triangles of the surface">{report.triangles.toLocaleString('en')}</Row>}
