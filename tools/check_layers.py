@@ -85,6 +85,12 @@ ROOMS = {
         "store": ["elements"],
         "solver": ["store", "kernels"],
     },
+    "fluid": {
+        "grid": [],
+        "kernels": ["grid"],
+        "solver": ["kernels"],
+        "gas": ["solver"],
+    },
     "io": {
         "codec": [],
         "snapshot": ["codec"],

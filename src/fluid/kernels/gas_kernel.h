@@ -1,0 +1,29 @@
+// The table of kernels of one width (fluid/kernels/gas_kernels.h).
+#pragma once
+
+#include "fluid/kernels/pressure_lanes.h"
+#include "fluid/kernels/transport_lanes.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+template <int W>
+constexpr GasKernels gas_kernels() {
+  GasKernels kernels{};
+  kernels.width = W;
+  kernels.apply = apply_cells<W>;
+  kernels.residual = find_residual<W>;
+  kernels.smooth = smooth_cells<W>;
+  kernels.scale = scale_cells<W>;
+  kernels.restrict_rows = restrict_cells<W>;
+  kernels.prolong = prolong_cells<W>;
+  kernels.advance = advance_cells<W>;
+  kernels.turn = turn_cells<W>;
+  kernels.trace = trace_cells<W>;
+  kernels.move = move_cells<W>;
+  kernels.correct = correct_cells<W>;
+  return kernels;
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

@@ -1,0 +1,122 @@
+// The transport of velocity, smoke and temperature.
+#include "fluid/solver/transport.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int kBack = 0, kAhead = 3, kMoved = 6, kLeast = 7, kMost = 8;  // scratch
+constexpr int kCenters = 6;                                              // and before these three
+
+// Between which places spots of cell centres lie; `outside`: the ghosts beyond open sides are of use.
+template <class Pass>
+void limit_spots(const GasBox& box, const GridShape& shape, bool outside, int faces, Pass& pass) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float n = float(shape.cells[axis]);
+    if (box.periodic(axis) && !box.flat(axis)) {
+      pass.low[axis] = 0.0f;
+      pass.high[axis] = pass.period[axis] = n;
+    } else if (axis == faces) {
+      pass.low[axis] = 0.0f;
+      pass.high[axis] = n;
+    } else {
+      pass.low[axis] = outside && box.open(2 * axis) ? -1.0f : 0.0f;
+      pass.high[axis] = outside && box.open(2 * axis + 1) ? n : n - 1.0f;
+    }
+  }
+}
+
+void transport(const GasPass& pass, int faces, const float* outside, float* field) {
+  const GasBox& box = pass.box();
+  const GridShape& shape = pass.shape();
+  TransportPass work;
+  work.shape = shape;
+  for (int axis = 0; axis < 3; ++axis) {
+    work.places[axis] = shape.cells[axis] + (axis == faces ? 1 : 0);
+    if (pass.flat(axis)) continue;
+    work.back[axis] = pass.scratch(kBack + axis);
+    work.ahead[axis] = pass.scratch(kAhead + axis);
+  }
+  work.average = faces < 0 ? 0 : shape.stride(faces);
+  work.field = field;
+  work.moved = pass.scratch(kMoved);
+  work.least = pass.scratch(kLeast);
+  work.most = pass.scratch(kMost);
+  limit_spots(box, shape, outside != nullptr, faces, work);
+  const auto fill = [&](float* of) {
+    faces < 0 ? fill_ghosts(box, shape, of, outside) : wrap_faces(box, shape, faces, of);
+  };
+  const auto run = [&](void (*kernel)(const TransportPass&, int, int)) {
+    for_blocks(pass.tasks, work.places[1] * work.places[2], kGridRows,
+               [&](int begin, int end, int) { kernel(work, begin, end); });
+  };
+  fill(field);
+  run(pass.kernels.move);
+  fill(work.moved);
+  run(pass.kernels.correct);
+  fill(field);
+}
+
+}  // namespace
+
+void trace_ways(const GasPass& pass) {
+  const GridShape& shape = pass.shape();
+  TracePass work;
+  work.shape = shape;
+  limit_spots(pass.box(), shape, false, -1, work);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    const float* const from = pass.grid.velocity[axis].data();
+    float* const to = pass.scratch(kCenters + axis);
+    const int step = shape.stride(axis);
+    const float scale = 0.5f * pass.step / pass.edge(axis);
+    each_row(pass, -1, [&](int c, int, int) {
+      for (int i = c; i < c + shape.cells[0]; ++i) to[i] = scale * (from[i] + from[i + step]);
+    });
+    fill_ghosts(pass.box(), shape, to);
+    work.velocity[axis] = to;
+    work.back[axis] = pass.scratch(kBack + axis);
+    work.ahead[axis] = pass.scratch(kAhead + axis);
+  }
+  for_blocks(pass.tasks, shape.rows(), kGridRows,
+             [&](int begin, int end, int) { pass.kernels.trace(work, begin, end); });
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    fill_ghosts(pass.box(), shape, work.back[axis]);
+    fill_ghosts(pass.box(), shape, work.ahead[axis]);
+  }
+}
+
+void transport_fields(const GasPass& pass) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!pass.flat(axis)) transport(pass, axis, nullptr, pass.grid.velocity[axis].data());
+  }
+  const float none = 0.0f, ambient = pass.grid.ambient_temperature;
+  transport(pass, -1, &none, pass.grid.density.data());
+  transport(pass, -1, &ambient, pass.grid.temperature.data());
+}
+
+float longest_way(const GasPass& pass) {
+  const GridShape& shape = pass.shape();
+  float longest = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    const float* const from = pass.grid.velocity[axis].data();
+    const int step = shape.stride(axis);
+    const float fastest = largest_of_rows(shape, pass.tasks, [&](int c, int, int) {
+      float most = 0.0f;
+      for (int i = c; i < c + shape.cells[0]; ++i) {
+        const float lower = from[i] < 0.0f ? -from[i] : from[i];
+        const float upper = from[i + step] < 0.0f ? -from[i + step] : from[i + step];
+        most = lower > most ? lower : most;
+        most = upper > most ? upper : most;
+      }
+      return most;
+    });
+    const float way = fastest * pass.step / pass.edge(axis);
+    longest = way > longest ? way : longest;
+  }
+  return longest;
+}
+
+}  // namespace gyre
