@@ -16,6 +16,7 @@ void prepare_memory(const GasGrid& grid, const GasSolids& solids, GasMemory& mem
   const bool same_size = matrix.count > 0 && memory.field[0].size() == size;
   if (!same_size) {
     for (Array<float>& field : memory.field) field.clear(), field.resize(size, 0.0f);
+    for (Array<float>& field : memory.before) field.clear();
   }
   if (!same_size || matrix.solids_revision != (solids.present() ? solids.revision : 0)) {
     build_pressure_matrix(grid.box, grid.shape, solids, kernels, tasks, memory.matrix);
@@ -82,6 +83,7 @@ void run_part(const GasPass& pass, std::span<const GasEmitter> emitters, const G
   const bool keeps_smoke = !pass.box().any_open() && !pass.solids.present();
   const double mass = keeps_smoke ? smoke_mass(pass.grid, pass.solids, pass.tasks) : 0.0;
   trace_ways(pass);
+  if (settings.viscosity > 0.0f) keep_velocity(pass);
   add_pressure(pass, 0.5f, true);
   transport_fields(pass);
   if (keeps_smoke) keep_smoke_mass(pass, mass);

@@ -10,6 +10,7 @@ namespace gyre {
 struct GasMemory {
   static constexpr int kFields = 9;
   Array<float> field[kFields];
+  Array<float> before[3];  // the velocity at the beginning of the step, with viscosity
   PressureMatrix matrix;
 };
 

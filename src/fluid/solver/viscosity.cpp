@@ -35,24 +35,27 @@ void fill_wall_ghosts(const GasPass& pass, int axis, float* faces) {
 
 struct StageWeights {
   float last = 0.0f, older = 0.0f, first = 0.0f;  // of the states
-  float change = 0.0f, first_change = 0.0f;       // of nu laplace, times step
+  float change = 0.0f, first_change = 0.0f;       // of the changes in a step: of Y(j-1) and of Y0
 };
 
-// state = last Y(j-1) + older Y(j-2) + first Y0 + change L Y(j-1) + first_change L Y0. `first_laplacian` is found where `older` is null.
+// state = last Y(j-1) + older Y(j-2) + first Y0 + change F(Y(j-1)) + first_change F(Y0), F(Y) = step nu laplace Y + (target - Y0).
+// `first_rate` = F(Y0) is found where `older` is null.
 struct StageArrays {
+  const float* target;
+  const float* first;
   const float* last;
   const float* older;
-  const float* first;
-  float* first_laplacian;
+  float* first_rate;
   float* state;
 };
 
-void run_stage(const GasPass& pass, int axis, const StageWeights& weights, const StageArrays& arrays) {
+void run_stage(const GasPass& pass, int axis, float scale, const StageWeights& weights,
+               const StageArrays& arrays) {
   const GridShape& shape = pass.shape();
   const float* const face = pass.memory.matrix.levels[0].face[axis].data();
   float inverse[3];
   for (int other = 0; other < 3; ++other)
-    inverse[other] = pass.flat(other) ? 0.0f : 1.0f / (pass.edge(other) * pass.edge(other));
+    inverse[other] = pass.flat(other) ? 0.0f : scale / (pass.edge(other) * pass.edge(other));
   const float ix = inverse[0], iy = inverse[1], iz = inverse[2];
   const int py = shape.pitch, pz = shape.plane, last_face = shape.cells[axis];
   const bool wraps = pass.box().periodic(axis);
@@ -63,20 +66,21 @@ void run_stage(const GasPass& pass, int axis, const StageWeights& weights, const
       const int at = axis == 0 ? i : across, f = c + i;
       const bool side = (at == 0 || at == last_face) && !wraps;
       if (side || !(face[f] > 0.0f)) {
-        arrays.state[f] = y[f];
-        if (arrays.older == nullptr) arrays.first_laplacian[f] = 0.0f;
+        arrays.state[f] = arrays.target[f];
+        if (arrays.older == nullptr) arrays.first_rate[f] = 0.0f;
         continue;
       }
       const float laplacian = ix * ((y[f - 1] - y[f]) + (y[f + 1] - y[f])) +
                               iy * ((y[f - py] - y[f]) + (y[f + py] - y[f])) +
                               iz * ((y[f - pz] - y[f]) + (y[f + pz] - y[f]));
+      const float rate = laplacian + (arrays.target[f] - arrays.first[f]);
       if (arrays.older == nullptr) {
-        arrays.first_laplacian[f] = laplacian;
-        arrays.state[f] = y[f] + weights.change * laplacian;
+        arrays.first_rate[f] = rate;
+        arrays.state[f] = y[f] + weights.change * rate;
       } else {
         arrays.state[f] = weights.last * y[f] + weights.older * arrays.older[f] +
-                          weights.first * arrays.first[f] + weights.change * laplacian +
-                          weights.first_change * arrays.first_laplacian[f];
+                          weights.first * arrays.first[f] + weights.change * rate +
+                          weights.first_change * arrays.first_rate[f];
       }
     }
   });
@@ -95,6 +99,17 @@ int count_viscous_stages(const GasBox& box, float kinematic_viscosity, float ste
   return stages;
 }
 
+void keep_velocity(const GasPass& pass) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Array<float>& from = pass.grid.velocity[axis];
+    Array<float>& to = pass.memory.before[axis];
+    to.resize(from.size(), 0.0f);
+    each_row(pass, axis, [&](int c, int, int) {
+      for (int i = c; i < c + pass.shape().cells[0] + (axis == 0 ? 1 : 0); ++i) to[i] = from[i];
+    });
+  }
+}
+
 void add_viscosity(const GasPass& pass, float kinematic_viscosity) {
   const GridShape& shape = pass.shape();
   const int stages = count_viscous_stages(pass.box(), kinematic_viscosity, pass.step);
@@ -103,15 +118,17 @@ void add_viscosity(const GasPass& pass, float kinematic_viscosity) {
     const double n = double(j);
     return j < 2 ? 1.0 / 3.0 : (n * n + n - 2.0) / (2.0 * n * (n + 1.0));
   };
-  const double scale = double(pass.step) * double(kinematic_viscosity);
+  const float scale = pass.step * kinematic_viscosity;
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     float* const field = pass.grid.velocity[axis].data();
+    float* const first = pass.memory.before[axis].data();
+    float* const rate = pass.scratch(1);
     float* const states[3] = {pass.scratch(2), pass.scratch(3), pass.scratch(4)};  // Y_j is in states[j % 3]
-    fill_wall_ghosts(pass, axis, field);
+    fill_wall_ghosts(pass, axis, first);
     StageWeights weights;
-    weights.change = float(scale * w / 3.0);
-    run_stage(pass, axis, weights, {field, nullptr, field, pass.scratch(1), states[1]});
+    weights.change = float(w / 3.0);
+    run_stage(pass, axis, scale, weights, {field, first, first, nullptr, rate, states[1]});
     for (int j = 2; j <= stages; ++j) {
       const double n = double(j);
       const double mu = (2.0 * n - 1.0) / n * share(j) / share(j - 1);
@@ -119,12 +136,12 @@ void add_viscosity(const GasPass& pass, float kinematic_viscosity) {
       weights.last = float(mu);
       weights.older = float(nu);
       weights.first = 1.0f - weights.last - weights.older;
-      weights.change = float(mu * w * scale);
-      weights.first_change = float(-(1.0 - share(j - 1)) * mu * w * scale);
-      float* const before = states[(j - 1) % 3];
-      fill_wall_ghosts(pass, axis, before);
-      const float* const older = j == 2 ? field : states[(j - 2) % 3];
-      run_stage(pass, axis, weights, {before, older, field, pass.scratch(1), states[j % 3]});
+      weights.change = float(mu * w);
+      weights.first_change = float(-(1.0 - share(j - 1)) * mu * w);
+      float* const last = states[(j - 1) % 3];
+      fill_wall_ghosts(pass, axis, last);
+      run_stage(pass, axis, scale, weights,
+                {field, first, last, j == 2 ? first : states[(j - 2) % 3], rate, states[j % 3]});
     }
     const float* const last = states[stages % 3];
     each_row(pass, axis, [&](int c, int, int) {
