@@ -21,7 +21,9 @@ constexpr GasKernels gas_kernels() {
   kernels.turn = turn_cells<W>;
   kernels.trace = trace_cells<W>;
   kernels.move = move_cells<W>;
-  kernels.correct = correct_cells<W>;
+  kernels.correct = correct_cells<W, false>;
+  kernels.find_missing = correct_cells<W, true>;
+  kernels.add_missing = add_missing_cells<W>;
   return kernels;
 }
 

@@ -78,8 +78,12 @@ struct GasKernels {
   void (*trace)(const TracePass& pass, int row_begin, int row_end);
   // moved, least and most; rows are of `places`.
   void (*move)(const TransportPass& pass, int row_begin, int row_end);
-  // field, by what going ahead again shows to be missing.
+  // field, by what going ahead again shows to be missing, within the bounds.
   void (*correct)(const TransportPass& pass, int row_begin, int row_end);
+  // field becomes what is missing, least the share of it that the bounds allow.
+  void (*find_missing)(const TransportPass& pass, int row_begin, int row_end);
+  // field = moved + what is missing, by the least share of a cell and its six neighbours.
+  void (*add_missing)(const TransportPass& pass, int row_begin, int row_end);
 };
 
 // The kernels for this many lanes, 0: as many as suit this machine.

@@ -1,6 +1,10 @@
 // Kernels of transport, one template for every width: MacCormack's scheme with a limiter (A. Selle, R. Fedkiw, B. Kim, Y. Liu, J. Rossignac,
 // "An Unconditionally Stable MacCormack Method", 2008).
 //
+// What the bounds cut off in one cell has come from its neighbours: the correction moves matter between cells. So for fields whose sum counts,
+// neighbours of a cell that is cut short are cut short as well (after S. Zalesak, "Fully Multidimensional Flux-Corrected Transport
+// Algorithms for Fluids", 1979). A sharp edge would otherwise move at half its speed.
+//
 // Neighbours in a row mostly move by the same whole number of cells, so the eight corners around their spots are eight rows of numbers.
 // Where they do not, each distinct offset is read for all lanes and used by its own: the same operations in each lane, so the same bits.
 #pragma once
@@ -178,7 +182,7 @@ void move_cells(const TransportPass& pass, int row_begin, int row_end) {
   });
 }
 
-template <int W>
+template <int W, bool SharesOnly>
 void correct_cells(const TransportPass& pass, int row_begin, int row_end) {
   const Wide<W> lane = lane_numbers<W>();
   for_rows(pass.shape, pass.places[1], row_begin, row_end, [&](int c, int j, int k, int) {
@@ -189,10 +193,33 @@ void correct_cells(const TransportPass& pass, int row_begin, int row_end) {
         const Wide<W> value = CornerLanes<W>(pass.shape, pass.moved + offset).at(spot);
         again = all ? value : select(same, value, again);
       });
-      const Wide<W> before = Wide<W>::load(pass.field + c + i);
-      const Wide<W> better = Wide<W>::load(pass.moved + c + i) + Wide<W>(0.5f) * (before - again);
+      const Wide<W> missing = Wide<W>(0.5f) * (Wide<W>::load(pass.field + c + i) - again);
+      const Wide<W> moved = Wide<W>::load(pass.moved + c + i);
       const Wide<W> least = Wide<W>::load(pass.least + c + i), most = Wide<W>::load(pass.most + c + i);
-      lanes.keep_real(clamp(better, least, most)).store(pass.field + c + i);
+      if constexpr (SharesOnly) {
+        const Wide<W> room = select(missing > 0.0f, most - moved, least - moved);
+        const Wide<W> share = select(absolute(missing) > absolute(room), room / missing, Wide<W>(1.0f));
+        lanes.keep_real(missing).store(pass.field + c + i);
+        lanes.keep_real(share).store(pass.least + c + i);
+      } else {
+        lanes.keep_real(clamp(moved + missing, least, most)).store(pass.field + c + i);
+      }
+    });
+  });
+}
+
+template <int W>
+void add_missing_cells(const TransportPass& pass, int row_begin, int row_end) {
+  const int pitch = pass.shape.pitch, plane = pass.shape.plane;
+  for_rows(pass.shape, pass.places[1], row_begin, row_end, [&](int c, int, int, int) {
+    for_lanes<W>(pass.places[0], [&](int i, auto lanes) {
+      const float* const share = pass.least + c + i;
+      const auto at = [&](int offset) { return Wide<W>::load_unaligned(share + offset); };
+      const Wide<W> along_x = min(at(-1), at(1)), along_y = min(at(-pitch), at(pitch)),
+                    along_z = min(at(-plane), at(plane));
+      const Wide<W> least = min(min(at(0), along_x), min(along_y, along_z));
+      const Wide<W> moved = Wide<W>::load(pass.moved + c + i), missing = Wide<W>::load(pass.field + c + i);
+      lanes.keep_real(moved + least * missing).store(pass.field + c + i);
     });
   });
 }

@@ -53,7 +53,13 @@ void transport(const GasPass& pass, int faces, const float* outside, float* fiel
   fill(field);
   run(pass.kernels.move);
   fill(work.moved);
-  run(pass.kernels.correct);
+  if (faces < 0) {
+    run(pass.kernels.find_missing);
+    fill_ghosts(box, shape, work.least);
+    run(pass.kernels.add_missing);
+  } else {
+    run(pass.kernels.correct);
+  }
   fill(field);
 }
 
