@@ -5,6 +5,8 @@
 #include "rigid/sleep/island.h"
 #include "task/parallel.h"
 
+#include <cmath>
+
 namespace gyre {
 
 namespace {
@@ -55,6 +57,15 @@ class ContactFinder {
       for (std::size_t k = 0; k < found[i]; ++k) contacts.push_back(room[i * kMaxVertexContacts + k]);
     }
     keep_impulses(before);
+  }
+
+  // True if a body moves that is near or that a vertex is attached to.
+  bool is_anything_moving() const {
+    for (const Candidate& candidate : candidates_)
+      if (can_wake_others(w_, candidate.body)) return true;
+    for (const SoftAttachment& one : entry_.attachments)
+      if (one.body != kWorldAnchor && can_wake_others(w_, std::uint32_t(one.body))) return true;
+    return false;
   }
 
  private:
@@ -173,8 +184,9 @@ class ContactFinder {
   std::span<Candidate> candidates_{};
 };
 
-// Wakes bodies that are touched or held. An awake one does not fall asleep meanwhile.
+// Wakes bodies that are touched or held by what moves. An awake one does not fall asleep meanwhile.
 void wake_bodies(RigidWorld& w, const SoftEntry& entry) {
+  if (entry.rest[0].still_time >= kTimeToSleep) return;
   for (const SoftContact& contact : entry.contacts) {
     if (contact.gap <= 0.0f || contact.impulse != Vec3{}) wake(w, std::uint32_t(contact.body));
   }
@@ -183,13 +195,68 @@ void wake_bodies(RigidWorld& w, const SoftEntry& entry) {
   }
 }
 
+// The speed below which a vertex is still: that of bodies of the size of what it belongs to.
+float rest_speed(const RigidWorld& w, const SoftEntry& entry) {
+  const Particles& p = entry.body.particles;
+  DVec3 low = p.place(0), high = low;
+  for (int i = 1; i < p.count; ++i) {
+    const DVec3 at = p.place(i);
+    low = {min(low.x, at.x), min(low.y, at.y), min(low.z, at.z)};
+    high = {max(high.x, at.x), max(high.y, at.y), max(high.z, at.z)};
+  }
+  const float gravity = length(w.settings.gravity);
+  return kSleepSpeedShare * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * 0.5f * float(length(high - low)));
+}
+
+bool is_still(const RigidWorld& w, const SoftEntry& entry) {
+  const Particles& p = entry.body.particles;
+  const float most = rest_speed(w, entry);
+  for (int i = 0; i < p.count; ++i)
+    if (length_squared(p.velocity(i)) > most * most) return false;
+  return true;
+}
+
+bool do_all_rest(const RigidWorld& w, const SoftEntry& entry) {
+  for (const SoftContact& contact : entry.contacts)
+    if (contact.impulse != Vec3{} && can_wake_others(w, std::uint32_t(contact.body))) return false;
+  for (const SoftAttachment& one : entry.attachments)
+    if (one.body != kWorldAnchor && can_wake_others(w, std::uint32_t(one.body))) return false;
+  return true;
+}
+
+void fall_asleep(SoftEntry& entry) {
+  entry.rest[0].asleep = 1;
+  Particles& p = entry.body.particles;
+  for (int i = 0; i < p.count; ++i) p.set_velocity(i, {});
+  for (Array<double>& moved : entry.body.moved) moved.clear();
+}
+
 }  // namespace
+
+void rest_soft(RigidWorld& w, SoftStore& soft, float seconds) {
+  if (w.settings.sleeping == 0) return;
+  bool any_field = false;
+  for (const FieldRecord& field : w.fields) any_field = any_field || field.is_live();
+  soft.for_each([&](SoftEntry& entry) {
+    if (!entry.is_awake()) return;
+    SoftRest& rest = entry.rest[0];
+    rest.still_time = !any_field && is_still(w, entry) ? min(rest.still_time + seconds, kMaxStillTime) : 0.0f;
+    if (rest.still_time >= kMaxStillTime && do_all_rest(w, entry)) fall_asleep(entry);
+  });
+}
+
+void wake_all(SoftStore& soft) {
+  soft.for_each([](SoftEntry& entry) { wake(entry); });
+}
 
 void find_soft_contacts(RigidWorld& w, SoftStore& soft, Array<std::uint32_t>& shapes_near, Arena& arena,
                         TaskSystem& tasks, float seconds) {
   soft.for_each([&](SoftEntry& entry) {
     const ArenaScope scope(arena);
-    ContactFinder(w, entry, shapes_near, arena, seconds).run(tasks);
+    ContactFinder finder(w, entry, shapes_near, arena, seconds);
+    if (!entry.is_awake() && finder.is_anything_moving()) wake(entry);
+    if (!entry.is_awake()) return;
+    finder.run(tasks);
     wake_bodies(w, entry);
   });
   refresh_awake(w.bodies);

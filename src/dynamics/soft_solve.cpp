@@ -14,9 +14,6 @@ namespace {
 constexpr int kRounds = 2, kSweeps = 2;
 // Rounds end when they would take less than this share of the energy that a fall in the half-step gives to the vertices in contact.
 constexpr double kContactTolerance = 1.0e-3;
-// Conjugate gradients on attachments: iterations at most, and the share of the energy of the error that is left.
-constexpr int kAttachmentIterations = 8;
-constexpr double kAttachmentTolerance = 1.0e-8;
 // The share of an error of position that is removed in a half-step.
 constexpr float kErrorShare = 0.2f;
 // Largest speed of removal of penetration, as a share of the speed of a fall from the length of an edge: as for contacts of bodies.
@@ -52,7 +49,8 @@ Quat orientation_now(const RigidWorld& w, std::int32_t body) {
 }
 
 // With what the body is still to get in this sub-step.
-Vec3 velocity_of_body(const SoftSolve& s, const SoftRow& row) {
+template <class Row>
+Vec3 velocity_of_body(const SoftSolve& s, const Row& row) {
   if (row.touched < 0) return {};
   const VelocityChange& pending = s.scratch->pending[row.touched];
   return point_velocity(s.w->bodies.motion[std::size_t(row.body)], row.arm) + pending.linear +
@@ -70,7 +68,8 @@ std::int32_t find_touched(const SoftScratch& scratch, std::int32_t body) {
   return std::int32_t(low);
 }
 
-void push_body(RigidWorld& w, const SoftRow& row, Vec3 impulse) {
+template <class Row>
+void push_body(RigidWorld& w, const Row& row, Vec3 impulse) {
   if (row.body < 0) return;
   BodyMotion& motion = w.bodies.motion[std::size_t(row.body)];
   const BodyInertia& inertia = w.bodies.inertia[std::size_t(row.body)];
@@ -79,7 +78,8 @@ void push_body(RigidWorld& w, const SoftRow& row, Vec3 impulse) {
 }
 
 // The compliance of a point of a body: 1/m 1 + [r] I^-1 [r]^T.
-Sym3 body_compliance(const RigidWorld& w, const SoftRow& row) {
+template <class Row>
+Sym3 body_compliance(const RigidWorld& w, const Row& row) {
   if (row.body < 0) return {};
   const BodyInertia& inertia = w.bodies.inertia[std::size_t(row.body)];
   const auto column = [&](Vec3 axis) {
@@ -113,15 +113,49 @@ void move_held(const SoftSolve& s, SoftEntry& entry) {
   }
 }
 
+void add_force(Particles& p, std::uint32_t i, Vec3 force) {
+  p.fx[i] += force.x, p.fy[i] += force.y, p.fz[i] += force.z;
+}
+
 void add_forces_of_rows(SoftSolve& s, std::uint32_t member) {
-  SoftWork& work = work_of(s, member);
+  const SoftWork& work = work_of(s, member);
   Particles& p = entry_of(s, member).body.particles;
   const float rate = 1.0f / s.h;
-  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
-    const SoftRow& row = s.scratch->rows[k];
-    const Vec3 force = rate * row.impulse;
-    p.fx[row.particle] += force.x, p.fy[row.particle] += force.y, p.fz[row.particle] += force.z;
+  for (std::uint32_t k = work.first_row; k < work.last_row; ++k)
+    add_force(p, s.scratch->rows[k].particle, rate * s.scratch->rows[k].impulse);
+}
+
+// Gives attached vertices their part of the inertia of their bodies. Its velocity is that of the point of the body, and what removes a part of
+// the distance.
+void carry(SoftSolve& s, std::uint32_t member) {
+  const RigidWorld& w = *s.w;
+  const SoftWork& work = work_of(s, member);
+  Particles& p = entry_of(s, member).body.particles;
+  const float rate = 1.0f / s.h;
+  for (std::uint32_t k = work.first_joint; k < work.last_joint; ++k) {
+    SoftJoint& joint = s.scratch->joints[k];
+    const SoftAttachment& attachment = entry_of(s, member).attachments[joint.source];
+    joint.arm = rotate(orientation_now(w, joint.body), attachment.local);
+    const DVec3 point = center_now(w, joint.body) + DVec3(joint.arm);
+    const Vec3 apart = difference(point, p.place(int(joint.particle)));
+    const float part = 1.0f / float(s.scratch->held[joint.touched]);
+    s.scratch->carried[k] = {std::int32_t(joint.particle), part * inverse(body_compliance(w, joint)),
+                             velocity_of_body(s, joint) + (kErrorShare * rate) * apart};
+    add_force(p, joint.particle, rate * joint.impulse);
   }
+}
+// The momentum that the carried parts have gained.
+void find_joint_steps(SoftSolve& s, std::uint32_t member) {
+  const SoftWork& work = work_of(s, member);
+  const Particles& p = entry_of(s, member).body.particles;
+  for (std::uint32_t k = work.first_joint; k < work.last_joint; ++k) {
+    const CarriedInertia& carried = s.scratch->carried[k];
+    s.scratch->joints[k].step = carried.inertia * (carried.target - p.velocity(carried.particle));
+  }
+}
+std::span<const CarriedInertia> carried_by(SoftSolve& s, std::uint32_t member) {
+  const SoftWork& work = work_of(s, member);
+  return s.scratch->carried.view().subspan(work.first_joint, work.last_joint - work.first_joint);
 }
 
 // Where a particle is when the half-step begins. Explicit schemes have moved it.
@@ -138,26 +172,18 @@ void prepare_row(SoftSolve& s, SoftRow& row) {
   const RigidWorld& w = *s.w;
   const SoftEntry& entry = entry_of(s, row.member);
   const SoftWork& work = work_of(s, row.member);
-  const DVec3 place = place_at_start(s, entry, work, row.particle);
-  if (row.is_contact) {
-    const SoftContact& contact = entry.contacts[row.source];
-    row.normal = turned_now(w, contact.body, contact.normal);
-    row.arm = turned_now(w, contact.body, contact.from_body);
-    const DVec3 point = center_now(w, contact.body) + DVec3(row.arm);
-    const float gap = dot(row.normal, difference(place, point)) - entry.radius;
-    const float gravity = length(w.settings.gravity);
-    const float most = kSoftPushShare * std::sqrt((gravity > 0.0f ? gravity : kEarthGravity) * entry.size);
-    const float wanted = gap > 0.0f ? gap / s.h : max(kErrorShare * gap / s.h, -most);
-    row.bias = wanted * row.normal - contact.surface_velocity;
-  } else {
-    const SoftAttachment& attachment = entry.attachments[row.source];
-    row.arm = rotate(orientation_now(w, row.body), attachment.local);
-    const DVec3 point = center_now(w, row.body) + DVec3(row.arm);
-    row.bias = (kErrorShare / s.h) * difference(place, point);
-  }
+  const SoftContact& contact = entry.contacts[row.source];
+  row.normal = turned_now(w, contact.body, contact.normal);
+  row.arm = turned_now(w, contact.body, contact.from_body);
+  const DVec3 point = center_now(w, contact.body) + DVec3(row.arm);
+  const float gap =
+      dot(row.normal, difference(place_at_start(s, entry, work, row.particle), point)) - entry.radius;
+  const float gravity = length(w.settings.gravity);
+  const float most = kSoftPushShare * std::sqrt((gravity > 0.0f ? gravity : kEarthGravity) * entry.size);
+  const float wanted = gap > 0.0f ? gap / s.h : max(kErrorShare * gap / s.h, -most);
+  row.bias = wanted * row.normal - contact.surface_velocity;
   row.particle_inverse = inverse_mass(entry, work.step, row.particle);
   row.compliance = row.particle_inverse + body_compliance(w, row);
-  row.inverse = inverse(row.compliance);
 }
 
 // ------------------------------------------------------------------------------------------------------------- rows
@@ -201,7 +227,8 @@ Vec3 tried_change(SoftSolve& s, const SoftRow& row) {
   const VelocityChange& body = s.scratch->changes[row.touched];
   return own - (body.linear + cross(body.angular, row.arm));
 }
-void try_on_body(SoftSolve& s, const SoftRow& row, Vec3 impulse) {
+template <class Row>
+void try_on_body(SoftSolve& s, const Row& row, Vec3 impulse) {
   if (row.touched < 0) return;
   const BodyInertia& inertia = s.w->bodies.inertia[std::size_t(row.body)];
   VelocityChange& body = s.scratch->changes[row.touched];
@@ -209,49 +236,34 @@ void try_on_body(SoftSolve& s, const SoftRow& row, Vec3 impulse) {
   body.angular -= inertia.inverse * cross(row.arm, impulse);
 }
 
-// Calls fn for each row of this kind, member by member.
-template <class Fn>
-void for_each_row(SoftSolve& s, bool contacts, Fn&& fn) {
-  for (std::uint32_t m = 0; m < s.members.size(); ++m) {
-    const SoftWork& work = work_of(s, m);
-    const std::uint32_t begin = contacts ? work.first_contact : work.first_row,
-                        end = contacts ? work.last_row : work.first_contact;
-    for (std::uint32_t k = begin; k < end; ++k) fn(s.scratch->rows[k]);
-  }
-}
-
-void clear_tried(SoftSolve& s, bool contacts) {
+void clear_tried(SoftSolve& s) {
   for (VelocityChange& change : s.scratch->changes) change = {};
-  for_each_row(s, contacts, [&](const SoftRow& row) { work_of(s, row.member).change[row.particle] = {}; });
+  for (const SoftRow& row : s.scratch->rows) work_of(s, row.member).change[row.particle] = {};
 }
 
 // Finds the changes of all vertices and touched bodies by the rows' steps.
-void respond_to_steps(SoftSolve& s, bool contacts) {
+void respond_to_steps(SoftSolve& s) {
   for (VelocityChange& change : s.scratch->changes) change = {};
   for (std::uint32_t m = 0; m < s.members.size(); ++m) {
     SoftWork& work = work_of(s, m);
-    const std::uint32_t begin = contacts ? work.first_contact : work.first_row,
-                        end = contacts ? work.last_row : work.first_contact;
-    if (begin == end) continue;
+    if (work.first_row == work.last_row) continue;
     for (Vec3& impulse : work.impulses) impulse = {};
-    for (std::uint32_t k = begin; k < end; ++k) {
+    for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
       const SoftRow& row = s.scratch->rows[k];
       work.impulses[row.particle] += row.step;
       try_on_body(s, row, row.step);
     }
     respond(entry_of(s, m), work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena,
             work.tasks);
+    for (std::uint32_t k = work.first_joint; k < work.last_joint; ++k) {
+      SoftJoint& joint = s.scratch->joints[k];
+      joint.step = -(s.scratch->carried[k].inertia * work.change[joint.particle]);
+      try_on_body(s, joint, joint.step);
+    }
   }
 }
 
-// Takes a share of the steps and of the changes that they make.
-void take_steps(SoftSolve& s, bool contacts, float share) {
-  for_each_row(s, contacts, [&](SoftRow& row) { row.impulse += share * row.step; });
-  for (std::uint32_t m = 0; m < s.members.size(); ++m) {
-    SoftWork& work = work_of(s, m);
-    const bool any = contacts ? work.first_contact != work.last_row : work.first_row != work.first_contact;
-    if (any) add_change(entry_of(s, m), work.step, work.change.view(), share);
-  }
+void change_bodies(SoftSolve& s, float share) {
   for (std::size_t k = 0; k < s.scratch->touched.size(); ++k) {
     BodyMotion& motion = s.w->bodies.motion[s.scratch->touched[k]];
     const Vec3 linear = share * s.scratch->changes[k].linear, angular = share * s.scratch->changes[k].angular;
@@ -263,58 +275,50 @@ void take_steps(SoftSolve& s, bool contacts, float share) {
   }
 }
 
-// Conjugate gradients on the impulses of all attachments.
-void solve_attachments(SoftSolve& s) {
-  double norm = 0.0;
-  for_each_row(s, false, [&](SoftRow& row) {
-    row.error = error_of(s, row);
-    row.direction = -(row.inverse * row.error);
-    norm -= double(dot(row.direction, row.error));
-  });
-  const double wanted = kAttachmentTolerance * norm;
-  for (int n = 0; n < kAttachmentIterations && norm > wanted; ++n) {
-    for_each_row(s, false, [&](SoftRow& row) { row.step = row.direction; });
-    respond_to_steps(s, false);
-    double curvature = 0.0;
-    for_each_row(s, false,
-                 [&](const SoftRow& row) { curvature += double(dot(row.step, tried_change(s, row))); });
-    if (!(curvature > 0.0)) return;
-    const float share = float(norm / curvature);
-    // Errors follow the change; the rounding of velocities does not get into them.
-    for_each_row(s, false, [&](SoftRow& row) { row.error += share * tried_change(s, row); });
-    take_steps(s, false, share);
-    double next = 0.0;
-    for_each_row(s, false,
-                 [&](const SoftRow& row) { next += double(dot(row.error, row.inverse * row.error)); });
-    const float turn = float(next / norm);
-    for_each_row(s, false,
-                 [&](SoftRow& row) { row.direction = turn * row.direction - row.inverse * row.error; });
-    norm = next;
+// Takes a share of the steps and of the changes that they make.
+void take_steps(SoftSolve& s, float share) {
+  for (SoftRow& row : s.scratch->rows) row.impulse += share * row.step;
+  for (std::uint32_t m = 0; m < s.members.size(); ++m) {
+    SoftWork& work = work_of(s, m);
+    if (work.first_row == work.last_row) continue;
+    add_change(entry_of(s, m), work.step, work.change.view(), share);
+    for (std::uint32_t k = work.first_joint; k < work.last_joint; ++k)
+      s.scratch->joints[k].impulse += share * s.scratch->joints[k].step;
   }
+  change_bodies(s, share);
+}
+
+// Gives bodies the momentum that the parts carried by attached vertices have gained.
+void give_to_bodies(SoftSolve& s) {
+  for (VelocityChange& change : s.scratch->changes) change = {};
+  for (SoftJoint& joint : s.scratch->joints) {
+    try_on_body(s, joint, joint.step);
+    joint.impulse += joint.step;
+  }
+  change_bodies(s, 1.0f);
 }
 
 void sweep_contacts(SoftSolve& s) {
-  for_each_row(s, true, [&](SoftRow& row) {
+  for (SoftRow& row : s.scratch->rows) {
     const Vec3 before = row.impulse + row.step;
     const Vec3 change = next_impulse(row, before, row.error + tried_change(s, row)) - before;
-    if (change == Vec3{}) return;
+    if (change == Vec3{}) continue;
     row.step += change;
     work_of(s, row.member).change[row.particle] += row.particle_inverse * change;
     try_on_body(s, row, change);
-  });
+  }
 }
 
 // The energy that the steps take from the coupled system, to the first order.
 double slope_of(SoftSolve& s) {
   double slope = 0.0;
-  for_each_row(s, true, [&](const SoftRow& row) { slope -= double(dot(row.step, row.error)); });
+  for (const SoftRow& row : s.scratch->rows) slope -= double(dot(row.step, row.error));
   return slope;
 }
 // The share of the steps that is best, at most all of them: contacts would leave their cones.
 float best_share(SoftSolve& s, double slope) {
   double curvature = 0.0;
-  for_each_row(s, true,
-               [&](const SoftRow& row) { curvature += double(dot(row.step, tried_change(s, row))); });
+  for (const SoftRow& row : s.scratch->rows) curvature += double(dot(row.step, tried_change(s, row)));
   if (!(slope > 0.0)) return 0.0f;
   return curvature > slope ? float(slope / curvature) : 1.0f;
 }
@@ -323,25 +327,25 @@ float best_share(SoftSolve& s, double slope) {
 double energy_of_fall(SoftSolve& s) {
   const double fall = double(s.h) * double(length(s.w->settings.gravity));
   double mass = 0.0;
-  for_each_row(s, true, [&](const SoftRow& row) {
+  for (const SoftRow& row : s.scratch->rows) {
     mass += double(entry_of(s, row.member).body.particles.mass[row.particle]);
-  });
+  }
   return mass * fall * fall;
 }
 
 void solve_contacts_in_rounds(SoftSolve& s) {
   const double wanted = kContactTolerance * energy_of_fall(s);
   for (int round = 0; round < kRounds; ++round) {
-    for_each_row(s, true, [&](SoftRow& row) {
+    for (SoftRow& row : s.scratch->rows) {
       row.step = {};
       row.error = error_of(s, row);
-    });
-    clear_tried(s, true);
+    }
+    clear_tried(s);
     for (int n = 0; n < kSweeps; ++n) sweep_contacts(s);
     const double slope = slope_of(s);
     if (!(slope > wanted)) return;
-    respond_to_steps(s, true);
-    take_steps(s, true, best_share(s, slope));
+    respond_to_steps(s);
+    take_steps(s, best_share(s, slope));
   }
 }
 
@@ -349,13 +353,16 @@ void solve_contacts_in_rounds(SoftSolve& s) {
 
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   scratch.slots.clear(), scratch.touched.clear();
-  store.ids.for_each_live([&](std::uint32_t slot) { scratch.slots.push_back(slot); });
+  store.ids.for_each_live([&](std::uint32_t slot) {
+    if (store.entries[slot].is_awake()) scratch.slots.push_back(slot);
+  });
   while (scratch.works.size() < store.entries.size()) scratch.works.push_back(std::make_unique<SoftWork>());
   // Bodies are marked, and then listed in order.
   const auto touch = [&](std::int32_t body) {
     if (moves(w, body)) w.bodies.flags[std::size_t(body)].constraint_use = kPoseRead;
   };
   store.for_each([&](const SoftEntry& entry) {
+    if (!entry.is_awake()) return;
     for (const SoftContact& contact : entry.contacts) touch(contact.body);
     for (const SoftAttachment& attachment : entry.attachments) touch(attachment.body);
   });
@@ -367,8 +374,9 @@ void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
 void make_soft_rows(SoftSolve& s) {
   SoftScratch& scratch = *s.scratch;
   const RigidWorld& w = *s.w;
-  scratch.rows.clear();
-  scratch.changes.resize(scratch.touched.size()), scratch.pending.resize(scratch.touched.size());
+  scratch.rows.clear(), scratch.joints.clear();
+  scratch.held.assign(scratch.touched.size(), 0u);
+  scratch.changes.resize(scratch.touched.size()), scratch.pending.assign(scratch.touched.size(), VelocityChange{});
   for (std::uint32_t m = 0; m < s.members.size(); ++m) {
     SoftEntry& entry = entry_of(s, m);
     SoftWork& work = work_of(s, m);
@@ -376,21 +384,10 @@ void make_soft_rows(SoftSolve& s) {
     work.arena.reset();
     work.impulses.resize(padded), work.change.resize(padded);
     work.first_row = std::uint32_t(scratch.rows.size());
-    for (std::uint32_t k = 0; k < entry.attachments.size(); ++k) {
-      const SoftAttachment& one = entry.attachments[k];
-      if (!yields(w, one.body)) continue;
-      if (entry.body.particles.loose[one.particle] == 0.0f) let_go(entry.body, int(one.particle));
-      SoftRow row;
-      row.member = m, row.particle = one.particle, row.body = one.body, row.source = k;
-      row.touched = find_touched(scratch, row.body);
-      row.impulse = s.warm_scale * one.impulse;
-      scratch.rows.push_back(row);
-    }
-    work.first_contact = std::uint32_t(scratch.rows.size());
     for (std::uint32_t k = 0; k < entry.contacts.size(); ++k) {
       const SoftContact& one = entry.contacts[k];
       SoftRow row;
-      row.member = m, row.particle = one.particle, row.source = k, row.is_contact = true;
+      row.member = m, row.particle = one.particle, row.source = k;
       row.body = moves(w, one.body) ? one.body : -1;
       row.touched = find_touched(scratch, row.body);
       row.static_friction = one.static_friction, row.dynamic_friction = one.dynamic_friction;
@@ -399,6 +396,21 @@ void make_soft_rows(SoftSolve& s) {
       scratch.rows.push_back(row);
     }
     work.last_row = std::uint32_t(scratch.rows.size());
+    work.first_joint = std::uint32_t(scratch.joints.size());
+    for (std::uint32_t k = 0; k < entry.attachments.size(); ++k) {
+      const SoftAttachment& one = entry.attachments[k];
+      if (!yields(w, one.body)) continue;
+      if (entry.body.particles.loose[one.particle] == 0.0f) let_go(entry.body, int(one.particle));
+      SoftJoint joint;
+      joint.member = m, joint.particle = one.particle, joint.body = one.body, joint.source = k;
+      joint.touched = find_touched(scratch, joint.body);
+      joint.arm = rotate(orientation_now(w, joint.body), one.local);
+      joint.impulse = s.warm_scale * one.impulse;
+      ++scratch.held[joint.touched];
+      scratch.joints.push_back(joint);
+    }
+    work.last_joint = std::uint32_t(scratch.joints.size());
+    scratch.carried.resize(scratch.joints.size());
   }
 }
 
@@ -410,29 +422,23 @@ void begin_soft_members(SoftSolve& s, int begin, int end) {
     move_held(s, entry);
     set_field_forces(*s.w, entry, s.time, s.h);
     add_forces_of_rows(s, m);
-    work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity}, *s.kernels, work.arena, work.tasks);
+    carry(s, m);
+    work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels, work.arena, work.tasks);
+    find_joint_steps(s, m);
   }
 }
 
 void warm_start_soft_rows(SoftSolve& s, int, int) {
-  for (SoftRow& row : s.scratch->rows) {
-    if (row.body < 0) continue;
-    if (!row.is_contact) {
-      const SoftAttachment& attachment = entry_of(s, row.member).attachments[row.source];
-      row.arm = rotate(orientation_now(*s.w, row.body), attachment.local);
-    }
-    push_body(*s.w, row, (-1.0f / float(s.parts)) * row.impulse);
-  }
+  const float part = -1.0f / float(s.parts);
+  for (const SoftRow& row : s.scratch->rows) push_body(*s.w, row, part * row.impulse);
+  for (const SoftJoint& joint : s.scratch->joints) push_body(*s.w, joint, part * joint.impulse);
 }
 
 void solve_soft_rows(SoftSolve& s, int, int) {
-  if (s.scratch->rows.empty()) return;
-  for (VelocityChange& pending : s.scratch->pending) pending = {};
+  give_to_bodies(s);
   for (SoftRow& row : s.scratch->rows) prepare_row(s, row);
-  bool any_attached = false, any_contact = false;
-  for (const SoftRow& row : s.scratch->rows) (row.is_contact ? any_contact : any_attached) = true;
-  if (any_attached) solve_attachments(s);
-  if (any_contact) solve_contacts_in_rounds(s);
+  if (!s.scratch->rows.empty()) solve_contacts_in_rounds(s);
+  for (VelocityChange& pending : s.scratch->pending) pending = {};
 }
 
 void finish_soft_members(SoftSolve& s, int begin, int end) {
@@ -445,11 +451,10 @@ void finish_soft_members(SoftSolve& s, int begin, int end) {
 }
 
 void keep_soft_rows(SoftSolve& s) {
-  for (const SoftRow& row : s.scratch->rows) {
-    SoftEntry& entry = entry_of(s, row.member);
-    (row.is_contact ? entry.contacts[row.source].impulse : entry.attachments[row.source].impulse) =
-        row.impulse;
-  }
+  for (const SoftRow& row : s.scratch->rows)
+    entry_of(s, row.member).contacts[row.source].impulse = row.impulse;
+  for (const SoftJoint& joint : s.scratch->joints)
+    entry_of(s, joint.member).attachments[joint.source].impulse = joint.impulse;
 }
 
 }  // namespace gyre

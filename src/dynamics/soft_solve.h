@@ -1,13 +1,14 @@
 // Ropes, cloths and solids within the sub-steps of a batch: their own step, and the rows that couple them with bodies and with each other.
 //
-// A row is a vertex against a point of a body: an attachment (all three directions) or a contact (normal and friction). The coupled system is
-// never assembled: each body of soft matter tells how all its vertices respond to impulses on some of them, and bodies do so too.
+// An attached vertex carries inertia of its body: K^-1 / n, with K the compliance of the point that it is attached to and n the number of vertices
+// that are attached to the body. The vertex and this part move as one through the whole solve, so a rope between heavy bodies, or over a pulley
+// with loads of a thousand times its mass, knows what hangs on it. The body then gets the momentum that its part has gained. With one vertex
+// that is exact; with several, the parts may differ from the body by what is left for the next sub-step.
 //
-// Attachments are linear. They are solved together by conjugate gradients on their impulses, preconditioned by each row's own 3 x 3 block, so
-// that a rope between heavy bodies, or a body on a stiff sheet, is right at any ratio of masses. Contacts are solved in rounds: sweeps of
-// sequential impulses find impulses with the block of each vertex alone, which does not know what moves along with it; of these the share is
-// taken that minimises the energy of the coupled system, found from the true response. A round never makes the system worse, whatever masses
-// and stiffnesses meet.
+// A row is a contact of a vertex with a point of a body, with friction. Contacts are solved in rounds: sweeps of sequential impulses find
+// impulses with the block of each vertex alone, which does not know what moves along with it; of these the share is
+// taken that minimises the energy of the coupled system, found from the true response of all vertices. A round never makes the system worse, whatever
+// masses and stiffnesses meet.
 //
 // Soft matter moves once in a whole sub-step, bodies in each of its half-steps. A vertex gets the impulse of a row at once; a body gets an
 // equal part of it in each half-step: the first when the row is solved, the others as the change by contacts, which starts the solve of
@@ -29,25 +30,34 @@
 
 namespace gyre {
 
-// A row of three: a vertex against a point of a body.
+// A contact as a row of three.
 struct SoftRow {
   std::uint32_t member = 0;  // index in SoftSolve::members
   std::uint32_t particle = 0;
-  std::int32_t body = -1;    // -1: none that the row reads
-  std::uint32_t source = 0;  // index among the entry's contacts or attachments
-  bool is_contact = false;
-  float static_friction = 0.0f, dynamic_friction = 0.0f;
-  Vec3 normal{};              // contacts: out of the body, now
-  Vec3 arm{};                 // from the body's centre of mass, now
-  Vec3 bias{};                // m/s, added to the relative velocity: what is wanted is that both cancel
-  Sym3 compliance{};          // 1/kg, of both sides
-  Sym3 inverse{};             // its inverse
-  Sym3 particle_inverse{};    // 1/kg, of the vertex alone
+  std::int32_t body = -1;     // -1: it does not move
   std::int32_t touched = -1;  // index of the body in SoftScratch::touched
-  Vec3 impulse{};             // N s on the vertex
-  Vec3 error{};               // m/s: relative velocity and bias; zero is wanted
-  Vec3 step{};                // N s: the change of impulse that is tried
-  Vec3 direction{};           // N s: of conjugate gradients
+  std::uint32_t source = 0;   // index among the entry's contacts
+  float static_friction = 0.0f, dynamic_friction = 0.0f;
+  Vec3 normal{};            // out of the body, now
+  Vec3 arm{};               // from the body's centre of mass, now
+  Vec3 bias{};              // m/s, added to the relative velocity: what is wanted is that both cancel
+  Sym3 compliance{};        // 1/kg, of both sides
+  Sym3 particle_inverse{};  // 1/kg, of the vertex alone
+  Vec3 impulse{};           // N s on the vertex
+  Vec3 error{};             // m/s: relative velocity and bias when the round began
+  Vec3 step{};              // N s: the change of impulse that is tried
+};
+
+// An attachment to a body that yields; its CarriedInertia has the same index.
+struct SoftJoint {
+  std::uint32_t member = 0;
+  std::uint32_t particle = 0;
+  std::int32_t body = 0;
+  std::int32_t touched = 0;
+  std::uint32_t source = 0;  // index among the entry's attachments
+  Vec3 arm{};                // from the body's centre of mass, now
+  Vec3 impulse{};  // N s on the vertex
+  Vec3 step{};     // N s: that on the vertex which the body has not got yet
 };
 
 // Memory of one body of soft matter, which lasts; its arena is used within a half-step.
@@ -56,8 +66,9 @@ struct SoftWork {
   TaskSystem tasks;  // serial
   Arena::Mark mark{};
   SoftStep step;
-  Array<Vec3> impulses, change;                                  // by particle
-  std::uint32_t first_row = 0, first_contact = 0, last_row = 0;  // its attachments, then its contacts
+  Array<Vec3> impulses, change;                   // by particle
+  std::uint32_t first_row = 0, last_row = 0;      // in SoftScratch::rows
+  std::uint32_t first_joint = 0, last_joint = 0;  // in SoftScratch::joints
 };
 
 // A change of velocity of a body, m/s and rad/s.
@@ -71,6 +82,9 @@ struct SoftScratch {
   Array<std::uint32_t> touched;  // bodies that move and are touched or held by soft matter, ascending
   Array<std::uint32_t> slots;    // of all there are
   Array<SoftRow> rows;
+  Array<SoftJoint> joints;
+  Array<CarriedInertia> carried;
+  Array<std::uint32_t> held;  // attachments to each touched body
   // Of touched bodies: the change by the impulses that are tried; what the other half-steps of the sub-step are to bring.
   Array<VelocityChange> changes, pending;
 };

@@ -424,8 +424,9 @@ void solve_step(RigidWorld& w, SoftStore& soft, SolveScratch& scratch, Arena& ar
   const bool shared = may_share_batches(w, tasks);
   begin_workers(scratch, shared ? std::size_t(tasks.worker_count()) : 0);
   const ArenaScope scope(arena);
+  scratch.soft.slots.clear(), scratch.soft.touched.clear();
   if (!soft.empty()) gather_soft(w, soft, scratch.soft);
-  const std::span<const std::uint32_t> united = soft.empty() ? std::span<const std::uint32_t>{} : scratch.soft.touched.view();
+  const std::span<const std::uint32_t> united = scratch.soft.touched.view();
   const IslandBatches all = find_batches(w, united, arena, tasks, batch_size(tasks.worker_count(), shared));
   const auto describe = [&](const IslandBatch& members, BatchScratch& own) {
     return describe_batch(w, own, kernels, members, all.local_index, seconds, plan);
@@ -441,7 +442,7 @@ void solve_step(RigidWorld& w, SoftStore& soft, SolveScratch& scratch, Arena& ar
     if (has_soft) keep_soft_rows(batch.soft);
   };
   // Soft matter that touches no moving body has a batch of its own.
-  if (!soft.empty() && all.united < 0) solve_together({}, true);
+  if (!scratch.soft.slots.empty() && all.united < 0) solve_together({}, true);
   for (std::size_t i = 0; i < all.batches.size(); ++i) {
     const bool has_soft = int(i) == all.united;
     if (!shared || !all.batches[i].is_small || has_soft) solve_together(all.batches[i], has_soft);

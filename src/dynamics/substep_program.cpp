@@ -68,7 +68,6 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
     p.coupling_springs<apply_spring_impulses>();
     if (warm_start_with_forces) p.bodies<apply_forces_and_warm_start>();
     if (!warm_start_with_forces) p.bodies<apply_forces>();
-    if (p.begins_soft(half_step)) p.soft_members<begin_soft_members>();
     p.impacts<apply_contact_restitution>();
     // Warm start. Joints come before contacts, so that their impulses are not counted as contact change.
     p.all_joints<compute_second_order_bias>();
@@ -98,6 +97,8 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   if (first) p.row_islands<solve_row_islands_first>();
   if (!first) p.row_islands<solve_row_islands>();
   p.contacts<solve_contacts>();
+  // Soft matter, with bodies as joints and contacts leave them.
+  if (p.begins_soft(half_step)) p.soft_members<begin_soft_members>();
   if (p.begins_soft(half_step)) p.soft_rows<solve_soft_rows>();
   if (first || last) p.resting_trees<solve_resting_trees>();
   if (first) p.resting_structures<solve_resting_structures_first>();

@@ -3,6 +3,7 @@
 
 #include "base/float_mode.h"
 #include "collision/contact/pair_update.h"
+#include "dynamics/soft_contacts.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
@@ -196,6 +197,7 @@ CommandResult execute(WorldState& s, const RemoveShape& c) {
   const std::uint32_t body = w.shapes.bodies[shape];
   wake_if_movable(w, body);
   wake_neighbours(w, body);
+  wake_touching(s.soft, body);
   drop_contacts(w, shape);
   erase_index(w.bodies.shapes[body], shape);
   remove_shape_slot(w.shapes, shape);
@@ -213,6 +215,7 @@ CommandResult execute(WorldState& s, const RemoveJoint& c) {
 CommandResult execute(WorldState& s, const SetPose& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t body = c.body.index;
+  wake_touching(s.soft, body);
   wake_if_movable(w, body);
   wake_neighbours(w, body);
   const Pose pose{c.pose.position, normalized(c.pose.orientation)};
@@ -252,6 +255,7 @@ CommandResult execute(WorldState& s, const MoveKinematic& c) {
 CommandResult execute(WorldState& s, const SetType& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t body = c.body.index;
+  wake_touching(s.soft, body);
   if (w.bodies.flags[body].type == c.type) return {true, {}, {}, {}};
   wake_if_movable(w, body);
   wake_neighbours(w, body);
@@ -270,7 +274,7 @@ CommandResult execute(WorldState& s, const SetType& c) {
 }
 
 CommandResult execute(WorldState& s, const SetGravity& c) {
-  if (s.rigid.settings.gravity != c.gravity) wake_all(s.rigid);
+  if (s.rigid.settings.gravity != c.gravity) wake_all(s.rigid), wake_all(s.soft);
   s.rigid.settings.gravity = c.gravity;
   return {true, {}, {}, {}};
 }
@@ -318,7 +322,7 @@ CommandResult execute(WorldState& s, const SetMaterialPair& c) {
     w.material_pairs.insert_at(at, pair);
   }
   w.shapes.ids.for_each_live([&](std::uint32_t shape) { remix(w, shape); });
-  wake_all(w);
+  wake_all(w), wake_all(s.soft);
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const SetSurfaceRule& c) {
@@ -330,7 +334,7 @@ CommandResult execute(WorldState& s, const SetSurfaceRule& c) {
   } else {
     rules.insert_at(at, c.rule);
   }
-  wake_all(s.rigid);
+  wake_all(s.rigid), wake_all(s.soft);
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const SetFilter& c) {
@@ -338,6 +342,7 @@ CommandResult execute(WorldState& s, const SetFilter& c) {
   const std::uint32_t shape = c.shape.index;
   wake_if_movable(w, w.shapes.bodies[shape]);
   wake_neighbours(w, w.shapes.bodies[shape]);
+  wake_touching(s.soft, w.shapes.bodies[shape]);
   drop_contacts(w, shape);
   w.shapes.proxies[shape].filter = c.filter;
   refit_placed_shape(w, shape);
@@ -360,7 +365,7 @@ CommandResult execute(WorldState& s, const SetJointEnabled& c) {
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const SetSleeping& c) {
-  if (!c.enabled) wake_all(s.rigid);
+  if (!c.enabled) wake_all(s.rigid), wake_all(s.soft);
   s.rigid.settings.sleeping = c.enabled ? 1 : 0;
   return {true, {}, {}, {}};
 }
@@ -399,7 +404,7 @@ CommandResult execute(WorldState& s, const SetCombineRules& c) {
   w.settings.friction_rule = c.friction;
   w.settings.restitution_rule = c.restitution;
   w.shapes.ids.for_each_live([&](std::uint32_t shape) { remix(w, shape); });
-  wake_all(w);
+  wake_all(w), wake_all(s.soft);
   return {true, {}, {}, {}};
 }
 

@@ -1,3 +1,4 @@
+#include "dynamics/soft_contacts.h"
 #include "world/field_commands.h"
 
 #include "rigid/sleep/island.h"
@@ -124,7 +125,7 @@ CommandResult execute(WorldState& s, const AddField& c) {
   const std::uint32_t generation = fields[slot].generation + 1;
   fields[slot] = make_field_record(c.def);
   fields[slot].generation = generation;
-  wake_all(s.rigid);
+  wake_all(s.rigid), wake_all(s.soft);
   CommandResult out;
   out.done = true;
   out.field = field_id(s, slot);
@@ -135,7 +136,7 @@ CommandResult execute(WorldState& s, const SetField& c) {
   const std::uint32_t generation = field.generation;
   field = make_field_record(c.def);
   field.generation = generation;
-  wake_all(s.rigid);
+  wake_all(s.rigid), wake_all(s.soft);
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const RemoveField& c) {
@@ -143,7 +144,7 @@ CommandResult execute(WorldState& s, const RemoveField& c) {
   const std::uint32_t generation = field.generation + 1;
   field = {};
   field.generation = generation;
-  wake_all(s.rigid);
+  wake_all(s.rigid), wake_all(s.soft);
   return {true, {}, {}, {}};
 }
 

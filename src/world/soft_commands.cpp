@@ -48,6 +48,7 @@ void anchor_here(const RigidWorld& w, const SoftEntry& entry, SoftAttachment& at
 // Contacts of the last step, between steps of a scheme, and the changes that the next step begins with, belong to the old places.
 void forget_motion(SoftEntry& entry) {
   entry.contacts.clear();
+  wake(entry);
   for (Array<float>& pull : entry.body.pull) pull.clear();
   for (Array<double>& moved : entry.body.moved) moved.clear();
 }
@@ -122,6 +123,7 @@ CommandResult execute(WorldState& s, const AttachSoft& c) {
   SoftAttachment& attachment = entry.attachments[at];
   attachment.body = c.body ? std::int32_t(c.body.index) : kWorldAnchor;
   anchor_here(s.rigid, entry, attachment);
+  wake(entry);
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const ReleaseSoft& c) {
@@ -131,6 +133,7 @@ CommandResult execute(WorldState& s, const ReleaseSoft& c) {
   if (entry.attachments[at].body != kWorldAnchor) wake(s.rigid, std::uint32_t(entry.attachments[at].body));
   entry.attachments.erase_at(at);
   let_go(entry.body, c.vertex);
+  wake(entry);
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const SetVertices& c) {
@@ -144,15 +147,27 @@ CommandResult execute(WorldState& s, const SetVertices& c) {
   return {true, {}, {}, {}};
 }
 
+void wake_touching(SoftStore& soft, std::uint32_t body) {
+  soft.for_each([&](SoftEntry& entry) {
+    bool touches = false;
+    for (const SoftContact& one : entry.contacts) touches = touches || one.body == std::int32_t(body);
+    for (const SoftAttachment& one : entry.attachments) touches = touches || one.body == std::int32_t(body);
+    if (touches) wake(entry);
+  });
+}
+
 void forget_body(SoftStore& soft, std::uint32_t body) {
   soft.for_each([&](SoftEntry& entry) {
     for (std::size_t k = entry.attachments.size(); k-- > 0;) {
       if (entry.attachments[k].body != std::int32_t(body)) continue;
       let_go(entry.body, int(entry.attachments[k].particle));
       entry.attachments.erase_at(k);
+      wake(entry);
     }
     for (std::size_t k = entry.contacts.size(); k-- > 0;) {
-      if (entry.contacts[k].body == std::int32_t(body)) entry.contacts.erase_at(k);
+      if (entry.contacts[k].body != std::int32_t(body)) continue;
+      entry.contacts.erase_at(k);
+      wake(entry);
     }
   });
 }

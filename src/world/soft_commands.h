@@ -21,6 +21,8 @@ CommandResult execute(WorldState& state, const SetVertices& c);
 
 // True if what the id names exists.
 bool is_soft(const WorldState& state, SoftId id);
+// Wakes what touches a body, or hangs on it, that a command changes.
+void wake_touching(SoftStore& soft, std::uint32_t body);
 // A body is about to be removed: releases what is attached to it.
 void forget_body(SoftStore& soft, std::uint32_t body);
 

@@ -185,6 +185,10 @@ template <Is<SolverSettings> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.kind), f(r.options.lcp_method), f(r.options.friction_sides), f(r.options.iterations), f(r.options.direct_rows);
 }
+template <Is<SoftRest> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.still_time), f(r.asleep);
+}
 template <Is<SoftAttachment> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.body), for_each_field(r.place, f), for_each_field(r.local, f), for_each_field(r.impulse, f);

@@ -143,7 +143,10 @@ void finish_step(WorldState& s, float seconds, float whole, bool last) {
             [&] { clamp_fast_bodies(w, s.continuous, *s.kernels, s.arena, *s.tasks); });
   run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, s.arena, *s.tasks, whole, s.frozen, last); });
   run_stage(s, StageName::break_joints, [&] { break_joints(w, seconds); });
-  run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
+  run_stage(s, StageName::put_to_sleep, [&] {
+    put_to_sleep(w, s.arena, seconds);
+    if (!s.soft.empty()) rest_soft(w, s.soft, seconds);
+  });
 }
 
 // What a step that is tried again begins with.

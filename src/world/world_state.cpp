@@ -51,7 +51,7 @@ class HashVisitor {
     soft.for_each([&](const SoftEntry& entry) {
       const Particles& p = entry.body.particles;
       add_word(std::uint64_t(entry.kind) << 32 | std::uint64_t(p.count));
-      for (const float mass : p.mass) add(mass);
+      for (const float mass : p.mass) add_record(mass);
       for_each_soft_array(entry, [&](const auto& array) {
         add_word(array.size());
         for (const auto& record : array) add_record(record);

@@ -46,11 +46,6 @@ double lowest(const SoftVertices& v) {
   for (std::size_t i = 0; i < v.size(); ++i) low = std::fmin(low, v.y[i]);
   return low;
 }
-double fastest(const SoftVertices& v) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < v.size(); ++i) most = std::fmax(most, double(length(v.velocity(i))));
-  return most;
-}
 double rope_length(const SoftVertices& v) {
   double sum = 0.0;
   for (std::size_t i = 1; i < v.size(); ++i) sum += length(v.position(i) - v.position(i - 1));

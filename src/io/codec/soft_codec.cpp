@@ -35,7 +35,7 @@ bool fits(const SoftEntry& entry) {
   for (const Array<float>* column : {&p.vx, &p.vy, &p.vz}) good = good && column->size() == rows;
   for (const Array<float>& column : entry.body.pull) good = good && (column.empty() || column.size() == rows);
   for (const Array<double>& column : entry.body.moved) good = good && (column.empty() || column.size() == rows);
-  return good && entry.body.chain.tension.size() == entry.body.chain.rest_length.size();
+  return good && entry.rest.size() == 1 && entry.body.chain.tension.size() == entry.body.chain.rest_length.size();
 }
 
 }  // namespace

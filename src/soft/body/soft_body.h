@@ -40,6 +40,13 @@ struct HeldParticle {
   DVec3 place{};
 };
 
+// A particle that carries inertia of something else, which moves as one with it: in a sub-step from the velocity `target`.
+struct CarriedInertia {
+  std::int32_t particle = 0;
+  Sym3 inertia{};  // kg
+  Vec3 target{};   // m/s
+};
+
 // The spring of two particles, as the builders give it.
 struct Spring {
   std::uint32_t a = 0;

@@ -10,9 +10,6 @@ namespace gyre {
 
 namespace {
 
-// Share of the error of impulses that have spread far enough.
-constexpr double kSpreadTolerance = 1.0e-4;
-
 SoftPass make_pass(SoftBody& body, const ImplicitSettings& settings, Arena& arena) {
   SoftPass pass = begin_pass(body, arena);
   const std::size_t rows = std::size_t(padded_rows(body.particles.count));
@@ -79,8 +76,22 @@ void keep_pull(SoftBody& body, const ImplicitSettings& settings, const SoftPass&
 // Conjugate gradients on a pass whose residual, first direction and their product `error` are there.
 class Solver {
  public:
-  Solver(const SoftPass& pass, const SoftKernels& kernels, TaskSystem& tasks)
-      : pass_(pass), kernels_(kernels), tasks_(tasks) {}
+  Solver(const SoftPass& pass, std::span<const CarriedInertia> carried, const SoftKernels& kernels,
+         TaskSystem& tasks)
+      : pass_(pass), carried_(carried), kernels_(kernels), tasks_(tasks) {}
+
+  // product = A p; p times it.
+  double apply() {
+    double curvature = sum(kernels_.apply);
+    for (const CarriedInertia& one : carried_) {
+      const int i = one.particle;
+      const Vec3 p{pass_.direction.x[i], pass_.direction.y[i], pass_.direction.z[i]};
+      const Vec3 more = one.inertia * p;
+      pass_.product.x[i] += more.x, pass_.product.y[i] += more.y, pass_.product.z[i] += more.z;
+      curvature += double(dot(p, more));
+    }
+    return curvature;
+  }
 
   template <class Kernel, class... Rest>
   void each(Kernel kernel, Rest... rest) {
@@ -98,7 +109,7 @@ class Solver {
   // Goes along the direction that is there as far as pays, and begins anew from there. So a bad guess is no worse than none, and the energy
   // that an early end leaves is at most that of not having solved at all.
   double go_along_direction(double error) {
-    const double curvature = sum(kernels_.apply), slope = sum(kernels_.match);
+    const double curvature = apply(), slope = sum(kernels_.match);
     if (curvature > 0.0 && absolute(slope) > 0.0)
       error = sum(kernels_.advance, float(slope / curvature));
     else
@@ -111,7 +122,7 @@ class Solver {
   int iterate(double& error, double wanted, int least, int most) {
     int iterations = 0;
     while (error > 0.0 && iterations < most && (error > wanted || iterations < least)) {
-      const double curvature = sum(kernels_.apply);
+      const double curvature = apply();
       if (!(curvature > 0.0)) break;
       const double after = sum(kernels_.advance, float(error / curvature));
       each(kernels_.turn, float(after / error));
@@ -123,13 +134,14 @@ class Solver {
 
  private:
   const SoftPass& pass_;
+  std::span<const CarriedInertia> carried_;
   const SoftKernels& kernels_;
   TaskSystem& tasks_;
 };
 
 ImplicitReport solve(SoftBody& body, const SoftPass& pass, const ImplicitSettings& settings, double mass,
                      const SoftKernels& kernels, TaskSystem& tasks) {
-  Solver solver(pass, kernels, tasks);
+  Solver solver(pass, settings.carried, kernels, tasks);
   solver.each(kernels.start);
   double error = solver.sum(kernels.begin);
   const double start = error;
@@ -144,6 +156,19 @@ ImplicitReport solve(SoftBody& body, const SoftPass& pass, const ImplicitSetting
   return report;
 }
 
+// Inertia that particles carry: in their blocks of the matrix, and as the impulse that brings them to its velocity.
+void add_carried(SoftBody& body, const ImplicitSettings& settings, const SoftPass& pass) {
+  Particles& p = body.particles;
+  for (const CarriedInertia& one : settings.carried) {
+    const int i = one.particle;
+    const Sym3& m = one.inertia;
+    const float parts[6] = {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz};
+    for (int k = 0; k < 6; ++k) pass.diagonal[k][i] += parts[k];
+    const Vec3 force = (1.0f / settings.step) * (m * (one.target - p.velocity(i)));
+    p.fx[i] += force.x, p.fy[i] += force.y, p.fz[i] += force.z;
+  }
+}
+
 // What gravity and the forces from outside give in the sub-step.
 void find_impulses(const Particles& particles, const ImplicitSettings& settings, const VectorRows& impulses) {
   const float h = settings.step;
@@ -152,6 +177,12 @@ void find_impulses(const Particles& particles, const ImplicitSettings& settings,
     impulses.y[i] = h * (particles.mass[i] * settings.gravity.y + particles.fy[i]);
     impulses.z[i] = h * (particles.mass[i] * settings.gravity.z + particles.fz[i]);
   }
+}
+
+void keep_momentum(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
+                   const VectorRows& change) {
+  if (step.carried.empty()) return gyre::keep_momentum(body.particles, impulses, change);
+  keep_linear_momentum(body.particles, step.carried, impulses, change);
 }
 
 void change_velocities(Particles& particles, const VectorRows& change) {
@@ -167,15 +198,17 @@ void change_velocities(Particles& particles, const VectorRows& change) {
 ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, const SoftKernels& kernels,
                             Arena& arena, TaskSystem& tasks) {
   ImplicitStep step;
+  step.carried = settings.carried;
   step.pass = make_pass(body, settings, arena);
   set_known_change(body, settings, step.pass);
   linearize(step.pass, body, kernels, tasks);
+  add_carried(body, settings, step.pass);
   double mass = 0.0;
   for (int i = 0; i < body.particles.count; ++i) mass += double(body.particles.mass[i]);
   step.report = solve(body, step.pass, settings, mass, kernels, tasks);
   if (body.held.empty()) {
     find_impulses(body.particles, settings, step.pass.product);
-    keep_momentum(body.particles, step.pass.product, step.pass.change);
+    keep_momentum(body, step, step.pass.product, step.pass.change);
   }
   keep_pull(body, settings, step.pass);
   change_velocities(body.particles, step.pass.change);
@@ -188,8 +221,8 @@ Sym3 inverse_mass(const ImplicitStep& step, int particle) {
 }
 
 void find_response(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
-                   const VectorRows& change, int iterations, const SoftKernels& kernels, Arena& arena,
-                   TaskSystem& tasks) {
+                   const VectorRows& change, int iterations, double tolerance, const SoftKernels& kernels,
+                   Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   SoftPass pass = step.pass;
   const std::size_t rows = body.particles.x.size();
@@ -200,23 +233,23 @@ void find_response(const SoftBody& body, const ImplicitStep& step, const VectorR
     pass.residual.x[i] = impulses.x[i], pass.residual.y[i] = impulses.y[i],
     pass.residual.z[i] = impulses.z[i];
   }
-  Solver solver(pass, kernels, tasks);
+  Solver solver(pass, step.carried, kernels, tasks);
   double error = solver.sum(kernels.precondition);
-  solver.iterate(error, kSpreadTolerance * error, 1, iterations);
-  if (body.held.empty()) keep_momentum(body.particles, impulses, change);
+  solver.iterate(error, tolerance * error, tolerance > 0.0 ? 1 : iterations, iterations);
+  if (body.held.empty()) keep_momentum(body, step, impulses, change);
 }
 
 void add_impulses(SoftBody& body, const ImplicitStep& step, const VectorRows& impulses, int iterations,
                   const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   const VectorRows change = make_vectors(arena, body.particles.x.size());
-  find_response(body, step, impulses, change, iterations, kernels, arena, tasks);
+  find_response(body, step, impulses, change, iterations, 0.0, kernels, arena, tasks);
   change_velocities(body.particles, change);
 }
 
 void finish_implicit(SoftBody& body, const ImplicitStep& step, const SoftKernels& kernels,
                      TaskSystem& tasks) {
-  Solver(step.pass, kernels, tasks).each(kernels.finish);
+  Solver(step.pass, {}, kernels, tasks).each(kernels.finish);
   place_held(body);
 }
 

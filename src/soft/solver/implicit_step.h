@@ -9,7 +9,7 @@
 // Iterations end when the residual, measured as the kinetic energy that is wrong, is below the square of `tolerance` times that of the
 // change that gravity and the forces ask for; at least `least_iterations` are made and at most `most_iterations`.
 //
-// A body that is held nowhere keeps its momentum: at the end the change of velocity is made to have exactly the linear and angular momentum
+// A body that is held nowhere and carries nothing keeps its momentum: at the end the change of velocity is made to have exactly the linear and angular momentum
 // that the forces from outside give, by a rigid motion. So both are right at any number of iterations. (Backward Euler itself loses angular
 // momentum, since it turns along the tangent.)
 //
@@ -35,6 +35,7 @@ struct ImplicitSettings {
   float tolerance = 1.0e-2f;
   int least_iterations = 3;
   int most_iterations = 50;
+  std::span<const CarriedInertia> carried{};
 };
 
 struct ImplicitReport {
@@ -45,6 +46,7 @@ struct ImplicitReport {
 // A sub-step between its parts. Its memory is the arena's.
 struct ImplicitStep {
   SoftPass pass;
+  std::span<const CarriedInertia> carried{};
   ImplicitReport report;
 };
 
@@ -54,11 +56,11 @@ ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, co
 // How a particle's velocity answers an impulse on it, its neighbours held still: the inverse of its block of A, 1/kg; zero if it is held.
 Sym3 inverse_mass(const ImplicitStep& step, int particle);
 // Finds the change of velocity that impulses (N s, a row for each particle, also those that fill up the last slice) make, through the
-// stiffness of the whole body: A d = impulses, by so many iterations.
+// stiffness of the whole body: A d = impulses, by so many iterations at most, or until so small a share of the error is left.
 void find_response(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
-                   const VectorRows& change, int iterations, const SoftKernels& kernels, Arena& arena,
-                   TaskSystem& tasks);
-// The same, and adds it.
+                   const VectorRows& change, int iterations, double tolerance, const SoftKernels& kernels,
+                   Arena& arena, TaskSystem& tasks);
+// The same by exactly so many iterations, and adds it.
 void add_impulses(SoftBody& body, const ImplicitStep& step, const VectorRows& impulses, int iterations,
                   const SoftKernels& kernels, Arena& arena, TaskSystem& tasks);
 // Moves the particles with the velocities that they have now.

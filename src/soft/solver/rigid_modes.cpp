@@ -58,4 +58,29 @@ void keep_momentum(const Particles& particles, const VectorRows& impulses, const
   }
 }
 
+void keep_linear_momentum(const Particles& particles, std::span<const CarriedInertia> carried,
+                          const VectorRows& impulses, const VectorRows& change) {
+  double mass[3][3] = {};
+  DVec3 linear{};
+  for (int i = 0; i < particles.count; ++i) {
+    const double m = double(particles.mass[i]);
+    for (int k = 0; k < 3; ++k) mass[k][k] += m;
+    linear += row_of(impulses, i) - m * row_of(change, i);
+  }
+  for (const CarriedInertia& one : carried) {
+    const Sym3& m = one.inertia;
+    const float rows[3][3] = {{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}};
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) mass[r][c] += double(rows[r][c]);
+    linear = linear - DVec3(m * to_float(row_of(change, one.particle)));
+  }
+  double push[3] = {linear.x, linear.y, linear.z};
+  solve_ldlt(factor_ldlt(mass), push);
+  for (int i = 0; i < particles.count; ++i) {
+    change.x[i] = float(double(change.x[i]) + push[0]);
+    change.y[i] = float(double(change.y[i]) + push[1]);
+    change.z[i] = float(double(change.z[i]) + push[2]);
+  }
+}
+
 }  // namespace gyre

@@ -121,7 +121,22 @@ class RopeSolver {
     if (chain_.bend_stiffness > 0.0) {
       for (int i = 1; i < segments(); ++i) add_bend(i);
     }
+    for (const CarriedInertia& one : settings_.carried) add_carried(one);
     for (const HeldParticle& one : body_.held) fix(one.particle);
+  }
+
+  void add_carried(const CarriedInertia& one) {
+    const Sym3& m = one.inertia;
+    const double block[3][3] = {{double(m.xx), double(m.xy), double(m.xz)},
+                                {double(m.xy), double(m.yy), double(m.yz)},
+                                {double(m.xz), double(m.yz), double(m.zz)}};
+    band_.add_block(one.particle, one.particle, block);
+    const DVec3 off = DVec3(one.target) - at(speed_, one.particle);
+    const double push[3] = {off.x, off.y, off.z};
+    double* const right = &right_[std::size_t(kUnknowns * one.particle)];
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) right[r] += block[r][c] * push[c];
+    }
   }
 
   void add_segment(int s) {

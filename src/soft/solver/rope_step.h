@@ -23,6 +23,7 @@ struct RopeSettings {
   float step = 0.0f;  // s
   Vec3 gravity{};     // m/s^2
   int most_iterations = 3;
+  std::span<const CarriedInertia> carried{};
 };
 
 struct RopeReport {

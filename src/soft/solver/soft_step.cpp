@@ -10,6 +10,7 @@ namespace {
 // Iterations by which impulses spread through a body. Each reaches the neighbours of those before; what is missing is found by the rows of the
 // next half-step.
 constexpr int kSpreadIterations = 8;
+constexpr double kSpreadTolerance = 1.0e-4;  // of the square of the error
 
 ExplicitScheme scheme_of(SoftIntegrator integrator) {
   switch (integrator) {
@@ -24,25 +25,49 @@ ExplicitScheme scheme_of(SoftIntegrator integrator) {
   }
 }
 
+Sym3 explicit_inverse_mass(const Particles& p, const SoftStep& step, int particle) {
+  const float mass = p.mass[particle];
+  for (const CarriedInertia& one : step.carried) {
+    if (one.particle == particle) return inverse(Sym3{mass, mass, mass, 0.0f, 0.0f, 0.0f} + one.inertia);
+  }
+  return {1.0f / mass, 1.0f / mass, 1.0f / mass, 0.0f, 0.0f, 0.0f};
+}
+
+// An explicit scheme has moved its particles as if they carried nothing.
+void carry_explicitly(SoftEntry& entry, const SoftStep& step) {
+  Particles& p = entry.body.particles;
+  for (const CarriedInertia& one : step.carried) {
+    const int i = one.particle;
+    const Vec3 push = one.inertia * (one.target - p.velocity(i));
+    const Vec3 change = explicit_inverse_mass(p, step, i) * push;
+    p.set_velocity(i, p.velocity(i) + change);
+    p.set_place(i, p.place(i) + double(step.h) * DVec3(change));
+  }
+}
+
 }  // namespace
 
 SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, const SoftKernels& kernels,
                          Arena& arena, TaskSystem& tasks) {
   SoftStep step;
   step.h = settings.step;
+  step.carried = settings.carried;
   const SoftIntegrator integrator = entry.settings().integrator;
   if (integrator != SoftIntegrator::implicit) {
     step.method = SoftMethod::explicit_scheme;
     step_explicit(entry.body, {settings.step, settings.gravity, scheme_of(integrator)}, kernels, arena,
                   tasks);
+    carry_explicitly(entry, step);
   } else if (entry.kind == SoftKind::rope) {
     step.method = SoftMethod::rope;
-    step.rope = begin_rope(entry.body, {settings.step, settings.gravity}, arena);
+    step.rope = begin_rope(
+        entry.body, {.step = settings.step, .gravity = settings.gravity, .carried = settings.carried}, arena);
     if (!entry.contacts.empty() || !entry.attachments.empty()) find_rope_inverse_masses(step.rope, arena);
   } else {
     ImplicitSettings implicit;
     implicit.step = settings.step;
     implicit.gravity = settings.gravity;
+    implicit.carried = settings.carried;
     step.implicit = begin_implicit(entry.body, implicit, kernels, arena, tasks);
   }
   return step;
@@ -53,8 +78,7 @@ Sym3 inverse_mass(const SoftEntry& entry, const SoftStep& step, std::uint32_t pa
   if (p.loose[particle] == 0.0f) return {};
   if (step.method == SoftMethod::rope) return step.rope.inverse[particle];
   if (step.method == SoftMethod::conjugate_gradients) return inverse_mass(step.implicit, int(particle));
-  const float inverse = 1.0f / p.mass[particle];
-  return {inverse, inverse, inverse, 0.0f, 0.0f, 0.0f};
+  return explicit_inverse_mass(p, step, int(particle));
 }
 
 void respond(SoftEntry& entry, SoftStep& step, std::span<const Vec3> impulses, std::span<Vec3> change,
@@ -66,6 +90,9 @@ void respond(SoftEntry& entry, SoftStep& step, std::span<const Vec3> impulses, s
   if (step.method == SoftMethod::explicit_scheme) {
     for (std::size_t i = 0; i < count; ++i)
       change[i] = p.loose[i] == 0.0f ? Vec3{} : (1.0f / p.mass[i]) * impulses[i];
+    for (const CarriedInertia& one : step.carried)
+      change[std::size_t(one.particle)] =
+          explicit_inverse_mass(p, step, one.particle) * impulses[std::size_t(one.particle)];
     return;
   }
   const ArenaScope scope(arena);
@@ -74,7 +101,8 @@ void respond(SoftEntry& entry, SoftStep& step, std::span<const Vec3> impulses, s
     const Vec3 one = i < count && p.loose[i] != 0.0f ? impulses[i] : Vec3{};
     given.x[i] = one.x, given.y[i] = one.y, given.z[i] = one.z;
   }
-  find_response(entry.body, step.implicit, given, found, kSpreadIterations, kernels, arena, tasks);
+  find_response(entry.body, step.implicit, given, found, kSpreadIterations, kSpreadTolerance, kernels, arena,
+                tasks);
   for (std::size_t i = 0; i < count; ++i) change[i] = {found.x[i], found.y[i], found.z[i]};
 }
 

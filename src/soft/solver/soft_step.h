@@ -13,14 +13,16 @@ namespace gyre {
 enum class SoftMethod : std::uint8_t { conjugate_gradients, rope, explicit_scheme };
 
 struct SoftStepSettings {
-  float step = 0.0f;  // s
-  Vec3 gravity{};     // m/s^2
+  float step = 0.0f;                          // s
+  Vec3 gravity{};                             // m/s^2
+  std::span<const CarriedInertia> carried{};  // its memory must last as long as the sub-step
 };
 
 // Memory of the sub-step is the arena's.
 struct SoftStep {
   SoftMethod method = SoftMethod::conjugate_gradients;
   float h = 0.0f;  // s
+  std::span<const CarriedInertia> carried{};
   ImplicitStep implicit;
   RopeStep rope;
 };

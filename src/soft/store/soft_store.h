@@ -31,9 +31,9 @@ struct SoftAttachment {
 struct SoftContact {
   std::uint32_t particle = 0;
   std::uint32_t shape = 0;
-  std::int32_t body = 0;             // of the shape; it may be a fixed one
-  std::uint32_t triangle = 0;        // of a mesh or height field
-  Vec3 normal{};                     // unit, out of the shape, world axes, when the step began
+  std::int32_t body = 0;       // of the shape; it may be a fixed one
+  std::uint32_t triangle = 0;  // of a mesh or height field
+  Vec3 normal{};               // unit, out of the shape, world axes, when the step began
   Vec3
       from_body{};  // from the body's centre of mass to the point on the surface, world axes, when the step began
   float gap = 0.0f;  // m, of vertex and surface less the thickness, when the step began
@@ -41,6 +41,12 @@ struct SoftContact {
   float dynamic_friction = 0.0f;
   Vec3 surface_velocity{};  // m/s, of a conveyor belt, world axes
   Vec3 impulse{};           // N s on the vertex in the last half-step: the warm start
+};
+
+// Rest, as of bodies.
+struct SoftRest {
+  float still_time = 0.0f;  // s
+  std::uint8_t asleep = 0;
 };
 
 struct SoftEntry {
@@ -51,9 +57,11 @@ struct SoftEntry {
   Array<SoftContact> contacts;        // ascending by particle, then shape
   Array<std::uint32_t>
       triangles;  // of the surface, three vertices each, seen from outside counter-clockwise; none of a rope
-  float radius = 0.0f;  // m: half the thickness, which the surface keeps from shapes
-  float size = 0.0f;    // m: the mean length of its edges, by which speculative distances go
+  Array<SoftRest> rest{SoftRest{}};  // one
+  float radius = 0.0f;               // m: half the thickness, which the surface keeps from shapes
+  float size = 0.0f;                 // m: the mean length of its edges, by which speculative distances go
 
+  bool is_awake() const { return rest[0].asleep == 0; }
   const SoftSettings& settings() const {
     return std::visit([](const auto& one) -> const SoftSettings& { return one.settings; }, *def);
   }
@@ -91,6 +99,10 @@ void for_each_soft_array(Entry& entry, Visitor&& visit) {
   visit(entry.body.chain.tension);
   visit(entry.attachments);
   visit(entry.contacts);
+  visit(entry.rest);
 }
+
+// Begins to move again, and does not fall asleep for a while.
+inline void wake(SoftEntry& entry) { entry.rest[0] = {}; }
 
 }  // namespace gyre
