@@ -112,7 +112,7 @@ GasReport step_gas(GasGrid& grid, const GasSolids& solids, std::span<const GasEm
   GasReport report;
   const float cells = longest_way(pass);
   report.parts = 1;
-  while (report.parts < settings.most_parts && cells > settings.most_cells * float(report.parts))
+  while (report.parts < settings.max_parts && cells > settings.max_cells * float(report.parts))
     ++report.parts;
   pass.step = step / float(report.parts);
   for (int part = 0; part < report.parts; ++part) {

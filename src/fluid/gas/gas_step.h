@@ -17,8 +17,8 @@ struct GasSettings {
   float vorticity = 0.0f;  // 1: strength of confinement
   float viscosity = 0.0f;  // Pa s
   Vec3 gravity{0.0f, -9.81f, 0.0f};
-  float most_cells = 4.0f;  // that gas passes in a part of the step; longer steps are divided
-  int most_parts = 32;
+  float max_cells = 4.0f;  // that gas passes in a part of the step; longer steps are divided
+  int max_parts = 32;
   ProjectionSettings projection{};
 };
 

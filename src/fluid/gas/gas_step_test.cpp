@@ -175,8 +175,8 @@ double turn_disc(const GasKernels& kernels) {
              [&](int c, double x, double y, double) { grid.density[c] = disc(x, y) ? 1.0f : 0.0f; });
   Bench bench;
   bench.kernels = &kernels;
-  bench.settings.most_parts = 1;
-  bench.settings.projection.most_iterations = 0;  // the velocity is given
+  bench.settings.max_parts = 1;
+  bench.settings.projection.max_iterations = 0;  // the velocity is given
   for (int i = 0; i < 60; ++i) {
     for_places(grid, 0,
                [&](int c, double, double y, double) { grid.velocity[0][c] = float(-2.0 * kPi * (y - 0.5)); });
@@ -314,7 +314,7 @@ GasGrid run_mixed(int threads, int width) {
   GasSettings settings;
   settings.viscosity = 0.01f;
   settings.vorticity = 0.3f;
-  settings.most_cells = 1.0f;
+  settings.max_cells = 1.0f;
   GasEmitter emitter;
   emitter.position = {0.7, 0.4, 0.3};
   emitter.radius = 0.25f;

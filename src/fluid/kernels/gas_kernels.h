@@ -36,8 +36,8 @@ struct TransportPass {
   const float* ahead[3] = {};
   float* field = nullptr;  // before and after
   float* moved = nullptr;  // by the first order scheme
-  float* least = nullptr;  // the bounds of what may come there
-  float* most = nullptr;
+  float* lower = nullptr;  // the bounds of what may come there
+  float* upper = nullptr;
 };
 
 // The displacements of cell centres by the midpoint rule: back, and ahead.
@@ -76,11 +76,11 @@ struct GasKernels {
   void (*turn)(const PressureLevel& level, float beta, const float* z, float* p, int row_begin, int row_end);
 
   void (*trace)(const TracePass& pass, int row_begin, int row_end);
-  // moved, least and most; rows are of `places`.
+  // moved, lower and upper; rows are of `places`.
   void (*move)(const TransportPass& pass, int row_begin, int row_end);
   // field, by what going ahead again shows to be missing, within the bounds.
   void (*correct)(const TransportPass& pass, int row_begin, int row_end);
-  // field becomes what is missing, least the share of it that the bounds allow.
+  // field becomes what is missing, lower the share of it that the bounds allow.
   void (*find_missing)(const TransportPass& pass, int row_begin, int row_end);
   // field = moved + what is missing, by the least share of a cell and its six neighbours.
   void (*add_missing)(const TransportPass& pass, int row_begin, int row_end);

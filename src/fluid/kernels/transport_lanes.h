@@ -176,8 +176,8 @@ void move_cells(const TransportPass& pass, int row_begin, int row_end) {
         most = all ? corners.most() : select(same, corners.most(), most);
       });
       lanes.keep_real(value).store(pass.moved + c + i);
-      lanes.keep_real(least).store(pass.least + c + i);
-      lanes.keep_real(most).store(pass.most + c + i);
+      lanes.keep_real(least).store(pass.lower + c + i);
+      lanes.keep_real(most).store(pass.upper + c + i);
     });
   });
 }
@@ -195,12 +195,12 @@ void correct_cells(const TransportPass& pass, int row_begin, int row_end) {
       });
       const Wide<W> missing = Wide<W>(0.5f) * (Wide<W>::load(pass.field + c + i) - again);
       const Wide<W> moved = Wide<W>::load(pass.moved + c + i);
-      const Wide<W> least = Wide<W>::load(pass.least + c + i), most = Wide<W>::load(pass.most + c + i);
+      const Wide<W> least = Wide<W>::load(pass.lower + c + i), most = Wide<W>::load(pass.upper + c + i);
       if constexpr (SharesOnly) {
         const Wide<W> room = select(missing > 0.0f, most - moved, least - moved);
         const Wide<W> share = select(absolute(missing) > absolute(room), room / missing, Wide<W>(1.0f));
         lanes.keep_real(missing).store(pass.field + c + i);
-        lanes.keep_real(share).store(pass.least + c + i);
+        lanes.keep_real(share).store(pass.lower + c + i);
       } else {
         lanes.keep_real(clamp(moved + missing, least, most)).store(pass.field + c + i);
       }
@@ -213,7 +213,7 @@ void add_missing_cells(const TransportPass& pass, int row_begin, int row_end) {
   const int pitch = pass.shape.pitch, plane = pass.shape.plane;
   for_rows(pass.shape, pass.places[1], row_begin, row_end, [&](int c, int, int, int) {
     for_lanes<W>(pass.places[0], [&](int i, auto lanes) {
-      const float* const share = pass.least + c + i;
+      const float* const share = pass.lower + c + i;
       const auto at = [&](int offset) { return Wide<W>::load_unaligned(share + offset); };
       const Wide<W> along_x = min(at(-1), at(1)), along_y = min(at(-pitch), at(pitch)),
                     along_z = min(at(-plane), at(plane));

@@ -76,7 +76,7 @@ void find_faces(const GasBox& box, const GasSolids& solids, int axis, TaskSystem
     for (int i = 0; i < count; ++i) {
       const int at = axis == 0 ? i : across;
       const bool lower = at > 0 && solid[c + i - step] != 0, upper = at < last && solid[c + i] != 0;
-      const bool closed = lower || upper || !(open[c + i] >= kLeastOpen);
+      const bool closed = lower || upper || !(open[c + i] >= kMinOpen);
       to[c + i] = closed ? 0.0f : open[c + i] < 1.0f ? open[c + i] * to[c + i] : to[c + i];
     }
   });

@@ -34,7 +34,7 @@ struct PressureMatrix {
 };
 
 // Faces whose open fraction is below this count as closed: their cells would otherwise get coefficients too far apart.
-inline constexpr float kLeastOpen = 0.01f;
+inline constexpr float kMinOpen = 0.01f;
 
 void build_pressure_matrix(const GasBox& box, const GridShape& shape, const GasSolids& solids,
                            const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix);

@@ -142,7 +142,7 @@ void remove_mean(const PressureMatrix& matrix, float* r, TaskSystem& tasks) {
 }  // namespace
 
 PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& v, float target,
-                              int most_iterations, const GasKernels& kernels, TaskSystem& tasks) {
+                              int max_iterations, const GasKernels& kernels, TaskSystem& tasks) {
   const PressureLevel level = matrix.level(0);
   const GridShape& shape = level.shape;
   const auto rows = [&](auto&& fn) {
@@ -156,7 +156,7 @@ PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& v, 
 
   Cycle cycle{matrix, kernels, tasks};
   double before = 0.0;
-  while (report.iterations < most_iterations) {
+  while (report.iterations < max_iterations) {
     cycle.run(0, v.r, v.z, v.other);
     const double now = cycle.product;
     if (!(now > 0.0)) break;

@@ -26,6 +26,6 @@ struct PressureReport {
 
 // Until no number of what remains is larger than `target`. The ghosts and the cells beyond the ends of rows of all vectors are zero.
 PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& vectors, float target,
-                              int most_iterations, const GasKernels& kernels, TaskSystem& tasks);
+                              int max_iterations, const GasKernels& kernels, TaskSystem& tasks);
 
 }  // namespace gyre

@@ -184,7 +184,7 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
   const float allowed = settings.divergence / pass.step, reduced = settings.reduction * before;
   const PressureReport report =
       solve_pressure(pass.memory.matrix, vectors, allowed < reduced ? allowed : reduced,
-                     settings.most_iterations, pass.kernels, pass.tasks);
+                     settings.max_iterations, pass.kernels, pass.tasks);
   wrap_ghosts(shape, pass.memory.matrix.levels[0].periodic, vectors.x);
   subtract_gradient(pass, vectors.x, 1.0f);
   float* const pressure = pass.grid.pressure.data();
@@ -230,7 +230,7 @@ void add_impulses(const GasPass& pass, float density, std::span<GasImpulse> impu
           const int one = label[c + i];
           if (at == 0 || one < 0 || one >= int(impulses.size())) continue;
           const bool lower = inverse[c + i - step] > 0.0f, upper = inverse[c + i] > 0.0f;
-          const double closed = lower && upper && open[c + i] >= kLeastOpen ? 1.0 - double(open[c + i]) : 1.0;
+          const double closed = lower && upper && open[c + i] >= kMinOpen ? 1.0 - double(open[c + i]) : 1.0;
           const double push =
               scale * closed *
               (double(lower ? pressure[c + i - step] : 0.0f) - double(upper ? pressure[c + i] : 0.0f));

@@ -22,7 +22,7 @@ void set_walls(const GasPass& pass);
 struct ProjectionSettings {
   float divergence = 1.0e-4f;  // 1: largest net outflow of a cell within the step, over its volume
   float reduction = 1.0e-2f;   // and over the largest before
-  int most_iterations = 60;
+  int max_iterations = 60;
 };
 PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& settings);
 

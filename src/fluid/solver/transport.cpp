@@ -5,8 +5,8 @@ namespace gyre {
 
 namespace {
 
-constexpr int kBack = 0, kAhead = 3, kMoved = 6, kLeast = 7, kMost = 8;  // scratch
-constexpr int kCenters = 6;                                              // and before these three
+constexpr int kBack = 0, kAhead = 3, kMoved = 6, kLower = 7, kUpper = 8;  // scratch
+constexpr int kCenters = 6;                                               // and before these three
 
 // Between which places spots of cell centres lie; `outside`: the ghosts beyond open sides are of use.
 template <class Pass>
@@ -40,8 +40,8 @@ void transport(const GasPass& pass, int faces, const float* outside, float* fiel
   work.average = faces < 0 ? 0 : shape.stride(faces);
   work.field = field;
   work.moved = pass.scratch(kMoved);
-  work.least = pass.scratch(kLeast);
-  work.most = pass.scratch(kMost);
+  work.lower = pass.scratch(kLower);
+  work.upper = pass.scratch(kUpper);
   limit_spots(box, shape, outside != nullptr, faces, work);
   const auto fill = [&](float* of) {
     faces < 0 ? fill_ghosts(box, shape, of, outside) : wrap_faces(box, shape, faces, of);
@@ -55,7 +55,7 @@ void transport(const GasPass& pass, int faces, const float* outside, float* fiel
   fill(work.moved);
   if (faces < 0) {
     run(pass.kernels.find_missing);
-    fill_ghosts(box, shape, work.least);
+    fill_ghosts(box, shape, work.lower);
     run(pass.kernels.add_missing);
   } else {
     run(pass.kernels.correct);
