@@ -34,10 +34,10 @@ void fill_solid_cells(const GasPass& pass, float* field, float otherwise) {
       if (solid[c + i] == 0) continue;
       float sum = 0.0f;
       int free = 0;
-      const int place[3] = {i, j, k};
+      const int index[3] = {i, j, k};
       for (int axis = 0; axis < 3; ++axis) {
-        for (int way = -1; way <= 1; way += 2) {
-          const int next = place[axis] + way, at = c + i + way * shape.stride(axis);
+        for (int side = -1; side <= 1; side += 2) {
+          const int next = index[axis] + side, at = c + i + side * shape.stride(axis);
           if (next < 0 || next >= shape.cells[axis] || solid[at] != 0) continue;
           sum += field[at];
           ++free;
@@ -49,7 +49,7 @@ void fill_solid_cells(const GasPass& pass, float* field, float otherwise) {
 }
 
 // Transport between grid values does not keep the sum of the smoke exactly. In a closed box without solids it is set right, in proportion.
-void keep_smoke_mass(const GasPass& pass, double mass) {
+void conserve_smoke(const GasPass& pass, double mass) {
   const double now = smoke_mass(pass.grid, pass.solids, pass.tasks);
   if (!(now > 0.0) || !(mass > 0.0)) return;
   const float scale = float(mass / now);
@@ -77,17 +77,17 @@ void center_pressure(const GasPass& pass) {
   });
 }
 
-void run_part(const GasPass& pass, std::span<const GasEmitter> emitters, const GasSettings& settings,
-              double time, GasReport& report) {
-  hold_emitters(pass, emitters, time);
-  const bool keeps_smoke = !pass.box().any_open() && !pass.solids.present();
-  const double mass = keeps_smoke ? smoke_mass(pass.grid, pass.solids, pass.tasks) : 0.0;
-  trace_ways(pass);
-  if (settings.viscosity > 0.0f) keep_velocity(pass);
+void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, const GasSettings& settings,
+                 double time, GasReport& report) {
+  apply_emitters(pass, emitters, time);
+  const bool conserves_smoke = !pass.box().any_open() && !pass.solids.present();
+  const double mass = conserves_smoke ? smoke_mass(pass.grid, pass.solids, pass.tasks) : 0.0;
+  trace_paths(pass);
+  if (settings.viscosity > 0.0f) save_velocity(pass);
   add_pressure(pass, 0.5f, true);
   transport_fields(pass);
-  if (keeps_smoke) keep_smoke_mass(pass, mass);
-  hold_emitters(pass, emitters, time);
+  if (conserves_smoke) conserve_smoke(pass, mass);
+  apply_emitters(pass, emitters, time);
   set_walls(pass);
   add_pressure(pass, 0.5f, false);
   fill_solid_cells(pass, pass.grid.density.data(), 0.0f);
@@ -110,13 +110,13 @@ GasReport step_gas(GasGrid& grid, const GasSolids& solids, std::span<const GasEm
   prepare_memory(grid, solids, memory, kernels, tasks);
   GasPass pass{grid, solids, memory, kernels, tasks, step};
   GasReport report;
-  const float cells = longest_way(pass);
-  report.parts = 1;
-  while (report.parts < settings.max_parts && cells > settings.max_cells * float(report.parts))
-    ++report.parts;
-  pass.step = step / float(report.parts);
-  for (int part = 0; part < report.parts; ++part) {
-    run_part(pass, emitters, settings, time, report);
+  const float cells = max_displacement(pass);
+  report.substeps = 1;
+  while (report.substeps < settings.max_substeps && cells > settings.max_cells * float(report.substeps))
+    ++report.substeps;
+  pass.step = step / float(report.substeps);
+  for (int substep = 0; substep < report.substeps; ++substep) {
+    run_substep(pass, emitters, settings, time, report);
     if (solids.present() && !impulses.empty()) add_impulses(pass, settings.density, impulses);
   }
   center_pressure(pass);

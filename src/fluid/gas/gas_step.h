@@ -1,7 +1,7 @@
 // The step of a gas: transport, forces, viscosity, pressure.
 //
 // In: the state, what solids leave open of the grid, emitters. Out: the state at the end, the impulses of pressure on solids.
-// Sources: J. Stam, "Stable Fluids", 1999, for the order; the parts name theirs. docs/derive/gas.md has the equations.
+// Sources: J. Stam, "Stable Fluids", 1999, for the order; each stage names its own. docs/derive/gas.md has the equations.
 #pragma once
 
 #include "fluid/solver/gas_forces.h"
@@ -17,14 +17,14 @@ struct GasSettings {
   float vorticity = 0.0f;  // 1: strength of confinement
   float viscosity = 0.0f;  // Pa s
   Vec3 gravity{0.0f, -9.81f, 0.0f};
-  float max_cells = 4.0f;  // that gas passes in a part of the step; longer steps are divided
-  int max_parts = 32;
+  float max_cells = 4.0f;  // of displacement in a sub-step
+  int max_substeps = 32;
   ProjectionSettings projection{};
 };
 
 struct GasReport {
-  int parts = 0;
-  int iterations = 0;       // of all parts
+  int substeps = 0;
+  int iterations = 0;       // of all sub-steps
   float divergence = 0.0f;  // 1/s: largest net outflow of a cell over its volume after the last projection
   float residual = 0.0f;    // 1: of the last solve, over its right side
 };

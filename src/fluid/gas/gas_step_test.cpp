@@ -175,7 +175,7 @@ double turn_disc(const GasKernels& kernels) {
              [&](int c, double x, double y, double) { grid.density[c] = disc(x, y) ? 1.0f : 0.0f; });
   Bench bench;
   bench.kernels = &kernels;
-  bench.settings.max_parts = 1;
+  bench.settings.max_substeps = 1;
   bench.settings.projection.max_iterations = 0;  // the velocity is given
   for (int i = 0; i < 60; ++i) {
     for_places(grid, 0,
@@ -199,10 +199,10 @@ TEST(GasSmoke, a_disc_comes_back_after_one_turn) {
   const double second = turn_disc(kernels);
   EXPECT_LT(second, 0.42);
   GasKernels first_order = kernels;  // nothing is missing
-  first_order.find_missing = [](const TransportPass& pass, int row_begin, int row_end) {
+  first_order.find_correction = [](const TransportPass& pass, int row_begin, int row_end) {
     for (int row = row_begin; row < row_end; ++row) {
-      const int c = pass.shape.row(row % pass.places[1], row / pass.places[1]);
-      for (int i = c; i < c + pass.places[0]; ++i) pass.field[i] = 0.0f;
+      const int c = pass.shape.row(row % pass.points[1], row / pass.points[1]);
+      for (int i = c; i < c + pass.points[0]; ++i) pass.field[i] = 0.0f;
     }
   };
   EXPECT_GT(turn_disc(first_order), 1.25 * second);
@@ -323,7 +323,7 @@ GasGrid run_mixed(int threads, int width) {
   emitter.has_velocity = true;
   GasImpulse impulse;
   for (int i = 0; i < 8; ++i) {
-    put_sphere(grid, {1.2f + 0.02f * float(i), 0.9f, 0.9f}, 0.35f, {1.2f, 0.0f, 0.0f}, solids);
+    place_sphere(grid, {1.2f + 0.02f * float(i), 0.9f, 0.9f}, 0.35f, {1.2f, 0.0f, 0.0f}, solids);
     step_gas(grid, solids, std::span(&emitter, 1), settings, 0.0, 1.0f / 60.0f, memory,
              select_gas_kernels(width), tasks, std::span(&impulse, 1));
   }

@@ -83,7 +83,7 @@ inline double taylor_green_error(const GasGrid& grid, double amplitude, double k
 }
 
 // The fraction of faces that a sphere leaves open, its cells and its velocity.
-inline void put_sphere(const GasGrid& grid, Vec3 center, float radius, Vec3 velocity, GasSolids& solids) {
+inline void place_sphere(const GasGrid& grid, Vec3 center, float radius, Vec3 velocity, GasSolids& solids) {
   const GridShape& shape = grid.shape;
   clear_solids(shape, 1, solids);
   const auto distance = [&](double x, double y, double z) {

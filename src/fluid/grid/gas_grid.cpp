@@ -1,4 +1,4 @@
-// Fields of a gas: their places, their ghosts, and values between places.
+// Fields of a gas: their memory, their ghosts, and values between grid points.
 #include "fluid/grid/gas_grid.h"
 
 #include "fluid/grid/gas_solids.h"
@@ -20,7 +20,7 @@ GasGrid make_gas_grid(const GasBox& box, float ambient_temperature) {
 
 namespace {
 
-// Copies the layer of places `from` along an axis to the layer `to`; the other axes with their ghosts.
+// Copies the layer `from` along an axis to the layer `to`; the other axes with their ghosts.
 void copy_layer(const GridShape& shape, int axis, int from, int to, float* field, const float* value) {
   const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
   const int step = shape.stride(axis), step_a = shape.stride(a), step_b = shape.stride(b);
@@ -65,12 +65,12 @@ void wrap_faces(const GasBox& box, const GridShape& shape, int axis, float* face
 }
 
 float sample_field(const GasBox& box, const GridShape& shape, const float* field, int faces, Vec3 point) {
-  const float place[3] = {point.x / box.cell.x, point.y / box.cell.y, point.z / box.cell.z};
+  const float position[3] = {point.x / box.cell.x, point.y / box.cell.y, point.z / box.cell.z};
   int base[3];
-  float part[3];
+  float fraction[3];
   for (int axis = 0; axis < 3; ++axis) {
     const float last = float(shape.cells[axis] - (axis == faces ? 0 : 1));
-    float p = place[axis] - (axis == faces ? 0.0f : 0.5f);
+    float p = position[axis] - (axis == faces ? 0.0f : 0.5f);
     const bool wraps = box.periodic(axis) && axis != faces;  // between the last centre and the first
     const float low = wraps ? -1.0f : 0.0f, high = wraps ? last + 1.0f : last;
     p = p > low ? p : low;
@@ -78,7 +78,7 @@ float sample_field(const GasBox& box, const GridShape& shape, const float* field
     int whole = int(p - low) + int(low);
     if (float(whole) >= high && high > low) whole -= 1;
     base[axis] = whole;
-    part[axis] = p - float(whole);
+    fraction[axis] = p - float(whole);
   }
   float sum = 0.0f;
   for (int corner = 0; corner < 8; ++corner) {
@@ -86,7 +86,7 @@ float sample_field(const GasBox& box, const GridShape& shape, const float* field
     int at = shape.first;
     for (int axis = 0; axis < 3; ++axis) {
       const int up = corner >> axis & 1;
-      weight *= up != 0 ? part[axis] : 1.0f - part[axis];
+      weight *= up != 0 ? fraction[axis] : 1.0f - fraction[axis];
       at += (base[axis] + up) * shape.stride(axis);
     }
     if (weight != 0.0f) sum += weight * field[at];

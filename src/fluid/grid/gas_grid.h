@@ -58,8 +58,8 @@ void wrap_ghosts(const GridShape& shape, const bool periodic[3], float* field);
 // Faces that stand twice in the array: those of the upper side of a periodic axis are those of the lower side. Ghosts beyond the faces, likewise.
 void wrap_faces(const GasBox& box, const GridShape& shape, int axis, float* faces);
 
-// The spot of a point of the box: its cell and, along each axis, how far it lies behind the first of two places of the grid. `faces` is the
-// axis whose faces these places are, -1: cell centres. Points outside are moved to the nearest point inside.
+// The value of a field at a point of the box, linearly between grid points. `faces`: the axis across whose faces the
+// field stands, -1: cell centres. Points outside are moved to the nearest point inside.
 float sample_field(const GasBox& box, const GridShape& shape, const float* field, int faces, Vec3 point);
 
 }  // namespace gyre

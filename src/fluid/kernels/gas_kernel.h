@@ -18,12 +18,12 @@ constexpr GasKernels gas_kernels() {
   kernels.restrict_rows = restrict_cells<W>;
   kernels.prolong = prolong_cells<W>;
   kernels.advance = advance_cells<W>;
-  kernels.turn = turn_cells<W>;
+  kernels.update_direction = update_direction_cells<W>;
   kernels.trace = trace_cells<W>;
   kernels.move = move_cells<W>;
   kernels.correct = correct_cells<W, false>;
-  kernels.find_missing = correct_cells<W, true>;
-  kernels.add_missing = add_missing_cells<W>;
+  kernels.find_correction = correct_cells<W, true>;
+  kernels.add_correction = add_correction_cells<W>;
   return kernels;
 }
 

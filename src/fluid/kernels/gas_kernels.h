@@ -23,13 +23,13 @@ struct PressureLevel {
   bool halved[3] = {};  // axes along which the next coarser level has half the cells
 };
 
-// A field that moves with the gas: to each place comes the value that was `back` cells before it.
+// A field that moves with the gas: each point gets the value that was `back` cells before it.
 struct TransportPass {
   GridShape shape;
-  int places[3] = {};  // along each axis; one more than cells across the faces' own
+  int points[3] = {};  // along each axis; one more than cells across the faces' own
   int average =
-      0;  // displacements are the mean of this place's and the one `average` before it: the stride of the faces' axis, or 0
-  float low[3] = {};  // spots are kept between these, in cells
+      0;  // displacements are the mean of this point's and of that `average` before it: the stride of the faces' axis, or 0
+  float low[3] = {};  // sample points are clamped to these, in cells
   float high[3] = {};
   float period[3] = {};       // 0: not periodic
   const float* back[3] = {};  // in cells; null: 0
@@ -73,17 +73,18 @@ struct GasKernels {
   float (*advance)(const PressureLevel& level, float alpha, const float* p, const float* q, float* x,
                    float* r, int row_begin, int row_end);
   // p = z + beta p
-  void (*turn)(const PressureLevel& level, float beta, const float* z, float* p, int row_begin, int row_end);
+  void (*update_direction)(const PressureLevel& level, float beta, const float* z, float* p, int row_begin,
+                           int row_end);
 
   void (*trace)(const TracePass& pass, int row_begin, int row_end);
-  // moved, lower and upper; rows are of `places`.
+  // moved, lower and upper; rows are of `points`.
   void (*move)(const TransportPass& pass, int row_begin, int row_end);
-  // field, by what going ahead again shows to be missing, within the bounds.
+  // field, corrected by half of what tracing back to the start again misses, within the bounds.
   void (*correct)(const TransportPass& pass, int row_begin, int row_end);
-  // field becomes what is missing, lower the share of it that the bounds allow.
-  void (*find_missing)(const TransportPass& pass, int row_begin, int row_end);
-  // field = moved + what is missing, by the least share of a cell and its six neighbours.
-  void (*add_missing)(const TransportPass& pass, int row_begin, int row_end);
+  // field becomes the correction, lower the fraction of it that the bounds allow.
+  void (*find_correction)(const TransportPass& pass, int row_begin, int row_end);
+  // field = moved + the correction times the smallest fraction of a cell and its six neighbours.
+  void (*add_correction)(const TransportPass& pass, int row_begin, int row_end);
 };
 
 // The kernels for this many lanes, 0: as many as suit this machine.

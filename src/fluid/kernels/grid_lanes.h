@@ -1,4 +1,4 @@
-// Rows of a grid, W places at a time, and sums over rows whose bits do not depend on W.
+// Rows of a grid, W points at a time, and sums over rows whose bits do not depend on W.
 #pragma once
 
 #include "fluid/kernels/gas_kernels.h"
@@ -7,9 +7,9 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-constexpr int kGridLanes = 16;  // the widest W: sums over rows have one term for each place modulo 16
+constexpr int kGridLanes = 16;  // the widest W: sums over rows have one term for each index modulo 16
 
-// All W places exist.
+// All W points exist.
 template <int W>
 struct FullLanes {
   GYRE_INLINE Wide<W> keep_real(Wide<W> value) const { return value; }
@@ -37,7 +37,7 @@ GYRE_INLINE void for_lanes(int count, Fn&& fn) {
   }
 }
 
-// A sum for each place modulo 16, in float, and these together in double.
+// A sum for each index modulo 16, in float, and these together in double.
 template <int W>
 struct LaneSums {
   Wide<W> sums[kGridLanes / W];
@@ -54,7 +54,7 @@ struct LaneSums {
   }
 };
 
-// Calls fn(c) for each row from row_begin on, c being the place of its cell 0. `rows` along y.
+// Calls fn(c) for each row from row_begin on, c being the index of its cell 0. `rows` along y.
 template <class Fn>
 GYRE_INLINE void for_rows(const GridShape& shape, int rows, int row_begin, int row_end, Fn&& fn) {
   int k = row_begin / rows, j = row_begin - k * rows;

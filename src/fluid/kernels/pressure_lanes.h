@@ -217,8 +217,8 @@ void prolong_cells(const PressureLevel& fine_level, const GridShape& coarse, con
       const int length = halved ? 2 * count : count, left = shape.cells[0] - first;
       for_lanes<W>(length < left ? length : left, [&](int i, auto lanes) {
         const int at = c + first + i;
-        const Wide<W> part = Wide<W>::load(fine_level.transfer + at) * Wide<W>::load(change + i);
-        lanes.keep_real(Wide<W>::load(x + at) + lanes.keep_real(part)).store(x + at);
+        const Wide<W> addition = Wide<W>::load(fine_level.transfer + at) * Wide<W>::load(change + i);
+        lanes.keep_real(Wide<W>::load(x + at) + lanes.keep_real(addition)).store(x + at);
       });
     }
   });
@@ -227,24 +227,24 @@ void prolong_cells(const PressureLevel& fine_level, const GridShape& coarse, con
 template <int W>
 float advance_cells(const PressureLevel& level, float alpha, const float* p, const float* q, float* x,
                     float* r, int row_begin, int row_end) {
-  Wide<W> most(0.0f);
+  Wide<W> largest(0.0f);
   for_rows(level.shape, level.shape.cells[1], row_begin, row_end, [&](int c, int, int, int) {
     for_lanes<W>(level.shape.cells[0], [&](int i, auto lanes) {
       const int at = c + i;
       lanes.keep_real(Wide<W>::load(x + at) + Wide<W>(alpha) * Wide<W>::load(p + at)).store(x + at);
       const Wide<W> rest = lanes.keep_real(Wide<W>::load(r + at) - Wide<W>(alpha) * Wide<W>::load(q + at));
       rest.store(r + at);
-      most = max(absolute(rest), most);
+      largest = max(absolute(rest), largest);
     });
   });
   float all = 0.0f;
-  for (int lane = 0; lane < W; ++lane) all = most[lane] > all ? most[lane] : all;
+  for (int lane = 0; lane < W; ++lane) all = largest[lane] > all ? largest[lane] : all;
   return all;
 }
 
 template <int W>
-void turn_cells(const PressureLevel& level, float beta, const float* z, float* p, int row_begin,
-                int row_end) {
+void update_direction_cells(const PressureLevel& level, float beta, const float* z, float* p, int row_begin,
+                            int row_end) {
   for_rows(level.shape, level.shape.cells[1], row_begin, row_end, [&](int c, int, int, int) {
     for_lanes<W>(level.shape.cells[0], [&](int i, auto lanes) {
       const Wide<W> turned = Wide<W>::load(z + c + i) + Wide<W>(beta) * Wide<W>::load(p + c + i);

@@ -30,7 +30,7 @@ Ball ball_of(const GasPass& pass, const GasEmitter& emitter) {
   return ball;
 }
 
-// Calls fn(place) for the places in the ball: of centres, or of the faces across an axis. A flat axis has only its middle.
+// Calls fn(index) for the points in the ball: of centres, or of the faces across an axis. A flat axis has only its middle.
 template <class Fn>
 void for_ball(const GasPass& pass, const Ball& ball, int faces, Fn&& fn) {
   const GridShape& shape = pass.shape();
@@ -57,7 +57,7 @@ void for_ball(const GasPass& pass, const Ball& ball, int faces, Fn&& fn) {
 
 }  // namespace
 
-void hold_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, double time) {
+void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, double time) {
   for (const GasEmitter& emitter : emitters) {
     if (!(time >= emitter.start && time < emitter.end)) continue;
     const Ball ball = ball_of(pass, emitter);

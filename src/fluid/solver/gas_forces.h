@@ -19,7 +19,7 @@ struct GasEmitter {
 };
 
 // The cells whose centres lie in the ball, and the one in which its centre lies.
-void hold_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, double time);
+void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, double time);
 
 // Velocity += step (g_periodic - buoyancy g (T - ambient) / ambient). Along axes that are not periodic the weight of the gas itself rests on
 // pressure, within walls as beyond open sides, and is left out of both.

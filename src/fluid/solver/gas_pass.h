@@ -1,4 +1,4 @@
-// GasPass: what the parts of a step of a gas work on. Each part is a function from these arrays to these arrays.
+// GasPass: the data of the stages of a step of a gas. Each stage is a function from these arrays to these arrays.
 #pragma once
 
 #include "fluid/solver/pressure_matrix.h"
@@ -6,7 +6,7 @@
 
 namespace gyre {
 
-// Memory that the parts of a step share, one after the other, and the pressure equation, which lasts until solids move.
+// Memory that the stages of a step share, one after the other, and the pressure equation, which lasts until solids move.
 struct GasMemory {
   static constexpr int kFields = 9;
   Array<float> field[kFields];
@@ -31,7 +31,7 @@ struct GasPass {
   bool flat(int axis) const { return grid.box.flat(axis); }
 };
 
-// Calls fn(c, j, k) for every row of cells, c the place of its first; `more`: with the last row of the faces across this axis, -1: none.
+// Calls fn(c, j, k) for every row of cells, c the index of its first; `more`: with the last row of the faces across this axis, -1: none.
 template <class Fn>
 void each_row(const GasPass& pass, int more, Fn&& fn) {
   const GridShape& shape = pass.shape();
@@ -66,13 +66,13 @@ float largest_of_rows(const GridShape& shape, TaskSystem& tasks, Fn&& fn) {
   return reduce_blocks(
       tasks, shape.rows(), kGridRows, 0.0f,
       [&](int begin, int end, int) {
-        float most = 0.0f;
+        float largest = 0.0f;
         for (int row = begin; row < end; ++row) {
           const int k = row / shape.cells[1], j = row - k * shape.cells[1];
           const float one = fn(shape.row(j, k), j, k);
-          most = one > most ? one : most;
+          largest = one > largest ? one : largest;
         }
-        return most;
+        return largest;
       },
       [](float a, float b) { return a > b ? a : b; });
 }

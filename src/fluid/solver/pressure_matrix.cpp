@@ -89,7 +89,7 @@ void coarsen_faces(const PressureGrid& fine, int axis, TaskSystem& tasks, Pressu
   const float scale = fine.halved[axis] ? 0.5f : 1.0f;
   float* const to = coarse.face[axis].data();
   each_row(shape, shape.cells[1] + extra[1], shape.cells[2] + extra[2], tasks, [&](int c, int j, int k) {
-    // The first finer place along each axis and how many there are.
+    // The first finer index along each axis and how many there are.
     const auto children = [&](int of, int place, int& begin, int& count) {
       begin = fine.halved[of] ? 2 * place : place;
       const int cells = fine.shape.cells[of];

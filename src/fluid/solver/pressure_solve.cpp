@@ -101,15 +101,15 @@ float largest(const GridShape& shape, const float* r, TaskSystem& tasks) {
   return reduce_blocks(
       tasks, shape.rows(), kGridRows, 0.0f,
       [&](int begin, int end, int) {
-        float most = 0.0f;
+        float largest = 0.0f;
         for (int row = begin; row < end; ++row) {
           const int c = shape.row(row % shape.cells[1], row / shape.cells[1]);
           for (int i = c; i < c + shape.cells[0]; ++i) {
             const float size = r[i] < 0.0f ? -r[i] : r[i];
-            most = size > most ? size : most;
+            largest = size > largest ? size : largest;
           }
         }
-        return most;
+        return largest;
       },
       [](float a, float b) { return a > b ? a : b; });
 }
@@ -165,7 +165,7 @@ PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& v, 
     if (report.iterations == 0) {
       rows([&](int begin, int end) { kernels.scale(level, v.r, 0.0f, v.p, begin, end); });
     }
-    rows([&](int begin, int end) { kernels.turn(level, beta, v.z, v.p, begin, end); });
+    rows([&](int begin, int end) { kernels.update_direction(level, beta, v.z, v.p, begin, end); });
     wrap_ghosts(shape, matrix.levels[0].periodic, v.p);
     const double curvature = reduce_blocks(
         tasks, shape.rows(), kGridRows, 0.0,

@@ -174,12 +174,12 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
     for (int i = c; i < c + shape.cells[0]; ++i) vectors.r[i] = -vectors.r[i];
   });
   const float before = largest_of_rows(shape, pass.tasks, [&](int c, int, int) {
-    float most = 0.0f;
+    float largest = 0.0f;
     for (int i = c; i < c + shape.cells[0]; ++i) {
       const float size = vectors.r[i] < 0.0f ? -vectors.r[i] : vectors.r[i];
-      most = size > most ? size : most;
+      largest = size > largest ? size : largest;
     }
-    return most;
+    return largest;
   });
   const float allowed = settings.divergence / pass.step, reduced = settings.reduction * before;
   const PressureReport report =
@@ -202,12 +202,12 @@ float largest_divergence(const GasPass& pass) {
   float* const scratch = pass.scratch(kRight);
   return largest_of_rows(shape, pass.tasks, [&](int c, int j, int k) {
     find_divergence(pass, c, j, k, scratch + c);
-    float most = 0.0f;
+    float largest = 0.0f;
     for (int i = c; i < c + shape.cells[0]; ++i) {
       const float size = scratch[i] < 0.0f ? -scratch[i] : scratch[i];
-      most = size > most ? size : most;
+      largest = size > largest ? size : largest;
     }
-    return most;
+    return largest;
   });
 }
 
@@ -234,14 +234,14 @@ void add_impulses(const GasPass& pass, float density, std::span<GasImpulse> impu
           const double push =
               scale * closed *
               (double(lower ? pressure[c + i - step] : 0.0f) - double(upper ? pressure[c + i] : 0.0f));
-          const double place[3] = {(i + (axis == 0 ? 0.0 : 0.5)) * double(pass.edge(0)),
-                                   (j + (axis == 1 ? 0.0 : 0.5)) * double(pass.edge(1)),
-                                   (k + (axis == 2 ? 0.0 : 0.5)) * double(pass.edge(2))};
+          const double position[3] = {(i + (axis == 0 ? 0.0 : 0.5)) * double(pass.edge(0)),
+                                      (j + (axis == 1 ? 0.0 : 0.5)) * double(pass.edge(1)),
+                                      (k + (axis == 2 ? 0.0 : 0.5)) * double(pass.edge(2))};
           const DVec3 force = axis == 0   ? DVec3{push, 0, 0}
                               : axis == 1 ? DVec3{0, push, 0}
                                           : DVec3{0, 0, push};
           impulses[std::size_t(one)].linear += force;
-          impulses[std::size_t(one)].angular += cross(DVec3{place[0], place[1], place[2]}, force);
+          impulses[std::size_t(one)].angular += cross(DVec3{position[0], position[1], position[2]}, force);
         }
       }
     }

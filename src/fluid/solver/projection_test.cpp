@@ -76,7 +76,7 @@ TEST(GasSolid, a_ball_that_moves_through_a_closed_box_leaves_no_divergence) {
   GasGrid grid = make_gas_grid(box_of(24, 16, 16, 0.1f, GasBoundary::closed), 293.15f);
   Bench bench;
   for (int i = 0; i < 10; ++i) {
-    put_sphere(grid, {0.8f + 0.02f * float(i), 0.8f, 0.81f}, 0.33f, {1.2f, 0.0f, 0.0f}, bench.solids);
+    place_sphere(grid, {0.8f + 0.02f * float(i), 0.8f, 0.81f}, 0.33f, {1.2f, 0.0f, 0.0f}, bench.solids);
     const GasReport report = bench.step(grid, 1.0f / 60.0f);
     // What the fractions of faces do not add up to is spread over all cells: 1e-3 of what the ball pushes.
     EXPECT_LT(report.divergence / 60.0f, 1.0e-3f);
@@ -93,7 +93,7 @@ TEST(GasSolid, pressure_gives_an_accelerated_ball_its_added_mass) {
   Bench bench;
   bench.settings.projection.reduction = 1.0e-4f;
   const float radius = 0.3f, speed = 0.2f;
-  put_sphere(grid, {1.01f, 0.99f, 1.0f}, radius, {0.0f, speed, 0.0f}, bench.solids);
+  place_sphere(grid, {1.01f, 0.99f, 1.0f}, radius, {0.0f, speed, 0.0f}, bench.solids);
   GasImpulse impulse;
   bench.step(grid, 1.0f / 60.0f, {}, std::span(&impulse, 1));
   const double added = 2.0 / 3.0 * 3.14159265358979 * double(radius) * double(radius) * double(radius) * 1.2;
@@ -107,7 +107,7 @@ TEST(GasSolid, pressure_gives_an_accelerated_ball_its_added_mass) {
 TEST(GasSolid, a_ball_at_rest_in_gas_at_rest_changes_nothing) {
   GasGrid grid = make_gas_grid(box_of(16, 16, 16, 0.1f, GasBoundary::open), 293.15f);
   Bench bench;
-  put_sphere(grid, {0.8f, 0.75f, 0.83f}, 0.3f, {}, bench.solids);
+  place_sphere(grid, {0.8f, 0.75f, 0.83f}, 0.3f, {}, bench.solids);
   GasImpulse impulse;
   for (int i = 0; i < 3; ++i) bench.step(grid, 1.0f / 60.0f, {}, std::span(&impulse, 1));
   for (int axis = 0; axis < 3; ++axis) {

@@ -8,9 +8,9 @@ namespace {
 constexpr int kBack = 0, kAhead = 3, kMoved = 6, kLower = 7, kUpper = 8;  // scratch
 constexpr int kCenters = 6;                                               // and before these three
 
-// Between which places spots of cell centres lie; `outside`: the ghosts beyond open sides are of use.
+// Limits of the sample points of cell centres; `outside`: the ghosts beyond open sides are of use.
 template <class Pass>
-void limit_spots(const GasBox& box, const GridShape& shape, bool outside, int faces, Pass& pass) {
+void limit_samples(const GasBox& box, const GridShape& shape, bool outside, int faces, Pass& pass) {
   for (int axis = 0; axis < 3; ++axis) {
     const float n = float(shape.cells[axis]);
     if (box.periodic(axis) && !box.flat(axis)) {
@@ -32,7 +32,7 @@ void transport(const GasPass& pass, int faces, const float* outside, float* fiel
   TransportPass work;
   work.shape = shape;
   for (int axis = 0; axis < 3; ++axis) {
-    work.places[axis] = shape.cells[axis] + (axis == faces ? 1 : 0);
+    work.points[axis] = shape.cells[axis] + (axis == faces ? 1 : 0);
     if (pass.flat(axis)) continue;
     work.back[axis] = pass.scratch(kBack + axis);
     work.ahead[axis] = pass.scratch(kAhead + axis);
@@ -42,21 +42,21 @@ void transport(const GasPass& pass, int faces, const float* outside, float* fiel
   work.moved = pass.scratch(kMoved);
   work.lower = pass.scratch(kLower);
   work.upper = pass.scratch(kUpper);
-  limit_spots(box, shape, outside != nullptr, faces, work);
+  limit_samples(box, shape, outside != nullptr, faces, work);
   const auto fill = [&](float* of) {
     faces < 0 ? fill_ghosts(box, shape, of, outside) : wrap_faces(box, shape, faces, of);
   };
   const auto run = [&](void (*kernel)(const TransportPass&, int, int)) {
-    for_blocks(pass.tasks, work.places[1] * work.places[2], kGridRows,
+    for_blocks(pass.tasks, work.points[1] * work.points[2], kGridRows,
                [&](int begin, int end, int) { kernel(work, begin, end); });
   };
   fill(field);
   run(pass.kernels.move);
   fill(work.moved);
   if (faces < 0) {
-    run(pass.kernels.find_missing);
+    run(pass.kernels.find_correction);
     fill_ghosts(box, shape, work.lower);
-    run(pass.kernels.add_missing);
+    run(pass.kernels.add_correction);
   } else {
     run(pass.kernels.correct);
   }
@@ -65,11 +65,11 @@ void transport(const GasPass& pass, int faces, const float* outside, float* fiel
 
 }  // namespace
 
-void trace_ways(const GasPass& pass) {
+void trace_paths(const GasPass& pass) {
   const GridShape& shape = pass.shape();
   TracePass work;
   work.shape = shape;
-  limit_spots(pass.box(), shape, false, -1, work);
+  limit_samples(pass.box(), shape, false, -1, work);
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     const float* const from = pass.grid.velocity[axis].data();
@@ -102,27 +102,27 @@ void transport_fields(const GasPass& pass) {
   transport(pass, -1, &ambient, pass.grid.temperature.data());
 }
 
-float longest_way(const GasPass& pass) {
+float max_displacement(const GasPass& pass) {
   const GridShape& shape = pass.shape();
-  float longest = 0.0f;
+  float largest = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     const float* const from = pass.grid.velocity[axis].data();
     const int step = shape.stride(axis);
     const float fastest = largest_of_rows(shape, pass.tasks, [&](int c, int, int) {
-      float most = 0.0f;
+      float largest = 0.0f;
       for (int i = c; i < c + shape.cells[0]; ++i) {
         const float lower = from[i] < 0.0f ? -from[i] : from[i];
         const float upper = from[i + step] < 0.0f ? -from[i + step] : from[i + step];
-        most = lower > most ? lower : most;
-        most = upper > most ? upper : most;
+        largest = lower > largest ? lower : largest;
+        largest = upper > largest ? upper : largest;
       }
-      return most;
+      return largest;
     });
-    const float way = fastest * pass.step / pass.edge(axis);
-    longest = way > longest ? way : longest;
+    const float displacement = fastest * pass.step / pass.edge(axis);
+    largest = displacement > largest ? displacement : largest;
   }
-  return longest;
+  return largest;
 }
 
 }  // namespace gyre

@@ -99,7 +99,7 @@ int count_viscous_stages(const GasBox& box, float kinematic_viscosity, float ste
   return stages;
 }
 
-void keep_velocity(const GasPass& pass) {
+void save_velocity(const GasPass& pass) {
   for (int axis = 0; axis < 3; ++axis) {
     const Array<float>& from = pass.grid.velocity[axis];
     Array<float>& to = pass.memory.before[axis];

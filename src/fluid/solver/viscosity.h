@@ -14,7 +14,7 @@ namespace gyre {
 // Stages for a step.
 int count_viscous_stages(const GasBox& box, float kinematic_viscosity, float step);
 // Remembers the velocity at the beginning of the step.
-void keep_velocity(const GasPass& pass);
+void save_velocity(const GasPass& pass);
 // From that, with the changes that have led to the velocity as it is, to the velocity at the end.
 void add_viscosity(const GasPass& pass, float kinematic_viscosity);
 
