@@ -104,7 +104,7 @@ void transport_fields(const GasPass& pass) {
 
 float max_displacement(const GasPass& pass) {
   const GridShape& shape = pass.shape();
-  float largest = 0.0f;
+  float longest = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     const float* const from = pass.grid.velocity[axis].data();
@@ -120,9 +120,9 @@ float max_displacement(const GasPass& pass) {
       return largest;
     });
     const float displacement = fastest * pass.step / pass.edge(axis);
-    largest = displacement > largest ? displacement : largest;
+    longest = displacement > longest ? displacement : longest;
   }
-  return largest;
+  return longest;
 }
 
 }  // namespace gyre
