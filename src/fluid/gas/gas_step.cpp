@@ -77,6 +77,14 @@ void center_pressure(const GasPass& pass) {
   });
 }
 
+// For readings between the last cell of a periodic axis and the first.
+void fill_periodic_ghosts(const GasPass& pass) {
+  const bool periodic[3] = {pass.box().periodic(0), pass.box().periodic(1), pass.box().periodic(2)};
+  for (Array<float>* field : {&pass.grid.density, &pass.grid.temperature, &pass.grid.pressure})
+    wrap_ghosts(pass.shape(), periodic, field->data());
+  for (Array<float>& field : pass.grid.velocity) wrap_ghosts(pass.shape(), periodic, field.data());
+}
+
 void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, const GasSettings& settings,
                  double time, GasReport& report) {
   apply_emitters(pass, emitters, time);
@@ -120,6 +128,7 @@ GasReport step_gas(GasGrid& grid, const GasSolids& solids, std::span<const GasEm
     if (solids.present() && !impulses.empty()) add_impulses(pass, settings.density, impulses);
   }
   center_pressure(pass);
+  fill_periodic_ghosts(pass);
   report.divergence = largest_divergence(pass);
   return report;
 }

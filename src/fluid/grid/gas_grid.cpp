@@ -20,15 +20,24 @@ GasGrid make_gas_grid(const GasBox& box, float ambient_temperature) {
 
 namespace {
 
-// Copies the layer `from` along an axis to the layer `to`; the other axes with their ghosts.
-void copy_layer(const GridShape& shape, int axis, int from, int to, float* field, const float* value) {
+// What a ghost gets: another cell of its line, that with the opposite sign, or a value.
+enum class GhostKind : std::uint8_t { copy, mirror, value };
+
+// Fills the layer `to` along an axis from the layer `from`; the other axes with their ghosts.
+void fill_layer(const GridShape& shape, int axis, int from, int to, float* field, GhostKind kind,
+                float value = 0.0f) {
   const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
-  const int step = shape.stride(axis), step_a = shape.stride(a), step_b = shape.stride(b);
+  const int step_a = shape.stride(a), step_b = shape.stride(b);
+  const int distance = (from - to) * shape.stride(axis);
   for (int j = -1; j <= shape.cells[b]; ++j) {
-    float* const row = field + shape.first + j * step_b;
-    for (int i = -1; i <= shape.cells[a]; ++i) {
-      row[i * step_a + to * step] = value != nullptr ? *value : row[i * step_a + from * step];
-    }
+    float* const row = field + shape.first + j * step_b + to * shape.stride(axis);
+    const auto fill = [&](int stride) {
+      for (int i = -1; i <= shape.cells[a]; ++i) {
+        const float other = row[i * stride + distance];
+        row[i * stride] = kind == GhostKind::copy ? other : kind == GhostKind::mirror ? -other : value;
+      }
+    };
+    step_a == 1 ? fill(1) : fill(step_a);
   }
 }
 
@@ -38,16 +47,39 @@ void fill_ghosts(const GasBox& box, const GridShape& shape, float* field, const 
   for (int axis = 0; axis < 3; ++axis) {
     const int last = shape.cells[axis] - 1;
     const bool wraps = box.periodic(axis);
-    copy_layer(shape, axis, wraps ? last : 0, -1, field, box.open(2 * axis) ? outside : nullptr);
-    copy_layer(shape, axis, wraps ? 0 : last, last + 1, field, box.open(2 * axis + 1) ? outside : nullptr);
+    for (int side = 0; side < 2; ++side) {
+      const bool lower = side == 0;
+      const bool valued = outside != nullptr && box.open(2 * axis + side);
+      fill_layer(shape, axis, lower == wraps ? last : 0, lower ? -1 : last + 1, field,
+                 valued ? GhostKind::value : GhostKind::copy, valued ? *outside : 0.0f);
+    }
+  }
+}
+
+void fill_pressure_ghosts(const GasBox& box, const GridShape& shape, float* field) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int last = shape.cells[axis] - 1;
+    const bool wraps = box.periodic(axis);
+    for (int side = 0; side < 2; ++side) {
+      const bool lower = side == 0;
+      fill_layer(shape, axis, lower == wraps ? last : 0, lower ? -1 : last + 1, field,
+                 box.open(2 * axis + side) ? GhostKind::mirror : GhostKind::copy);
+    }
+  }
+}
+
+void clear_ghosts(const GridShape& shape, float* field) {
+  for (int axis = 0; axis < 3; ++axis) {
+    fill_layer(shape, axis, 0, -1, field, GhostKind::value);
+    fill_layer(shape, axis, 0, shape.cells[axis], field, GhostKind::value);
   }
 }
 
 void wrap_ghosts(const GridShape& shape, const bool periodic[3], float* field) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!periodic[axis]) continue;
-    copy_layer(shape, axis, shape.cells[axis] - 1, -1, field, nullptr);
-    copy_layer(shape, axis, 0, shape.cells[axis], field, nullptr);
+    fill_layer(shape, axis, shape.cells[axis] - 1, -1, field, GhostKind::copy);
+    fill_layer(shape, axis, 0, shape.cells[axis], field, GhostKind::copy);
   }
 }
 
@@ -55,11 +87,11 @@ void wrap_faces(const GasBox& box, const GridShape& shape, int axis, float* face
   for (int other = 0; other < 3; ++other) {
     const int last = shape.cells[other] - 1;
     if (box.periodic(other)) {
-      copy_layer(shape, other, last, -1, faces, nullptr);
-      copy_layer(shape, other, 0, last + 1, faces, nullptr);
+      fill_layer(shape, other, last, -1, faces, GhostKind::copy);
+      fill_layer(shape, other, 0, last + 1, faces, GhostKind::copy);
     } else if (other != axis) {
-      copy_layer(shape, other, 0, -1, faces, nullptr);
-      copy_layer(shape, other, last, last + 1, faces, nullptr);
+      fill_layer(shape, other, 0, -1, faces, GhostKind::copy);
+      fill_layer(shape, other, last, last + 1, faces, GhostKind::copy);
     }
   }
 }

@@ -53,7 +53,10 @@ GasGrid make_gas_grid(const GasBox& box, float ambient_temperature);
 // The ghost cells of a field of cell centres: of a periodic axis the cells of the opposite side, elsewhere the nearest cell, or `outside`
 // beyond open sides.
 void fill_ghosts(const GasBox& box, const GridShape& shape, float* field, const float* outside = nullptr);
-// The same where ghosts are of use on periodic axes only and are zero elsewhere.
+// The same of a pressure, which is zero in the middle between the last cell and its ghost at an open side.
+void fill_pressure_ghosts(const GasBox& box, const GridShape& shape, float* field);
+void clear_ghosts(const GridShape& shape, float* field);
+// Copies where ghosts are of use on periodic axes only and are zero elsewhere.
 void wrap_ghosts(const GridShape& shape, const bool periodic[3], float* field);
 // Faces that stand twice in the array: those of the upper side of a periodic axis are those of the lower side. Ghosts beyond the faces, likewise.
 void wrap_faces(const GasBox& box, const GridShape& shape, int axis, float* faces);

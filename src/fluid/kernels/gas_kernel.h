@@ -1,6 +1,7 @@
 // The table of kernels of one width (fluid/kernels/gas_kernels.h).
 #pragma once
 
+#include "fluid/kernels/field_lanes.h"
 #include "fluid/kernels/pressure_lanes.h"
 #include "fluid/kernels/transport_lanes.h"
 
@@ -19,6 +20,12 @@ constexpr GasKernels gas_kernels() {
   kernels.prolong = prolong_cells<W>;
   kernels.advance = advance_cells<W>;
   kernels.update_direction = update_direction_cells<W>;
+  kernels.subtract_gradient = subtract_gradient_points<W>;
+  kernels.add_mean = add_mean_points<W>;
+  kernels.find_mean = find_mean_points<W>;
+  kernels.largest = largest_point<W>;
+  kernels.find_vorticity = find_vorticity_cells<W>;
+  kernels.find_confinement = find_confinement_cells<W>;
   kernels.trace = trace_cells<W>;
   kernels.move = move_cells<W>;
   kernels.correct = correct_cells<W, false>;

@@ -49,6 +49,21 @@ struct TracePass {
   float* ahead[3] = {};
 };
 
+// Rows of points that the kernels below work on: cells, or the faces across an axis.
+struct FieldRows {
+  GridShape shape;
+  int points[3] = {};
+};
+// Velocities of centres to vorticity, and that to the force of confinement.
+struct VortexPass {
+  GridShape shape;
+  float half_inverse[3] = {};  // 1/m: half of one over the edge of a cell; 0: flat
+  float* center[3] = {};       // velocity in, force out
+  float* vorticity[3] = {};
+  float* size = nullptr;  // of the vorticity
+  float strength = 0.0f;  // m
+};
+
 struct GasKernels {
   int width;
   // y = A x; the sum of x times y.
@@ -75,6 +90,20 @@ struct GasKernels {
   // p = z + beta p
   void (*update_direction)(const PressureLevel& level, float beta, const float* z, float* p, int row_begin,
                            int row_end);
+
+  // velocity -= scale (field - field at -stride) on faces that have a coefficient.
+  void (*subtract_gradient)(const FieldRows& rows, const float* face, const float* field, int stride,
+                            float scale, float* velocity, int row_begin, int row_end);
+  // velocity += constant + scale (field + field at -stride), likewise.
+  void (*add_mean)(const FieldRows& rows, const float* face, const float* field, int stride, float constant,
+                   float scale, float* velocity, int row_begin, int row_end);
+  // to = scale (from + from at stride)
+  void (*find_mean)(const FieldRows& rows, const float* from, int stride, float scale, float* to,
+                    int row_begin, int row_end);
+  // The largest magnitude.
+  float (*largest)(const FieldRows& rows, const float* field, int row_begin, int row_end);
+  void (*find_vorticity)(const VortexPass& pass, int row_begin, int row_end);
+  void (*find_confinement)(const VortexPass& pass, int row_begin, int row_end);
 
   void (*trace)(const TracePass& pass, int row_begin, int row_end);
   // moved, lower and upper; rows are of `points`.

@@ -1,8 +1,6 @@
 // Emitters, buoyancy and vorticity confinement.
 #include "fluid/solver/gas_forces.h"
 
-#include <cmath>
-
 namespace gyre {
 
 namespace {
@@ -80,9 +78,13 @@ void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, d
 
 void add_buoyancy(const GasPass& pass, Vec3 gravity, float buoyancy) {
   const GridShape& shape = pass.shape();
-  const float ambient = pass.grid.ambient_temperature;
-  fill_ghosts(pass.box(), shape, pass.grid.temperature.data(), &ambient);
+  const float ambient = pass.grid.ambient_temperature, none = 0.0f;
   const float* const temperature = pass.grid.temperature.data();
+  float* const warmth = pass.scratch(0);
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) warmth[i] = temperature[i] - ambient;
+  });
+  fill_ghosts(pass.box(), shape, warmth, &none);
   for (int axis = 0; axis < 3; ++axis) {
     const float g = part_of(gravity, axis);
     if (pass.flat(axis) || g == 0.0f) continue;
@@ -90,69 +92,44 @@ void add_buoyancy(const GasPass& pass, Vec3 gravity, float buoyancy) {
     const float rising = -0.5f * pass.step * buoyancy * g / ambient;
     float* const velocity = pass.grid.velocity[axis].data();
     const float* const face = pass.memory.matrix.levels[0].face[axis].data();
-    const int step = shape.stride(axis);
-    each_row(pass, axis, [&](int c, int, int) {
-      const int count = shape.cells[0] + (axis == 0 ? 1 : 0);
-      for (int i = c; i < c + count; ++i) {
-        const float warmth = (temperature[i] - ambient) + (temperature[i - step] - ambient);
-        const float change = falling + rising * warmth;
-        velocity[i] = face[i] > 0.0f ? velocity[i] + change : velocity[i];
-      }
+    const FieldRows rows = rows_of(shape, axis);
+    for_row_blocks(rows, pass.tasks, [&](int begin, int end) {
+      pass.kernels.add_mean(rows, face, warmth, shape.stride(axis), falling, rising, velocity, begin, end);
     });
   }
 }
 
 void add_confinement(const GasPass& pass, float strength) {
   const GridShape& shape = pass.shape();
-  // Scratch: the velocity of centres, then the force; the vorticity; its magnitude.
-  float* const center[3] = {pass.scratch(0), pass.scratch(1), pass.scratch(2)};
-  float* const curl[3] = {pass.scratch(3), pass.scratch(4), pass.scratch(5)};
-  float* const size = pass.scratch(6);
+  const FieldRows cells = rows_of(shape, -1);
+  VortexPass work;
+  work.shape = shape;
+  work.size = pass.scratch(6);
+  work.strength = strength * pass.edge(0);
   for (int axis = 0; axis < 3; ++axis) {
+    work.center[axis] = pass.scratch(axis);
+    work.vorticity[axis] = pass.scratch(3 + axis);
+    work.half_inverse[axis] = pass.flat(axis) ? 0.0f : 0.5f / pass.edge(axis);
     const float* const from = pass.grid.velocity[axis].data();
-    const int step = shape.stride(axis);
-    each_row(pass, -1, [&](int c, int, int) {
-      for (int i = c; i < c + shape.cells[0]; ++i) center[axis][i] = 0.5f * (from[i] + from[i + step]);
+    for_row_blocks(cells, pass.tasks, [&](int begin, int end) {
+      pass.kernels.find_mean(cells, from, shape.stride(axis), 0.5f, work.center[axis], begin, end);
     });
-    fill_ghosts(pass.box(), shape, center[axis]);
+    fill_ghosts(pass.box(), shape, work.center[axis]);
   }
-  float half[3];
-  for (int axis = 0; axis < 3; ++axis) half[axis] = pass.flat(axis) ? 0.0f : 0.5f / pass.edge(axis);
-  const auto slope = [&](const float* of, int axis, int i) {
-    const int step = shape.stride(axis);
-    return half[axis] * (of[i + step] - of[i - step]);
-  };
-  each_row(pass, -1, [&](int c, int, int) {
-    for (int i = c; i < c + shape.cells[0]; ++i) {
-      const Vec3 w{slope(center[2], 1, i) - slope(center[1], 2, i),
-                   slope(center[0], 2, i) - slope(center[2], 0, i),
-                   slope(center[1], 0, i) - slope(center[0], 1, i)};
-      curl[0][i] = w.x, curl[1][i] = w.y, curl[2][i] = w.z;
-      size[i] = std::sqrt(dot(w, w));
-    }
-  });
-  fill_ghosts(pass.box(), shape, size);
-  const float reach = strength * pass.edge(0);
-  each_row(pass, -1, [&](int c, int, int) {
-    for (int i = c; i < c + shape.cells[0]; ++i) {
-      const Vec3 growth{slope(size, 0, i), slope(size, 1, i), slope(size, 2, i)};
-      const float steep = std::sqrt(dot(growth, growth));
-      const Vec3 force =
-          steep > 0.0f ? (reach / steep) * cross(growth, Vec3{curl[0][i], curl[1][i], curl[2][i]}) : Vec3{};
-      center[0][i] = force.x, center[1][i] = force.y, center[2][i] = force.z;
-    }
-  });
+  for_row_blocks(cells, pass.tasks,
+                 [&](int begin, int end) { pass.kernels.find_vorticity(work, begin, end); });
+  fill_ghosts(pass.box(), shape, work.size);
+  for_row_blocks(cells, pass.tasks,
+                 [&](int begin, int end) { pass.kernels.find_confinement(work, begin, end); });
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
-    fill_ghosts(pass.box(), shape, center[axis]);
+    fill_ghosts(pass.box(), shape, work.center[axis]);
     float* const velocity = pass.grid.velocity[axis].data();
     const float* const face = pass.memory.matrix.levels[0].face[axis].data();
-    const int step = shape.stride(axis);
-    each_row(pass, axis, [&](int c, int, int) {
-      for (int i = c; i < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
-        const float change = 0.5f * pass.step * (center[axis][i] + center[axis][i - step]);
-        velocity[i] = face[i] > 0.0f ? velocity[i] + change : velocity[i];
-      }
+    const FieldRows rows = rows_of(shape, axis);
+    for_row_blocks(rows, pass.tasks, [&](int begin, int end) {
+      pass.kernels.add_mean(rows, face, work.center[axis], shape.stride(axis), 0.0f, 0.5f * pass.step,
+                            velocity, begin, end);
     });
   }
 }

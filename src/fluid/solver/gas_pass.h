@@ -44,6 +44,28 @@ void each_row(const GasPass& pass, int more, Fn&& fn) {
   });
 }
 
+// The points of cells (faces = -1) or of the faces across an axis.
+inline FieldRows rows_of(const GridShape& shape, int faces) {
+  FieldRows rows;
+  rows.shape = shape;
+  for (int axis = 0; axis < 3; ++axis) rows.points[axis] = shape.cells[axis] + (axis == faces ? 1 : 0);
+  return rows;
+}
+// Calls fn(row_begin, row_end) for blocks of rows of points.
+template <class Fn>
+void for_row_blocks(const FieldRows& rows, TaskSystem& tasks, Fn&& fn) {
+  for_blocks(tasks, rows.points[1] * rows.points[2], kGridRows,
+             [&](int begin, int end, int) { fn(begin, end); });
+}
+// The largest magnitude in a field.
+inline float largest_of(const FieldRows& rows, const float* field, const GasKernels& kernels,
+                        TaskSystem& tasks) {
+  return reduce_blocks(
+      tasks, rows.points[1] * rows.points[2], kGridRows, 0.0f,
+      [&](int begin, int end, int) { return kernels.largest(rows, field, begin, end); },
+      [](float a, float b) { return a > b ? a : b; });
+}
+
 // fn(c, j, k) of every row of cells, added up in double in the order of rows.
 template <class Fn>
 double sum_rows(const GridShape& shape, TaskSystem& tasks, Fn&& fn) {
@@ -58,23 +80,6 @@ double sum_rows(const GridShape& shape, TaskSystem& tasks, Fn&& fn) {
         return sum;
       },
       [](double a, double b) { return a + b; });
-}
-
-// The largest fn(c, j, k) of all rows of cells, not below 0.
-template <class Fn>
-float largest_of_rows(const GridShape& shape, TaskSystem& tasks, Fn&& fn) {
-  return reduce_blocks(
-      tasks, shape.rows(), kGridRows, 0.0f,
-      [&](int begin, int end, int) {
-        float largest = 0.0f;
-        for (int row = begin; row < end; ++row) {
-          const int k = row / shape.cells[1], j = row - k * shape.cells[1];
-          const float one = fn(shape.row(j, k), j, k);
-          largest = one > largest ? one : largest;
-        }
-        return largest;
-      },
-      [](float a, float b) { return a > b ? a : b; });
 }
 
 }  // namespace gyre

@@ -96,24 +96,6 @@ struct Cycle {
   }
 };
 
-// The largest |r|.
-float largest(const GridShape& shape, const float* r, TaskSystem& tasks) {
-  return reduce_blocks(
-      tasks, shape.rows(), kGridRows, 0.0f,
-      [&](int begin, int end, int) {
-        float largest = 0.0f;
-        for (int row = begin; row < end; ++row) {
-          const int c = shape.row(row % shape.cells[1], row / shape.cells[1]);
-          for (int i = c; i < c + shape.cells[0]; ++i) {
-            const float size = r[i] < 0.0f ? -r[i] : r[i];
-            largest = size > largest ? size : largest;
-          }
-        }
-        return largest;
-      },
-      [](float a, float b) { return a > b ? a : b; });
-}
-
 // Where no side is open the right side must add up to zero; what it adds up to is spread over all cells.
 void remove_mean(const PressureMatrix& matrix, float* r, TaskSystem& tasks) {
   const GridShape& shape = matrix.levels[0].shape;
@@ -150,7 +132,11 @@ PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& v, 
   };
   if (matrix.singular) remove_mean(matrix, v.r, tasks);
   PressureReport report;
-  report.first = report.last = largest(shape, v.r, tasks);
+  const FieldRows cells{shape, {shape.cells[0], shape.cells[1], shape.cells[2]}};
+  report.first = report.last = reduce_blocks(
+      tasks, shape.rows(), kGridRows, 0.0f,
+      [&](int begin, int end, int) { return kernels.largest(cells, v.r, begin, end); },
+      [](float a, float b) { return a > b ? a : b; });
   rows([&](int begin, int end) { kernels.scale(level, v.r, 0.0f, v.x, begin, end); });
   if (!(report.last > target)) return report;
 

@@ -54,50 +54,19 @@ void find_divergence(const GasPass& pass, int c, int j, int k, float* to) {
   for (int i = 0; i < n; ++i) to[i] = inverse[i] > 0.0f ? to[i] : 0.0f;
 }
 
-// velocity -= scale times the gradient of a field of centres, whose ghosts are wrapped, on faces that have a coefficient.
-void subtract_gradient(const GasPass& pass, const float* field, float scale) {
-  const GridShape& shape = pass.shape();
+// velocity -= scale times the gradient of a pressure, on faces that have a coefficient.
+void subtract_gradient(const GasPass& pass, float* field, float scale) {
+  fill_pressure_ghosts(pass.box(), pass.shape(), field);
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     const float* const face = pass.memory.matrix.levels[0].face[axis].data();
     float* const velocity = pass.grid.velocity[axis].data();
-    const int step = shape.stride(axis), last = shape.cells[axis];
-    const float inner = scale / pass.edge(axis);
-    const bool wraps = pass.box().periodic(axis);
-    each_row(pass, axis, [&](int c, int j, int k) {
-      const auto change = [&](int i, float by) {
-        velocity[i] = face[i] > 0.0f ? velocity[i] - by * (field[i] - field[i - step]) : velocity[i];
-      };
-      // At an open side the pressure outside, half a cell away, is zero.
-      const auto change_side = [&](int i, bool upper) {
-        if (wraps) return change(i, inner);
-        const float across = upper ? -field[i - step] : field[i];
-        velocity[i] = face[i] > 0.0f ? velocity[i] - 2.0f * inner * across : velocity[i];
-      };
-      if (axis == 0) {
-        change_side(c, false);
-        for (int i = c + 1; i < c + last; ++i) change(i, inner);
-        change_side(c + last, true);
-      } else {
-        const int at = axis == 1 ? j : k;
-        for (int i = c; i < c + shape.cells[0]; ++i) {
-          if (at == 0 || at == last) {
-            change_side(i, at == last);
-          } else {
-            change(i, inner);
-          }
-        }
-      }
+    const FieldRows rows = rows_of(pass.shape(), axis);
+    for_row_blocks(rows, pass.tasks, [&](int begin, int end) {
+      pass.kernels.subtract_gradient(rows, face, field, pass.shape().stride(axis), scale / pass.edge(axis),
+                                     velocity, begin, end);
     });
   }
-}
-
-// The ghosts of vectors of the pressure equation are zero.
-void clear_ghosts(const GridShape& shape, float* field) {
-  const float zero = 0.0f;
-  GasBox open;  // all sides open: all ghosts get what is outside
-  for (int axis = 0; axis < 3; ++axis) open.cells[axis] = 2;
-  fill_ghosts(open, shape, field, &zero);
 }
 
 // At the side walls: the gradient of the next face inside, with the sign and scale of subtract_gradient.
@@ -128,8 +97,6 @@ void add_wall_gradient(const GasPass& pass, float scale) {
 }  // namespace
 
 void add_pressure(const GasPass& pass, float share, bool over_walls) {
-  const PressureGrid& finest = pass.memory.matrix.levels[0];
-  wrap_ghosts(pass.shape(), finest.periodic, pass.grid.pressure.data());
   subtract_gradient(pass, pass.grid.pressure.data(), share * pass.step);
   if (over_walls) add_wall_gradient(pass, share * pass.step);
 }
@@ -168,24 +135,16 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
   vectors.q = pass.scratch(kQ);
   vectors.z = pass.scratch(kZ);
   vectors.other = pass.scratch(kOther);
-  for (int index = kX; index <= kOther; ++index) clear_ghosts(shape, pass.scratch(index));
+  for (float* vector : {vectors.p, vectors.z, vectors.other}) clear_ghosts(shape, vector);
   each_row(pass, -1, [&](int c, int j, int k) {
     find_divergence(pass, c, j, k, vectors.r + c);
     for (int i = c; i < c + shape.cells[0]; ++i) vectors.r[i] = -vectors.r[i];
   });
-  const float before = largest_of_rows(shape, pass.tasks, [&](int c, int, int) {
-    float largest = 0.0f;
-    for (int i = c; i < c + shape.cells[0]; ++i) {
-      const float size = vectors.r[i] < 0.0f ? -vectors.r[i] : vectors.r[i];
-      largest = size > largest ? size : largest;
-    }
-    return largest;
-  });
+  const float before = largest_of(rows_of(shape, -1), vectors.r, pass.kernels, pass.tasks);
   const float allowed = settings.divergence / pass.step, reduced = settings.reduction * before;
   const PressureReport report =
       solve_pressure(pass.memory.matrix, vectors, allowed < reduced ? allowed : reduced,
                      settings.max_iterations, pass.kernels, pass.tasks);
-  wrap_ghosts(shape, pass.memory.matrix.levels[0].periodic, vectors.x);
   subtract_gradient(pass, vectors.x, 1.0f);
   float* const pressure = pass.grid.pressure.data();
   const float* const inverse = pass.memory.matrix.levels[0].inverse_diagonal.data();
@@ -200,15 +159,8 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
 float largest_divergence(const GasPass& pass) {
   const GridShape& shape = pass.shape();
   float* const scratch = pass.scratch(kRight);
-  return largest_of_rows(shape, pass.tasks, [&](int c, int j, int k) {
-    find_divergence(pass, c, j, k, scratch + c);
-    float largest = 0.0f;
-    for (int i = c; i < c + shape.cells[0]; ++i) {
-      const float size = scratch[i] < 0.0f ? -scratch[i] : scratch[i];
-      largest = size > largest ? size : largest;
-    }
-    return largest;
-  });
+  each_row(pass, -1, [&](int c, int j, int k) { find_divergence(pass, c, j, k, scratch + c); });
+  return largest_of(rows_of(shape, -1), scratch, pass.kernels, pass.tasks);
 }
 
 void add_impulses(const GasPass& pass, float density, std::span<GasImpulse> impulses) {

@@ -43,8 +43,9 @@ void transport(const GasPass& pass, int faces, const float* outside, float* fiel
   work.lower = pass.scratch(kLower);
   work.upper = pass.scratch(kUpper);
   limit_samples(box, shape, outside != nullptr, faces, work);
+  const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
   const auto fill = [&](float* of) {
-    faces < 0 ? fill_ghosts(box, shape, of, outside) : wrap_faces(box, shape, faces, of);
+    faces < 0 ? fill_ghosts(box, shape, of, outside) : wrap_ghosts(shape, periodic, of);
   };
   const auto run = [&](void (*kernel)(const TransportPass&, int, int)) {
     for_blocks(pass.tasks, work.points[1] * work.points[2], kGridRows,
@@ -59,8 +60,8 @@ void transport(const GasPass& pass, int faces, const float* outside, float* fiel
     run(pass.kernels.add_correction);
   } else {
     run(pass.kernels.correct);
+    fill(field);
   }
-  fill(field);
 }
 
 }  // namespace
@@ -76,8 +77,9 @@ void trace_paths(const GasPass& pass) {
     float* const to = pass.scratch(kCenters + axis);
     const int step = shape.stride(axis);
     const float scale = 0.5f * pass.step / pass.edge(axis);
-    each_row(pass, -1, [&](int c, int, int) {
-      for (int i = c; i < c + shape.cells[0]; ++i) to[i] = scale * (from[i] + from[i + step]);
+    const FieldRows rows = rows_of(shape, -1);
+    for_row_blocks(rows, pass.tasks, [&](int begin, int end) {
+      pass.kernels.find_mean(rows, from, step, scale, to, begin, end);
     });
     fill_ghosts(pass.box(), shape, to);
     work.velocity[axis] = to;
@@ -103,22 +105,11 @@ void transport_fields(const GasPass& pass) {
 }
 
 float max_displacement(const GasPass& pass) {
-  const GridShape& shape = pass.shape();
   float longest = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
-    const float* const from = pass.grid.velocity[axis].data();
-    const int step = shape.stride(axis);
-    const float fastest = largest_of_rows(shape, pass.tasks, [&](int c, int, int) {
-      float largest = 0.0f;
-      for (int i = c; i < c + shape.cells[0]; ++i) {
-        const float lower = from[i] < 0.0f ? -from[i] : from[i];
-        const float upper = from[i + step] < 0.0f ? -from[i + step] : from[i + step];
-        largest = lower > largest ? lower : largest;
-        largest = upper > largest ? upper : largest;
-      }
-      return largest;
-    });
+    const float fastest =
+        largest_of(rows_of(pass.shape(), axis), pass.grid.velocity[axis].data(), pass.kernels, pass.tasks);
     const float displacement = fastest * pass.step / pass.edge(axis);
     longest = displacement > longest ? displacement : longest;
   }
