@@ -87,6 +87,12 @@ ROOMS = {
         "solver": ["store", "kernels"],
         "contact": ["body"],
     },
+    "fluid": {
+        "grid": [],
+        "kernels": ["grid"],
+        "solver": ["kernels"],
+        "gas": ["solver"],
+    },
     "io": {
         "codec": [],
         "snapshot": ["codec"],

@@ -127,7 +127,7 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
       ->type_name("N")
       ->check(number_between(1, false, 1e9, "an integer from 1 to 1e9"))
       ->needs(record);
-  command.add_option("--trace", options.trace, "Write a table of the motion of every body")
+  command.add_option("--trace", options.trace, "Write a table of the motion of every body and every vertex of soft matter")
       ->type_name("FILE.csv");
   command.add_option("--trace-every", options.trace_every, "Trace only every Nth step")
       ->type_name("N")

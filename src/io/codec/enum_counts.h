@@ -39,6 +39,8 @@ inline constexpr int kEnumCount<TimeStepping> = kTimeSteppingCount;
 template <>
 inline constexpr int kEnumCount<FieldKind> = int(FieldKind::buoyancy) + 1;
 template <>
+inline constexpr int kEnumCount<SoftKind> = int(SoftKind::solid) + 1;
+template <>
 inline constexpr int kEnumCount<SoftIntegrator> = int(SoftIntegrator::verlet) + 1;
 template <>
 inline constexpr int kEnumCount<RopeLinks> = int(RopeLinks::rods) + 1;

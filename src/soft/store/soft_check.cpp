@@ -10,6 +10,7 @@ constexpr float kLargest = 1.0e12f;   // of lengths and stiffness, in their unit
 constexpr double kFarthest = 1.0e12;  // m
 constexpr std::size_t kMaxElements = 8u << 20;
 
+Error refused(const char* words) { return make_error(ErrorCode::invalid_argument, "%s", words); }
 template <class... Args>
 Error refused(const char* format, Args... args) {
   return make_error(ErrorCode::invalid_argument, format, args...);
