@@ -1,6 +1,8 @@
 // Pressure: its gradient, its equation, and its impulses on solids.
 #include "fluid/solver/projection.h"
 
+#include "fluid/solver/pressure_pockets.h"
+
 namespace gyre {
 
 namespace {
@@ -138,9 +140,20 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
   find_inflow(pass, vectors.r);
   const float before = largest_of(rows_of(shape, -1), vectors.r, pass.kernels, pass.tasks);
   const float allowed = settings.divergence / pass.step, reduced = settings.reduction * before;
-  const PressureReport report =
-      solve_pressure(pass.memory.matrix, vectors, allowed < reduced ? allowed : reduced,
-                     settings.max_iterations, pass.kernels, pass.tasks);
+  const float target = allowed < reduced ? allowed : reduced;
+  PressureMatrix& matrix = pass.memory.matrix;
+  PressureReport report =
+      solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks);
+  if (report.last > target && pass.solids.present() && !matrix.has_pockets && settings.max_iterations > 0) {
+    // Solids that move may enclose gas, for which the equation then has no solution.
+    matrix.has_pockets = true;
+    find_pockets(matrix);
+    for (float* vector : {vectors.p, vectors.z, vectors.other}) clear_ghosts(shape, vector);
+    find_inflow(pass, vectors.r);
+    const int before_pockets = report.iterations;
+    report = solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks);
+    report.iterations += before_pockets;
+  }
   subtract_gradient(pass, vectors.x, 1.0f);
   float* const pressure = pass.grid.pressure.data();
   const float* const inverse = pass.memory.matrix.levels[0].inverse_diagonal.data();
