@@ -2,6 +2,7 @@
 #include "fluid/gas/gas_step.h"
 
 #include "fluid/gas/gas_reading.h"
+#include "fluid/solver/pressure_pockets.h"
 #include "fluid/solver/transport.h"
 #include "fluid/solver/viscosity.h"
 
@@ -20,6 +21,8 @@ void prepare_memory(const GasGrid& grid, const GasSolids& solids, GasMemory& mem
   }
   if (!same_size || matrix.solids_revision != (solids.present() ? solids.revision : 0)) {
     build_pressure_matrix(grid.box, grid.shape, solids, kernels, tasks, memory.matrix);
+    memory.matrix.has_pockets = memory.matrix.has_pockets && solids.present();
+    if (memory.matrix.has_pockets) find_pockets(memory.matrix);
   }
 }
 
@@ -62,6 +65,7 @@ void conserve_smoke(const GasPass& pass, double mass) {
 // Where no side is open the pressure is known but for a constant: its mean is zero.
 void center_pressure(const GasPass& pass) {
   const PressureMatrix& matrix = pass.memory.matrix;
+  if (matrix.has_pockets) return remove_pocket_means(matrix, pass.grid.pressure.data());
   if (!matrix.singular || matrix.active_cells == 0) return;
   const GridShape& shape = pass.shape();
   float* const pressure = pass.grid.pressure.data();

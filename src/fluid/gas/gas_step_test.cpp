@@ -142,6 +142,23 @@ TEST(GasVortices, a_wall_that_moves_drags_the_gas_to_a_straight_line) {
   }
 }
 
+TEST(GasVortices, a_lid_drives_a_cavity_as_published) {
+  // U. Ghia, K. Ghia, C. Shin, "High-Re Solutions for Incompressible Flow", 1982: u on the vertical centre line at Re 100.
+  GasBox box = box_of(32, 32, 1, 1.0f / 32.0f, GasBoundary::no_slip);
+  box.wall_velocity[3] = {1.0f, 0.0f, 0.0f};
+  GasGrid grid = make_gas_grid(box, 293.15f);
+  Bench bench;
+  bench.settings.density = 1.0f;
+  bench.settings.viscosity = 0.01f;
+  bench.settings.gravity = {};
+  for (int i = 0; i < 600; ++i) bench.step(grid, 1.0f / 60.0f);
+  const double table[7][2] = {{0.9531, 0.68717},  {0.8516, 0.23151},  {0.7344, 0.00332}, {0.5000, -0.20581},
+                              {0.2813, -0.15662}, {0.1719, -0.10150}, {0.0703, -0.04775}};
+  for (const auto& row : table) {
+    EXPECT_NEAR(double(probe_gas(grid, {0.5, row[0], 0.01}, 1.0f, {}).velocity.x), row[1], 0.01) << row[0];
+  }
+}
+
 TEST(GasEnergy, energy_without_viscosity_does_not_grow) {
   for (GasBoundary boundary : {GasBoundary::periodic, GasBoundary::closed}) {
     GasGrid grid = make_gas_grid(box_of(16, 16, 16, 0.1f, boundary), 293.15f);

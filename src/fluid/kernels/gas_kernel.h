@@ -23,6 +23,7 @@ constexpr GasKernels gas_kernels() {
   kernels.subtract_gradient = subtract_gradient_points<W>;
   kernels.add_mean = add_mean_points<W>;
   kernels.find_mean = find_mean_points<W>;
+  kernels.find_inflow = find_inflow_cells<W>;
   kernels.largest = largest_point<W>;
   kernels.find_vorticity = find_vorticity_cells<W>;
   kernels.find_confinement = find_confinement_cells<W>;

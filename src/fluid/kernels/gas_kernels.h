@@ -100,6 +100,9 @@ struct GasKernels {
   // to = scale (from + from at stride)
   void (*find_mean)(const FieldRows& rows, const float* from, int stride, float scale, float* to,
                     int row_begin, int row_end);
+  // to = the sum over the axes of scale (velocity - velocity at stride), where a cell has an equation, else 0.
+  void (*find_inflow)(const PressureLevel& level, const float* const (&velocity)[3], const float (&scale)[3],
+                      float* to, int row_begin, int row_end);
   // The largest magnitude.
   float (*largest)(const FieldRows& rows, const float* field, int row_begin, int row_end);
   void (*find_vorticity)(const VortexPass& pass, int row_begin, int row_end);

@@ -46,7 +46,8 @@ struct LaneSums {
     GYRE_UNROLL
     for (int part = 0; part < kGridLanes / W; ++part) sums[part] = 0.0f;
   }
-  GYRE_INLINE void add(int i, Wide<W> value) { sums[i % kGridLanes / W] += value; }
+  // `part`: which W of 16 these are.
+  GYRE_INLINE void add(int part, Wide<W> value) { sums[part] += value; }
   GYRE_INLINE double total() const {
     double all = 0.0;
     for (int i = 0; i < kGridLanes; ++i) all += double(sums[i / W][i % W]);

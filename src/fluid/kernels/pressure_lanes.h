@@ -47,27 +47,29 @@ GYRE_INLINE Wide<W> apply_stencil(const FaceLanes<W>& faces, const GridShape& sh
   return along_x + along_y + along_z;
 }
 
-// Calls fn(c, i, faces, lanes) for every W cells of the rows.
+// Calls fn(c, part, faces, lanes) for every W cells of the rows; `part`: which W of 16 these are.
 template <int W, class Fn>
 GYRE_INLINE void for_cells(const PressureLevel& level, int row_begin, int row_end, Fn&& fn) {
   const int n = level.shape.cells[0];
   for_rows(level.shape, level.shape.cells[1], row_begin, row_end, [&](int c, int, int, int row) {
-    FaceLanes<W> faces;
-    int i = 0;
-    if (level.plain[row] != 0 && n > 2 * W) {
-      faces.load(level, c);
-      fn(c, 0, faces, FullLanes<W>{});
-      faces.spread(level, c + 1);
-      for (i = W; i + W < n; i += W) fn(c + i, i, faces, FullLanes<W>{});
-    }
-    for (; i + W <= n; i += W) {
-      faces.load(level, c + i);
-      fn(c + i, i, faces, FullLanes<W>{});
-    }
-    if constexpr (W > 1) {
-      if (i < n) {
-        faces.load(level, c + i);
-        fn(c + i, i, faces, PartLanes<W>(n - i));
+    const bool plain = level.plain[row] != 0;
+    FaceLanes<W> inner;
+    inner.spread(level, plain ? c + 1 : c);
+    for (int i = 0; i < n; i += kGridLanes) {
+      GYRE_UNROLL
+      for (int part = 0; part < kGridLanes / W; ++part) {
+        const int at = i + part * W;
+        if (plain && at > 0 && at + W < n) {
+          fn(c + at, part, inner, FullLanes<W>{});
+        } else if (at + W <= n) {
+          FaceLanes<W> faces;
+          faces.load(level, c + at);
+          fn(c + at, part, faces, FullLanes<W>{});
+        } else if (at < n) {
+          FaceLanes<W> faces;
+          faces.load(level, c + at);
+          fn(c + at, part, faces, PartLanes<W>(n - at));
+        }
       }
     }
   });
@@ -76,11 +78,11 @@ GYRE_INLINE void for_cells(const PressureLevel& level, int row_begin, int row_en
 template <int W>
 double apply_cells(const PressureLevel& level, const float* x, float* y, int row_begin, int row_end) {
   LaneSums<W> sums;
-  for_cells<W>(level, row_begin, row_end, [&](int c, int i, const FaceLanes<W>& faces, auto lanes) {
+  for_cells<W>(level, row_begin, row_end, [&](int c, int part, const FaceLanes<W>& faces, auto lanes) {
     const Wide<W> here = Wide<W>::load(x + c);
     const Wide<W> result = lanes.keep_real(apply_stencil<W>(faces, level.shape, x, c, here));
     result.store(y + c);
-    sums.add(i, here * result);
+    sums.add(part, here * result);
   });
   return sums.total();
 }
@@ -95,20 +97,30 @@ void find_residual(const PressureLevel& level, const float* b, const float* x, f
   });
 }
 
+template <int W, bool HasBefore>
+GYRE_INLINE double smooth_rows(const PressureLevel& level, const float* b, const float* x,
+                               const float* before, float inertia, float gain, float* out, int row_begin,
+                               int row_end) {
+  LaneSums<W> sums;
+  const Wide<W> keeps(inertia), gains(gain);
+  for_cells<W>(level, row_begin, row_end, [&](int c, int part, const FaceLanes<W>& faces, auto lanes) {
+    const Wide<W> here = Wide<W>::load(x + c), right = Wide<W>::load(b + c);
+    const Wide<W> rest = right - apply_stencil<W>(faces, level.shape, x, c, here);
+    Wide<W> last = here;
+    if constexpr (HasBefore) last = here - Wide<W>::load(before + c);
+    const Wide<W> result = lanes.keep_real(here + keeps * last + gains * faces.inverse * rest);
+    result.store(out + c);
+    sums.add(part, result * right);
+  });
+  return sums.total();
+}
+
 template <int W>
 double smooth_cells(const PressureLevel& level, const float* b, const float* x, const float* before,
                     float inertia, float gain, float* out, int row_begin, int row_end) {
-  LaneSums<W> sums;
-  const Wide<W> keeps(inertia), gains(gain);
-  for_cells<W>(level, row_begin, row_end, [&](int c, int i, const FaceLanes<W>& faces, auto lanes) {
-    const Wide<W> here = Wide<W>::load(x + c), right = Wide<W>::load(b + c);
-    const Wide<W> rest = right - apply_stencil<W>(faces, level.shape, x, c, here);
-    const Wide<W> last = before != nullptr ? here - Wide<W>::load(before + c) : here;
-    const Wide<W> result = lanes.keep_real(here + keeps * last + gains * faces.inverse * rest);
-    result.store(out + c);
-    sums.add(i, result * right);
-  });
-  return sums.total();
+  return before != nullptr
+             ? smooth_rows<W, true>(level, b, x, before, inertia, gain, out, row_begin, row_end)
+             : smooth_rows<W, false>(level, b, x, before, inertia, gain, out, row_begin, row_end);
 }
 
 template <int W>
@@ -249,6 +261,25 @@ void update_direction_cells(const PressureLevel& level, float beta, const float*
     for_lanes<W>(level.shape.cells[0], [&](int i, auto lanes) {
       const Wide<W> turned = Wide<W>::load(z + c + i) + Wide<W>(beta) * Wide<W>::load(p + c + i);
       lanes.keep_real(turned).store(p + c + i);
+    });
+  });
+}
+
+template <int W>
+void find_inflow_cells(const PressureLevel& level, const float* const (&velocity)[3], const float (&scale)[3],
+                       float* to, int row_begin, int row_end) {
+  const GridShape& shape = level.shape;
+  const int stride[3] = {1, shape.pitch, shape.plane};
+  for_rows(shape, shape.cells[1], row_begin, row_end, [&](int c, int, int, int) {
+    for_lanes<W>(shape.cells[0], [&](int i, auto lanes) {
+      Wide<W> sum(0.0f);
+      GYRE_UNROLL
+      for (int axis = 0; axis < 3; ++axis) {
+        const float* const at = velocity[axis] + c + i;
+        sum += Wide<W>(scale[axis]) * (Wide<W>::load(at) - Wide<W>::load_unaligned(at + stride[axis]));
+      }
+      const Mask<W> active = Wide<W>::load(level.inverse_diagonal + c + i) > 0.0f;
+      lanes.keep_real(keep(active, sum)).store(to + c + i);
     });
   });
 }

@@ -1,6 +1,7 @@
 // Conjugate gradients on the pressure equation.
 #include "fluid/solver/pressure_solve.h"
 
+#include "fluid/solver/pressure_pockets.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -130,7 +131,11 @@ PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& v, 
   const auto rows = [&](auto&& fn) {
     for_blocks(tasks, shape.rows(), kGridRows, [&](int begin, int end, int) { fn(begin, end); });
   };
-  if (matrix.singular) remove_mean(matrix, v.r, tasks);
+  if (matrix.has_pockets) {
+    remove_pocket_means(matrix, v.r);
+  } else if (matrix.singular) {
+    remove_mean(matrix, v.r, tasks);
+  }
   PressureReport report;
   const FieldRows cells{shape, {shape.cells[0], shape.cells[1], shape.cells[2]}};
   report.first = report.last = reduce_blocks(

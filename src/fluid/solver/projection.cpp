@@ -1,57 +1,58 @@
 // Pressure: its gradient, its equation, and its impulses on solids.
 #include "fluid/solver/projection.h"
 
+#include "fluid/solver/pressure_pockets.h"
+
 namespace gyre {
 
 namespace {
 
 constexpr int kX = 0, kRight = 1, kP = 2, kQ = 3, kZ = 4, kOther = 5;  // scratch
 
-// The flux through faces: what is open moves with the gas, the rest with the solid.
-struct FaceFlux {
-  const float* velocity;
-  const float* face;  // coefficients of the matrix; null: every face is open, or has the velocity of its wall
-  const float* solid;  // velocity of solids
-  float open_of_face;  // turns coefficients into open fractions
-  int step;
-  float scale;  // 1/m
-
-  float at(int i, bool doubled) const {
-    if (face == nullptr) return scale * velocity[i];
-    float open = face[i] * open_of_face;
-    if (doubled) open *= 0.5f;
-    return scale * (open * velocity[i] + (1.0f - open) * solid[i]);
-  }
-};
-
-// Divergence of the cells of a row, to `to`; 0 where there is no equation.
-void find_divergence(const GasPass& pass, int c, int j, int k, float* to) {
+// The net inflow of the cells of a row over their volume, where solids cut faces: the open part of a face moves with the gas, the rest with
+// the solid.
+void find_cut_inflow(const GasPass& pass, int c, int j, int k, float* to) {
   const GridShape& shape = pass.shape();
   const PressureGrid& finest = pass.memory.matrix.levels[0];
   const int n = shape.cells[0];
   for (int i = 0; i < n; ++i) to[i] = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
-    const float edge = pass.edge(axis);
-    FaceFlux flux{
-        pass.grid.velocity[axis].data(), nullptr, nullptr, edge * edge, shape.stride(axis), 1.0f / edge};
-    const float* const v = flux.velocity;
-    const int step = flux.step;
-    if (!pass.solids.present()) {
-      for (int i = 0; i < n; ++i) to[i] += flux.scale * (v[c + i + step] - v[c + i]);
-      continue;
-    }
-    flux.face = finest.face[axis].data();
-    flux.solid = pass.solids.velocity[axis].data();
-    const int last = shape.cells[axis] - 1;
+    const float edge = pass.edge(axis), inverse_edge = 1.0f / edge;
+    const float* const face = finest.face[axis].data() + c;
+    const float* const velocity = pass.grid.velocity[axis].data() + c;
+    const float* const solid = pass.solids.velocity[axis].data() + c;
+    const auto flux = [&](int i, bool open_side) {  // at open sides coefficients are doubled
+      const float open = face[i] * (open_side ? 0.5f * edge * edge : edge * edge);
+      return inverse_edge * (open * velocity[i] + (1.0f - open) * solid[i]);
+    };
+    const int step = shape.stride(axis), last = shape.cells[axis] - 1;
     const bool open_low = pass.box().open(2 * axis), open_high = pass.box().open(2 * axis + 1);
     for (int i = 0; i < n; ++i) {
       const int at = axis == 0 ? i : axis == 1 ? j : k;
-      to[i] += flux.at(c + i + step, at == last && open_high) - flux.at(c + i, at == 0 && open_low);
+      to[i] += flux(i, at == 0 && open_low) - flux(i + step, at == last && open_high);
     }
   }
   const float* const inverse = finest.inverse_diagonal.data() + c;
   for (int i = 0; i < n; ++i) to[i] = inverse[i] > 0.0f ? to[i] : 0.0f;
+}
+
+// The net inflow of cells over their volume.
+void find_inflow(const GasPass& pass, float* to) {
+  if (pass.solids.present()) {
+    each_row(pass, -1, [&](int c, int j, int k) { find_cut_inflow(pass, c, j, k, to + c); });
+    return;
+  }
+  const PressureLevel level = pass.memory.matrix.level(0);
+  const float* velocity[3];
+  float scale[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    velocity[axis] = pass.grid.velocity[axis].data();
+    scale[axis] = pass.flat(axis) ? 0.0f : 1.0f / pass.edge(axis);
+  }
+  for_row_blocks(rows_of(pass.shape(), -1), pass.tasks, [&](int begin, int end) {
+    pass.kernels.find_inflow(level, velocity, scale, to, begin, end);
+  });
 }
 
 // velocity -= scale times the gradient of a pressure, on faces that have a coefficient.
@@ -136,15 +137,23 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
   vectors.z = pass.scratch(kZ);
   vectors.other = pass.scratch(kOther);
   for (float* vector : {vectors.p, vectors.z, vectors.other}) clear_ghosts(shape, vector);
-  each_row(pass, -1, [&](int c, int j, int k) {
-    find_divergence(pass, c, j, k, vectors.r + c);
-    for (int i = c; i < c + shape.cells[0]; ++i) vectors.r[i] = -vectors.r[i];
-  });
+  find_inflow(pass, vectors.r);
   const float before = largest_of(rows_of(shape, -1), vectors.r, pass.kernels, pass.tasks);
   const float allowed = settings.divergence / pass.step, reduced = settings.reduction * before;
-  const PressureReport report =
-      solve_pressure(pass.memory.matrix, vectors, allowed < reduced ? allowed : reduced,
-                     settings.max_iterations, pass.kernels, pass.tasks);
+  const float target = allowed < reduced ? allowed : reduced;
+  PressureMatrix& matrix = pass.memory.matrix;
+  PressureReport report =
+      solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks);
+  if (report.last > target && pass.solids.present() && !matrix.has_pockets && settings.max_iterations > 0) {
+    // Solids that move may enclose gas, for which the equation then has no solution.
+    matrix.has_pockets = true;
+    find_pockets(matrix);
+    for (float* vector : {vectors.p, vectors.z, vectors.other}) clear_ghosts(shape, vector);
+    find_inflow(pass, vectors.r);
+    const int before_pockets = report.iterations;
+    report = solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks);
+    report.iterations += before_pockets;
+  }
   subtract_gradient(pass, vectors.x, 1.0f);
   float* const pressure = pass.grid.pressure.data();
   const float* const inverse = pass.memory.matrix.levels[0].inverse_diagonal.data();
@@ -159,7 +168,7 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
 float largest_divergence(const GasPass& pass) {
   const GridShape& shape = pass.shape();
   float* const scratch = pass.scratch(kRight);
-  each_row(pass, -1, [&](int c, int j, int k) { find_divergence(pass, c, j, k, scratch + c); });
+  find_inflow(pass, scratch);
   return largest_of(rows_of(shape, -1), scratch, pass.kernels, pass.tasks);
 }
 
