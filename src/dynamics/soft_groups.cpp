@@ -16,7 +16,7 @@ WideBox box_of(const SoftEntry& entry, float gravity, float seconds) {
   WideBox box;
   for (int i = 0; i < p.count; ++i) {
     const DVec3 at = p.place(i);
-    const double pad = double(entry.touch_surface->radius[i] + seconds * length(p.velocity(i)) + fall);
+    const double pad = double(entry.contact_surface->radius[i] + seconds * length(p.velocity(i)) + fall);
     const DVec3 low = at - DVec3{pad, pad, pad}, high = at + DVec3{pad, pad, pad};
     box.low = i == 0 ? low : DVec3{min(box.low.x, low.x), min(box.low.y, low.y), min(box.low.z, low.z)};
     box.high =
@@ -39,7 +39,7 @@ std::span<const std::uint32_t> group_soft(const SoftStore& soft, float gravity, 
   std::size_t count = 0;
   for (std::uint32_t slot = 0; slot < std::uint32_t(soft.entries.size()); ++slot) {
     const SoftEntry& entry = soft.entries[slot];
-    if (entry.def == nullptr || entry.touch_surface == nullptr) continue;
+    if (entry.def == nullptr || entry.contact_surface == nullptr) continue;
     boxes[count] = box_of(entry, gravity, seconds);
     slots[count++] = slot;
   }

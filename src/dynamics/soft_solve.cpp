@@ -180,18 +180,6 @@ void add_rows(SoftSolve& s, std::uint32_t member) {
                                        velocity_of_body(s, row) - row.bias};
   }
 }
-// The momentum that vertices got by what they carry.
-void find_carried_steps(SoftSolve& s, std::uint32_t member) {
-  const SoftWork& work = work_of(s, member);
-  const Particles& p = entry_of(s, member).body.particles;
-  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
-    SoftRow& row = s.scratch->rows[k];
-    row.carried_step = {};
-    if (row.carried < 0) continue;
-    const CarriedInertia& carried = s.scratch->carried[row.carried];
-    row.carried_step = carried.inertia * (carried.target - p.velocity(carried.particle));
-  }
-}
 // Contacts that pull open, those that stick beyond their cones slide. True if there are any.
 bool loosen_grips(SoftSolve& s, std::uint32_t member) {
   const SoftWork& work = work_of(s, member);
@@ -416,6 +404,19 @@ void solve_contacts_in_rounds(SoftSolve& s) {
 }
 
 }  // namespace
+
+// The momentum that vertices got by what they carry.
+void find_carried_steps(SoftSolve& s, std::uint32_t member) {
+  const SoftWork& work = work_of(s, member);
+  const Particles& p = entry_of(s, member).body.particles;
+  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+    SoftRow& row = s.scratch->rows[k];
+    row.carried_step = {};
+    if (row.carried < 0) continue;
+    const CarriedInertia& carried = s.scratch->carried[row.carried];
+    row.carried_step = carried.inertia * (carried.target - p.velocity(carried.particle));
+  }
+}
 
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   scratch.slots.clear(), scratch.touched.clear();

@@ -104,6 +104,9 @@ void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch);
 // Makes the rows of a step; holds vertices that are attached to what does not yield.
 void make_soft_rows(SoftSolve& s);
 
+// The momentum that vertices get by what they carry, at their present velocities. To be found again by whoever changes these.
+void find_carried_steps(SoftSolve& s, std::uint32_t member);
+
 // Stages. Members are independent of each other; the others have one block.
 void begin_soft_members(SoftSolve& s, int begin, int end);
 // The impulses of the last half-step on bodies.

@@ -50,6 +50,7 @@ void give_owed(SoftSolve& s) {
     if (!any) return;
     respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, work.tasks);
     add_change(entry, work.step, work.change.view(), 1.0f);
+    find_carried_steps(s, member);
   });
 }
 
@@ -64,13 +65,13 @@ void begin_soft_surfaces(SoftSolve& s) {
   bool any_self = false;
   for (std::uint32_t m = 0; m < std::uint32_t(s.members.size()); ++m) {
     const SoftEntry& entry = entry_at(s, m);
-    if (entry.touch_surface == nullptr) continue;
+    if (entry.contact_surface == nullptr) continue;
     all.placed_of[m] = std::int32_t(all.placed.size());
-    all.placed.push_back({entry.touch_surface.get(), std::uint32_t(vertices)});
-    all.surfaces.push_back(entry.touch_surface);
+    all.placed.push_back({entry.contact_surface.get(), std::uint32_t(vertices)});
+    all.surfaces.push_back(entry.contact_surface);
     all.member.push_back(m);
-    any_self |= entry.touch_surface->self_collision;
-    vertices += std::size_t(entry.touch_surface->vertices);
+    any_self |= entry.contact_surface->self_collision;
+    vertices += std::size_t(entry.contact_surface->vertices);
   }
   all.active = any_self || all.placed.size() > 1;
   if (all.surfaces != before) all.contacts.candidates.surfaces.clear();

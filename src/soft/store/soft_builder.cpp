@@ -220,7 +220,7 @@ SoftEntry build_soft(std::shared_ptr<const SoftDef> def) {
   std::visit([&](const auto& one) { build(one, entry); }, *def);
   entry.size = edge_size(entry);
   entry.def = std::move(def);
-  entry.touch_surface = make_surface(entry, *entry.def);
+  entry.contact_surface = make_surface(entry, *entry.def);
   set_start(entry.settings(), entry.body.particles);
   return entry;
 }

@@ -62,9 +62,9 @@ struct SoftEntry {
   Array<SoftContact> contacts;        // ascending by particle, then shape
   Array<std::uint32_t>
       triangles;  // of the surface, three vertices each, seen from outside counter-clockwise; none of a rope
+  std::shared_ptr<const SoftSurface> contact_surface;  // of the triangles; null: there are none
   // Of a solid that was made of a surface: what was given, carried along by its tetrahedra, for pictures.
   EmbeddedSurface surface;
-  std::shared_ptr<const SoftSurface> touch_surface;  // of the triangles; null: there are none
   Array<SoftRest> rest{SoftRest{}};  // one
   float radius = 0.0f;               // m: half the thickness, which the surface keeps from shapes
   float size = 0.0f;                 // m: the mean length of its edges, by which speculative distances go
