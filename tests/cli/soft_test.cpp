@@ -104,6 +104,24 @@ TEST_F(SoftCommandLine, FiguresCountSoftMatter) {
     EXPECT_EQ(last[column(name)], "0") << name;
 }
 
+TEST_F(SoftCommandLine, CrossingsAreCountedWhereTheyAreAskedFor) {
+  // Two edges of the second triangle pierce the first.
+  write("x.gyre.json", R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0]},
+    "meshes": {"one": {"vertices": [[-1,0,-1],[1,0,-1],[0,0,1]], "triangles": [[0,2,1]]},
+               "other": {"vertices": [[0,-1,-0.5],[0,1,-0.4],[0,1,-0.3]], "triangles": [[0,1,2]]}},
+    "cloths": [{"name": "a", "mesh": "one", "self_collision": false, "pinned": [0, 1, 2]},
+               {"name": "b", "mesh": "other", "self_collision": false, "pinned": [0, 1, 2]}]})");
+  for (const bool counted : {false, true}) {
+    std::vector<std::string> arguments = {"simulate", "x.gyre.json", "--steps", "1", "--stats", "u.csv"};
+    if (counted) arguments.push_back("--count-crossings");
+    ASSERT_EQ(gyre(arguments).code, 0);
+    const std::vector<std::string> rows = rows_of(read("u.csv"));
+    EXPECT_EQ(cells_of(rows[0])[18], "crossings");
+    EXPECT_EQ(cells_of(rows[1])[18], counted ? "2" : "0");
+  }
+  EXPECT_EQ(gyre({"simulate", "x.gyre.json", "--count-crossings"}).code, 2);
+}
+
 TEST_F(SoftCommandLine, TheFinalSceneGoesOn) {
   ASSERT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "20", "--final", "f.gyre.json"}).code, 0);
   ASSERT_EQ(
