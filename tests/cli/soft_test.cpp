@@ -136,9 +136,11 @@ TEST_F(SoftCommandLine, TheFinalSceneGoesOn) {
     const std::vector<std::string> a = cells_of(whole[i]), b = cells_of(rest[i]);
     ASSERT_EQ(a.size(), b.size());
     EXPECT_EQ(a[2], b[2]);
+    // The jelly slides on the ground, and what the solver remembers of that is forgotten.
+    const double within = a[2].rfind("jelly", 0) == 0 ? 3e-3 : 2e-4;
     const std::size_t x = a.size() - 14;
     for (std::size_t k = x; k < x + 3; ++k)
-      EXPECT_NEAR(std::stod(a[k]), std::stod(b[k]), 1e-3) << whole[i] << "\n" << rest[i];
+      EXPECT_NEAR(std::stod(a[k]), std::stod(b[k]), within) << whole[i] << "\n" << rest[i];
   }
 }
 
