@@ -40,15 +40,6 @@ constexpr MemberTypes kMembers[] = {
     {"start", bit(FieldType::explosion), "only an explosion has this"},
 };
 
-FieldBounds read_bounds(const Field& field) {
-  field.array("an array of 2 corners [low, high]", 2);
-  const FieldBounds bounds{field.element(0).place(), field.element(1).place()};
-  if (!(bounds.low.x <= bounds.high.x && bounds.low.y <= bounds.high.y && bounds.low.z <= bounds.high.z)) {
-    field.fail("found a lower corner above the upper one");
-  }
-  return bounds;
-}
-
 void read_direction(Members& members, const char* key, Vec3& out) {
   const std::optional<Field> field = members.find_value(key);
   if (!field) return;
@@ -100,6 +91,15 @@ void read_explosion_members(Members& members, SceneExplosion& explosion) {
 }
 
 }  // namespace
+
+FieldBounds read_bounds(const Field& field) {
+  field.array("an array of 2 corners [low, high]", 2);
+  const FieldBounds bounds{field.element(0).place(), field.element(1).place()};
+  if (!(bounds.low.x <= bounds.high.x && bounds.low.y <= bounds.high.y && bounds.low.z <= bounds.high.z)) {
+    field.fail("found a lower corner above the upper one, expected [low, high]");
+  }
+  return bounds;
+}
 
 void read_field(SceneReading& reading, const Field& field) {
   Members members(field, "a force field");

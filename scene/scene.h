@@ -8,6 +8,7 @@
 #include <gyre/defs.h>
 #include <gyre/fields.h>
 #include <gyre/joints.h>
+#include <gyre/soft.h>
 
 #include <cstdint>
 #include <optional>
@@ -156,6 +157,34 @@ struct SceneJoint {
   int a = -1, b = -1;  // bodies; -1 is the world
 };
 
+// A vertex that keeps its place in the frame of a body, or in the world.
+struct SceneHold {
+  int vertex = 0;
+  int body = -1;  // -1 is the world
+
+  bool operator==(const SceneHold&) const = default;
+};
+
+// What ropes, cloths and soft bodies have in common beside their definitions.
+struct SceneSoft {
+  std::string name;
+  std::optional<SceneColor> color;
+  std::vector<SceneHold> holds;  // each vertex at most once
+};
+struct SceneRope : SceneSoft {
+  RopeDef def;
+};
+struct SceneCloth : SceneSoft {
+  ClothDef def;   // vertices and triangles stay empty
+  int mesh = -1;  // none: the grid of the definition
+};
+struct SceneSoftBody : SceneSoft {
+  SolidDef def;         // the surface stays empty
+  int mesh = -1;        // the closed surface that is filled with tetrahedra; none: the box or tetrahedra of the definition
+  int resolution = 16;  // of a mesh: cells along the longest side of its box
+  std::optional<FieldBounds> pinned_region;  // vertices in this box of the world at the start stay where they are
+};
+
 // Goes off in the first step that begins at `start` or later.
 struct SceneExplosion {
   ExplosionDef def;
@@ -171,6 +200,9 @@ struct Scene {
   std::vector<SceneMesh> meshes;
   std::vector<SceneBody> bodies;
   std::vector<SceneJoint> joints;
+  std::vector<SceneRope> ropes;
+  std::vector<SceneCloth> cloths;
+  std::vector<SceneSoftBody> soft_bodies;
   std::vector<FieldDef> fields;
   std::vector<SceneExplosion> explosions;
   std::vector<std::string> notes;  // what whoever runs it should know; never written

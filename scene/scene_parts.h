@@ -18,6 +18,8 @@ struct SceneReading {
   Scene scene;
   NameTable materials, meshes, bodies, joints;
   std::size_t shape_count = 0;
+  NameTable matter = {};  // names of what is not a body: ropes, cloths, soft bodies
+  std::size_t soft_vertices = 0;
 };
 
 // The index behind a name; `what` names the kind: "a material".
@@ -28,6 +30,14 @@ void read_shape(SceneReading& reading, const Field& field, SceneBody& body);
 void read_body(SceneReading& reading, const Field& field);
 void read_joint(SceneReading& reading, const Field& field);
 void read_field(SceneReading& reading, const Field& field);
+void read_rope(SceneReading& reading, const Field& field);
+void read_cloth(SceneReading& reading, const Field& field);
+void read_soft_body(SceneReading& reading, const Field& field);
+
+// Two corners of a box in the world, the lower one first.
+FieldBounds read_bounds(const Field& field);
+// A name that no body and nothing else of the scene has.
+std::string read_unique_name(SceneReading& reading, const Field& field);
 
 // The surface values that stand both in a material and in place on a shape.
 struct SurfaceFields {

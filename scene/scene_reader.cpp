@@ -1,4 +1,4 @@
-// The scene as a whole: version, world, materials, meshes, then bodies and joints. See scene_reader.h and, for the format,
+// The scene as a whole: version, world, materials, meshes, bodies, joints, then soft matter and fields. See scene_reader.h and, for the format,
 // scene_schema.cpp.
 #include "scene/scene_reader.h"
 
@@ -178,6 +178,16 @@ void refuse_section(Members& members, const char* key, const char* what) {
   if (count > 0) field->element(0).not_supported(std::string("a scene with ") + what);
 }
 
+void read_each(SceneReading& reading, Members& members, const char* key, const char* what,
+               void (*read)(SceneReading&, const Field&)) {
+  const std::optional<Field> section = members.find(key);
+  if (!section) return;
+  const std::size_t count = section->array(what);
+  constexpr std::size_t kMost = 65536;  // a world has at most that many, all kinds together
+  if (count > kMost) section->expected("at most 65536 of them");
+  for (std::size_t i = 0; i < count; ++i) read(reading, section->element(i));
+}
+
 void check_world_name(const SceneReading& reading, const Field& joints) {
   const auto named_world = reading.bodies.find("world");
   if (named_world == reading.bodies.end()) return;
@@ -225,9 +235,9 @@ void read_scene_object(SceneReading& reading, const Field& root) {
     for (std::size_t i = 0; i < count; ++i) read_joint(reading, joints->element(i));
     check_world_name(reading, *joints);
   }
-  refuse_section(members, "cloths", "cloths");
-  refuse_section(members, "ropes", "ropes");
-  refuse_section(members, "soft_bodies", "soft bodies");
+  read_each(reading, members, "ropes", "an array of ropes", read_rope);
+  read_each(reading, members, "cloths", "an array of cloths", read_cloth);
+  read_each(reading, members, "soft_bodies", "an array of soft bodies", read_soft_body);
   refuse_section(members, "gases", "gases");
   refuse_section(members, "liquids", "liquids");
   if (const auto fields = members.find("force_fields")) {

@@ -28,6 +28,10 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
   if (!builder.build()) return builder.error();
   runner.bodies_ = builder.take_bodies();
   runner.joints_ = builder.take_joints();
+  runner.ropes_ = builder.take_ropes();
+  runner.cloths_ = builder.take_cloths();
+  runner.soft_bodies_ = builder.take_soft_bodies();
+  runner.region_pins_ = builder.take_region_pins();
   for (std::size_t i = 0; i < runner.scene_.bodies.size(); ++i) {
     const SceneBody& body = runner.scene_.bodies[i];
     if (!body.forces.empty() && body.def.type == BodyType::dynamic) runner.forced_.push_back(i);
@@ -120,7 +124,18 @@ bool SceneRunner::find_problem() {
     problem_ = "body \"" + (body ? body->name : std::string("?")) + "\": its place or velocity is not finite";
     return true;
   }
-  return false;
+  return find_soft_problem();
+}
+
+bool SceneRunner::find_soft_problem() {
+  for_each_soft([&](const SceneSoft& soft, SoftId id) {
+    const SoftVertices vertices = world_.vertices(id);
+    for (std::size_t i = 0; i < vertices.size() && problem_.empty(); ++i) {
+      if (is_finite(vertices.position(i)) && is_finite(vertices.velocity(i))) continue;
+      problem_ = "\"" + soft.name + "\": place or velocity of vertex " + std::to_string(i) + " is not finite";
+    }
+  });
+  return !problem_.empty();
 }
 
 SceneJoint SceneRunner::final_joint(std::size_t index) const {
@@ -183,6 +198,45 @@ void SceneRunner::put_present_state(SceneBody& body, BodyId id) const {
   body.forces = std::move(left);
 }
 
+// The shape at rest stays; where the vertices are is the state.
+void SceneRunner::put_present_state(SceneSoft& soft, SoftSettings& settings, SoftId id,
+                                    const std::vector<int>& places) const {
+  std::vector<SceneHold> left;
+  for (SceneHold hold : soft.holds) {
+    const bool is_to_body = hold.body >= 0;
+    if (is_to_body) hold.body = places[std::size_t(hold.body)];
+    if (!is_to_body || hold.body >= 0) left.push_back(hold);
+  }
+  soft.holds = std::move(left);
+  const SoftVertices vertices = world_.vertices(id);
+  settings.positions.resize(vertices.size());
+  settings.velocities.resize(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    settings.positions[i] = vertices.position(i);
+    settings.velocities[i] = vertices.velocity(i);
+  }
+}
+
+void SceneRunner::put_present_softs(Scene& out, const std::vector<int>& places) const {
+  const auto put = [&](auto& softs, const auto& from, const std::vector<SoftId>& ids, const auto& change) {
+    softs.clear();
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (!world_.exists(ids[i])) continue;
+      softs.push_back(from[i]);
+      put_present_state(softs.back(), softs.back().def.settings, ids[i], places);
+      change(softs.back(), i);
+    }
+  };
+  const auto keep = [](const auto&, std::size_t) {};
+  put(out.ropes, scene_.ropes, ropes_, keep);
+  put(out.cloths, scene_.cloths, cloths_, keep);
+  // What a region pinned stays pinned by number: the region would catch what has moved into it.
+  put(out.soft_bodies, scene_.soft_bodies, soft_bodies_, [&](SceneSoftBody& solid, std::size_t i) {
+    solid.pinned_region.reset();
+    for (const int vertex : region_pins_[i]) solid.holds.push_back({vertex, -1});
+  });
+}
+
 Scene SceneRunner::final_scene() const {
   Scene out = scene_;
   out.world.gravity = world_.gravity();
@@ -203,6 +257,7 @@ Scene SceneRunner::final_scene() const {
     if (joint.b >= 0) joint.b = places[std::size_t(joint.b)];
     out.joints.push_back(std::move(joint));
   }
+  put_present_softs(out, places);
   out.fields.clear();
   std::vector<FieldId> fields(world_.fields({}));
   world_.fields(fields);

@@ -36,11 +36,26 @@ class SceneRunner {
   // In the order of the scene.
   std::span<const BodyId> bodies() const { return bodies_; }
   std::span<const JointId> joints() const { return joints_; }
+  std::span<const SoftId> ropes() const { return ropes_; }
+  std::span<const SoftId> cloths() const { return cloths_; }
+  std::span<const SoftId> soft_bodies() const { return soft_bodies_; }
+  // Calls visit(soft, id) for each rope, cloth and soft body that is left, in this order.
+  template <class Visit>
+  void for_each_soft(Visit visit) const {
+    const auto each = [&](const auto& softs, const std::vector<SoftId>& ids) {
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        if (world_.exists(ids[i])) visit(static_cast<const SceneSoft&>(softs[i]), ids[i]);
+      }
+    };
+    each(scene_.ropes, ropes_);
+    each(scene_.cloths, cloths_);
+    each(scene_.soft_bodies, soft_bodies_);
+  }
   // Null for the world or a body that is not of this scene.
   const SceneBody* body_of(BodyId id) const;
 
-  // The scene as it stands now, to be simulated on: poses, velocities, what is left of the forces and of the joints, gravity and
-  // sub-steps. Bodies and joints that were removed are left out.
+  // The scene as it stands now, to be simulated on: poses, velocities, the vertices of soft matter, what is left of the forces
+  // and of the joints, gravity and sub-steps. What was removed is left out.
   // Meshes stand in it, so that it can lie in another folder.
   Scene final_scene() const;
 
@@ -48,6 +63,10 @@ class SceneRunner {
   SceneRunner(Scene scene, World world);
   void apply_forces();
   bool find_problem();
+  bool find_soft_problem();
+  void put_present_state(SceneSoft& soft, SoftSettings& settings, SoftId id,
+                         const std::vector<int>& places) const;
+  void put_present_softs(Scene& out, const std::vector<int>& places) const;
   double present_length(const SceneJoint& joint) const;
   SceneJoint final_joint(std::size_t index) const;
   void put_present_state(SceneBody& body, BodyId id) const;
@@ -56,6 +75,8 @@ class SceneRunner {
   World world_;
   std::vector<BodyId> bodies_;
   std::vector<JointId> joints_;
+  std::vector<SoftId> ropes_, cloths_, soft_bodies_;
+  std::vector<std::vector<int>> region_pins_;  // of each soft body: vertices that its region alone pins
   std::vector<std::size_t> forced_;  // bodies with forces
   std::vector<double> lengths_;      // of distance joints at the start
   std::string problem_;

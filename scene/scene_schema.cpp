@@ -3,6 +3,7 @@
 #include "scene/scene_schema.h"
 
 #include "scene/scene_schema_joints.h"
+#include "scene/scene_schema_soft.h"
 
 namespace gyre {
 namespace {
@@ -364,101 +365,7 @@ constexpr char kPart1[] = R"json(            "group": { "type": "integer", "mini
     },
 )json";
 
-constexpr char kPart2[] = R"json(    "cloth": {
-      "type": "object",
-      "required": ["name"],
-      "additionalProperties": false,
-      "properties": {
-        "name": { "$ref": "#/$defs/name" },
-        "mesh": { "type": "string" },
-        "grid": {
-          "type": "object",
-          "required": ["size", "cells"],
-          "additionalProperties": false,
-          "properties": {
-            "size": { "type": "array", "items": { "$ref": "#/$defs/positive" }, "minItems": 2, "maxItems": 2 },
-            "cells": { "type": "array", "items": { "type": "integer", "minimum": 1 }, "minItems": 2, "maxItems": 2 }
-          }
-        },
-        "position": { "$ref": "#/$defs/vector" },
-        "orientation": { "$ref": "#/$defs/orientation" },
-        "links": { "enum": ["springs", "rods", "membrane"] },
-)json";
-
-constexpr char kPart3[] = R"json(        "area_density": { "$ref": "#/$defs/positive" },
-        "stretch_stiffness": { "$ref": "#/$defs/not_negative" },
-        "shear_stiffness": { "$ref": "#/$defs/not_negative" },
-        "bend_stiffness": { "$ref": "#/$defs/not_negative" },
-        "damping": { "$ref": "#/$defs/not_negative" },
-        "thickness": { "$ref": "#/$defs/positive" },
-        "static_friction": { "$ref": "#/$defs/not_negative" },
-        "self_collision": { "type": "boolean" },
-        "pinned": { "type": "array", "items": { "$ref": "#/$defs/index" } },
-        "pinned_to": {
-          "type": "array",
-          "items": {
-            "type": "object",
-            "required": ["vertex", "body"],
-            "additionalProperties": false,
-            "properties": { "vertex": { "$ref": "#/$defs/index" }, "body": { "type": "string" } }
-          }
-        }
-      }
-    },
-    "rope": {
-      "type": "object",
-      "required": ["name", "points"],
-      "additionalProperties": false,
-      "properties": {
-        "name": { "$ref": "#/$defs/name" },
-        "points": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "minItems": 2 },
-        "segments": { "type": "integer", "minimum": 1 },
-        "radius": { "$ref": "#/$defs/positive" },
-        "linear_density": { "$ref": "#/$defs/positive" },
-        "links": { "enum": ["springs", "rods"] },
-        "stretch_stiffness": { "$ref": "#/$defs/not_negative" },
-        "bend_stiffness": { "$ref": "#/$defs/not_negative" },
-        "attach": {
-          "type": "array",
-          "items": {
-            "type": "object",
-            "required": ["end", "body"],
-            "additionalProperties": false,
-            "properties": { "end": { "enum": [0, 1] }, "body": { "type": "string" } }
-          }
-        }
-      }
-    },
-    "soft_body": {
-      "type": "object",
-      "required": ["name"],
-      "additionalProperties": false,
-      "properties": {
-        "name": { "$ref": "#/$defs/name" },
-        "mesh": { "type": "string" },
-        "resolution": { "type": "integer", "minimum": 1 },
-        "vertices": { "type": "array", "items": { "$ref": "#/$defs/vector" } },
-        "tetrahedra": {
-          "type": "array",
-          "items": { "type": "array", "items": { "$ref": "#/$defs/index" }, "minItems": 4, "maxItems": 4 }
-        },
-        "box": {
-          "type": "object",
-          "required": ["half_extents", "cells"],
-          "additionalProperties": false,
-          "properties": { "half_extents": { "$ref": "#/$defs/vector" }, "cells": { "$ref": "#/$defs/cells" } }
-        },
-        "density": { "$ref": "#/$defs/positive" },
-        "young_modulus": { "$ref": "#/$defs/positive" },
-        "poisson_ratio": { "type": "number", "exclusiveMinimum": -1, "exclusiveMaximum": 0.5 },
-        "model": { "enum": ["linear", "corotated", "neo_hookean"] },
-        "damping": { "$ref": "#/$defs/not_negative" },
-        "position": { "$ref": "#/$defs/vector" },
-        "orientation": { "$ref": "#/$defs/orientation" },
-        "pinned_region": { "anyOf": [{ "type": "null" }, { "$ref": "#/$defs/box" }] }
-      }
-    },
-    "gas": {
+constexpr char kPart2[] = R"json(    "gas": {
       "type": "object",
       "required": ["name", "bounds", "cells"],
       "additionalProperties": false,
@@ -545,7 +452,10 @@ constexpr char kPart3[] = R"json(        "area_density": { "$ref": "#/$defs/posi
 
 std::string scene_schema() {
   std::string out;
-  for (const char* part : {kPart0, kPart1, kSchemaOfJoints, kPart2, kPart3}) out += part;
+  for (const char* part :
+       {kPart0, kPart1, kSchemaOfJoints, kSchemaOfRopes, kSchemaOfCloths, kSchemaOfSoftBodies, kPart2}) {
+    out += part;
+  }
   return out;
 }
 

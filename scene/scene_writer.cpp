@@ -1,28 +1,12 @@
 // Scenes to scene files. See scene_writer.h.
 #include "scene/scene_writer.h"
 
-#include "scene/json_writer.h"
-#include "scene/scene_color.h"
+#include "scene/write_parts.h"
 
 namespace gyre {
 namespace {
 
 constexpr JsonLayout kOneLine = JsonLayout::one_line;
-
-// Writes the member only if it differs from what its absence means.
-template <class T>
-void unless_default(JsonWriter& json, const char* key, const T& value, const T& otherwise) {
-  if (!(value == otherwise)) json.field(key, value);
-}
-
-template <class T>
-void if_given(JsonWriter& json, const char* key, const std::optional<T>& value) {
-  if (value) json.field(key, *value);
-}
-
-void write_color(JsonWriter& json, const std::optional<SceneColor>& color) {
-  if (color) json.field("color", color_text(*color));
-}
 
 void write_view(JsonWriter& json, const SceneView& view) {
   json.key("view").begin_object(kOneLine);
@@ -79,12 +63,6 @@ void write_material_pair(JsonWriter& json, const Scene& scene, const SceneMateri
   if_given(json, "dynamic_friction", pair.dynamic_friction);
   if_given(json, "restitution", pair.restitution);
   json.end_object();
-}
-
-void write_points(JsonWriter& json, const char* key, const std::vector<Vec3>& points) {
-  json.key(key).begin_array();
-  for (const Vec3& point : points) json.value(point);
-  json.end_array();
 }
 
 void write_mesh(JsonWriter& json, const SceneMesh& mesh, const WriteOptions& options) {
@@ -508,6 +486,7 @@ std::string write_scene(const Scene& scene, const WriteOptions& options) {
     for (const SceneJoint& joint : scene.joints) write_joint(json, scene, joint);
     json.end_array();
   }
+  write_soft_matter(json, scene);
   if (!scene.fields.empty() || !scene.explosions.empty()) {
     json.key("force_fields").begin_array();
     for (const FieldDef& field : scene.fields) write_field(json, field);

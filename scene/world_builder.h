@@ -20,6 +20,10 @@ class WorldBuilder {
   const SceneError& error() const { return error_; }
   std::vector<BodyId> take_bodies() { return std::move(bodies_); }
   std::vector<JointId> take_joints() { return std::move(joints_); }
+  std::vector<SoftId> take_ropes() { return std::move(ropes_); }
+  std::vector<SoftId> take_cloths() { return std::move(cloths_); }
+  std::vector<SoftId> take_soft_bodies() { return std::move(soft_bodies_); }
+  std::vector<std::vector<int>> take_region_pins() { return std::move(region_pins_); }
 
  private:
   bool fail(std::string pointer, std::string message);
@@ -28,6 +32,10 @@ class WorldBuilder {
   bool add_bodies();
   bool add_joints();
   bool add_fields();
+  bool add_soft_matter();
+  bool hold(const SceneSoft& soft, SoftId id, const std::string& pointer);
+  bool pin_region(const SceneSoftBody& solid, SoftId id, const std::string& pointer);
+  bool blame_soft(const std::string& pointer, const SceneSoft& soft);
   bool make_shape(std::size_t body, std::size_t shape, ShapeDef& out);
   bool cook(const SceneHull& hull, const std::string& pointer, Geometry& out);
   bool cook(const SceneTriangles& mesh, const std::string& pointer, Geometry& out);
@@ -42,6 +50,8 @@ class WorldBuilder {
   SceneError error_;
   std::vector<BodyId> bodies_;
   std::vector<JointId> joints_;
+  std::vector<SoftId> ropes_, cloths_, soft_bodies_;
+  std::vector<std::vector<int>> region_pins_;
   std::vector<Geometry> mesh_cache_, hull_cache_;  // by mesh
 };
 

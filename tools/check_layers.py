@@ -80,10 +80,12 @@ ROOMS = {
     },
     "soft": {
         "body": [],
-        "elements": ["body"],
+        "mesh": [],
+        "elements": ["body", "mesh"],
         "kernels": ["body"],
-        "store": ["elements"],
+        "store": ["elements", "contact"],
         "solver": ["store", "kernels"],
+        "contact": ["body"],
     },
     "fluid": {
         "grid": [],

@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 import joint_scenes
+import soft_scenes
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 
@@ -578,6 +579,7 @@ ALL = [stack, card_house, dominoes, t_handle, gyroscope, billiards, incline_mate
 def main():
     files = {SCENES / f"{make.__name__}.gyre.json": text(tidy(make())) + "\n" for make in ALL}
     files.update({SCENES / "joints" / f"{make.__name__}.gyre.json": text(tidy(make())) + "\n" for make in joint_scenes.ALL})
+    files.update({SCENES / "soft" / f"{make.__name__}.gyre.json": text(tidy(make())) + "\n" for make in soft_scenes.ALL})
     files[SCENES / "meshes" / "hills.obj"] = terrain_obj(40, 0.4, hill)
     files[SCENES / "meshes" / "small_hills.obj"] = terrain_obj(24, 0.4, hill)
     different = 0

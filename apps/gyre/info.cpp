@@ -80,6 +80,11 @@ void print_text(const SceneRunner& runner) {
   out += "bodies  " + listed(counts.bodies, kBodyWords) + "\n";
   out += "shapes  " + listed(counts.shapes, kShapeWords) + "\n";
   out += "joints  " + listed(counts.joints, joint_words().data()) + "\n";
+  const std::size_t softs = scene.ropes.size() + scene.cloths.size() + scene.soft_bodies.size();
+  if (softs > 0) {
+    out += "soft    " + std::to_string(scene.ropes.size()) + " ropes, " + std::to_string(scene.cloths.size()) +
+           " cloths, " + std::to_string(scene.soft_bodies.size()) + " soft bodies\n";
+  }
   out += "step    " + rounded(scene.world.time_step) + " s in " + std::to_string(scene.world.substeps) +
          " sub-steps, gravity " + vector(scene.world.gravity) + " m/s^2\n";
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -100,6 +105,11 @@ void print_text(const SceneRunner& runner) {
     out += "  principal        " + vector(principal.moments) + " kg m^2 about " + vector(axes.x) + ", " +
            vector(axes.y) + ", " + vector(axes.z) + "\n";
   }
+  runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
+    const SoftInfo info = runner.world().soft_info(id);
+    out += std::string("\n") + (info.kind == SoftKind::solid ? "soft body" : to_string(info.kind)) + " \"" +
+           soft.name + "\", " + std::to_string(info.vertices) + " vertices, " + rounded(info.mass) + " kg\n";
+  });
   for (const SceneMesh& mesh : scene.meshes) append_mesh_bounds(out, mesh);
   std::fwrite(out.data(), 1, out.size(), stdout);
 }
@@ -139,6 +149,21 @@ void write_body(JsonWriter& json, const SceneRunner& runner, std::size_t index) 
   json.end_object();
 }
 
+// Ropes, cloths or soft bodies, and how many vertices each has.
+template <class Soft>
+void write_softs(JsonWriter& json, const char* key, const World& world, const std::vector<Soft>& softs,
+                 std::span<const SoftId> ids) {
+  json.key(key).begin_array();
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    json.begin_object(JsonLayout::one_line);
+    json.field("name", softs[i].name);
+    json.field("particles", world.soft_info(ids[i]).vertices);
+    json.field("mass", world.soft_info(ids[i]).mass);
+    json.end_object();
+  }
+  json.end_array();
+}
+
 void print_json(const SceneRunner& runner) {
   const Scene& scene = runner.scene();
   const Counts counts = count(scene);
@@ -160,6 +185,9 @@ void print_json(const SceneRunner& runner) {
   json.key("bodies").begin_array();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) write_body(json, runner, i);
   json.end_array();
+  write_softs(json, "ropes", runner.world(), scene.ropes, runner.ropes());
+  write_softs(json, "cloths", runner.world(), scene.cloths, runner.cloths());
+  write_softs(json, "soft_bodies", runner.world(), scene.soft_bodies, runner.soft_bodies());
   json.key("meshes").begin_array();
   for (const SceneMesh& mesh : scene.meshes) write_mesh_bounds(json, mesh);
   json.end_array();

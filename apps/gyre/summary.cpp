@@ -45,7 +45,17 @@ std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
   const WallTimes times = wall_times(figures.step_ms);
   std::string out;
   if (!runner.scene().name.empty()) out += runner.scene().name + ": ";
-  out += counted(counts.bodies, "body", "bodies") + ", " + counted(counts.joints, "joint", "joints") + "\n";
+  out += counted(counts.bodies, "body", "bodies") + ", " + counted(counts.joints, "joint", "joints");
+  if (counts.softs > 0) {
+    const auto add = [&](std::size_t count, const char* one, const char* many) {
+      if (count > 0) out += ", " + counted(static_cast<long long>(count), one, many);
+    };
+    add(runner.ropes().size(), "rope", "ropes");
+    add(runner.cloths().size(), "cloth", "cloths");
+    add(runner.soft_bodies().size(), "soft body", "soft bodies");
+    out += " (" + counted(counts.soft_vertices, "vertex", "vertices") + ")";
+  }
+  out += "\n";
   out += counted(static_cast<long long>(runner.steps()), "step", "steps") + ", " + rounded(runner.time(), 4) +
          " s simulated in " + rounded(figures.wall_seconds, 3) + " s";
   if (figures.wall_seconds > 0 && runner.steps() > 0) {
@@ -59,9 +69,11 @@ std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
   out += "end: " + counted(counts.awake_bodies, "body", "bodies") + " awake, " +
          counted(counts.contact_points, "contact point", "contact points") + ", deepest overlap " +
          rounded(1.0e3 * double(world.max_penetration()), 3) + " mm\n";
-  out += "energy: " + rounded(energy.kinetic + energy.potential + energy.elastic, 4) + " J (kinetic " +
+  out += "energy: " + rounded(energy.kinetic + energy.potential + energy.elastic + energy.soft_elastic, 4) + " J (kinetic " +
          rounded(energy.kinetic, 4) + ", potential " + rounded(energy.potential, 4) + ", elastic " +
-         rounded(energy.elastic, 4) + ")\n";
+         rounded(energy.elastic, 4);
+  if (counts.softs > 0) out += ", soft elastic " + rounded(energy.soft_elastic, 4);
+  out += ")\n";
   return out;
 }
 
@@ -96,6 +108,10 @@ std::string summary_json(const SceneRunner& runner, const RunFigures& figures) {
   json.field("bodies", counts.bodies);
   json.field("awake", counts.awake_bodies);
   json.field("joints", counts.joints);
+  json.field("ropes", std::int64_t(runner.ropes().size()));
+  json.field("cloths", std::int64_t(runner.cloths().size()));
+  json.field("soft_bodies", std::int64_t(runner.soft_bodies().size()));
+  json.field("particles", counts.soft_vertices);
   json.field("pairs", counts.pairs);
   json.field("contacts", counts.contact_points);
   json.field("max_penetration", world.max_penetration());
@@ -115,10 +131,11 @@ std::string summary_json(const SceneRunner& runner, const RunFigures& figures) {
     for (const auto& [name, words] : figures.explanations) json.field(name.c_str(), words);
     json.end_object();
   }
-  json.field("energy", energy.kinetic + energy.potential + energy.elastic);
+  json.field("energy", energy.kinetic + energy.potential + energy.elastic + energy.soft_elastic);
   json.field("kinetic_energy", energy.kinetic);
   json.field("potential_energy", energy.potential);
   json.field("elastic_energy", energy.elastic);
+  json.field("soft_elastic_energy", energy.soft_elastic);
   json.field("hash", hash_text(world));
   json.end_object();
   return json.take();

@@ -42,6 +42,22 @@ bool TraceTable::open(const std::string& path) {
   return file_.open(path) && file_.write("step,time,body,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,awake\n");
 }
 
+// A vertex does not turn.
+bool TraceTable::add_vertices(const std::string& begin, const std::string& name, const SoftVertices& vertices,
+                              bool is_awake) {
+  const char* const end = is_awake ? ",0,0,0,1\n" : ",0,0,0,0\n";
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    row_ = begin;
+    add_text(row_, name + "[" + std::to_string(i) + "]");
+    add_vector(row_, vertices.position(i));
+    row_ += ",0,0,0,1";
+    add_vector(row_, vertices.velocity(i));
+    row_ += end;
+    if (!file_.write(row_)) return false;
+  }
+  return true;
+}
+
 bool TraceTable::add_rows(const SceneRunner& runner) {
   const World& world = runner.world();
   std::string begin = std::to_string(runner.steps());
@@ -58,17 +74,22 @@ bool TraceTable::add_rows(const SceneRunner& runner) {
     row_ += world.is_awake(id) ? ",1\n" : ",0\n";
     if (!file_.write(row_)) return false;
   }
-  return true;
+  bool written = true;
+  runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
+    written = written && add_vertices(begin, soft.name, world.vertices(id), world.soft_info(id).awake);
+  });
+  return written;
 }
 
 bool StatsTable::open(const std::string& path) {
   return file_.open(path) &&
          file_.write(
              "step,time,step_ms,bodies,awake,pairs,contacts,max_penetration,kinetic_energy,potential_energy,"
-             "elastic_energy,px,py,pz,lx,ly,lz\n");
+             "elastic_energy,px,py,pz,lx,ly,lz,soft_elastic_energy,crossings,liquid_volume,liquid_particles,"
+             "smoke_mass,max_divergence,pressure_residual\n");
 }
 
-bool StatsTable::add_row(const SceneRunner& runner, double step_ms) {
+bool StatsTable::add_row(const SceneRunner& runner, double step_ms, bool count_crossings) {
   const World& world = runner.world();
   const WorldStats counts = world.stats();
   const Energy energy = world.energy();
@@ -86,7 +107,9 @@ bool StatsTable::add_row(const SceneRunner& runner, double step_ms) {
   add_number(row_, energy.elastic);
   add_vector(row_, momentum.linear);
   add_vector(row_, momentum.angular);
-  row_ += '\n';
+  add_number(row_, energy.soft_elastic);
+  add_count(row_, count_crossings ? static_cast<long long>(world.cloth_crossings()) : 0);
+  row_ += ",0,0,0,0,0\n";  // what only fluids have
   return file_.write(row_);
 }
 

@@ -157,8 +157,10 @@ enum class DrawLayer : std::uint8_t {
   velocities,       // of the centre of mass, and the angular velocity as a vector
   joints,           // anchors, axes, limits, and a line from each body's centre to its anchor
   islands,          // lines between the centres of bodies that touch or are joined, one colour for each island
+  soft_edges,       // of ropes, cloths and solids; a point for each vertex that is pinned or attached
+  soft_contacts,    // a point for each vertex of them that touches a shape, and the normal there
 };
-constexpr int kDrawLayerCount = 13;
+constexpr int kDrawLayerCount = 15;
 const char* to_string(DrawLayer layer);
 constexpr std::uint32_t draw_bit(DrawLayer layer) { return 1u << int(layer); }
 constexpr std::uint32_t kAllDrawLayers = (1u << kDrawLayerCount) - 1;

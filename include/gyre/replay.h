@@ -73,6 +73,7 @@ class Recorder {
   // Gives a body a name, and colours for its shapes in the order of World::shapes. It may be called at any time and repeatedly; the last
   // call holds for the whole recording. Nothing is written without a track.
   void label(BodyId body, std::string_view name, std::span<const TrackColor> colors = {});
+  void label_soft(SoftId soft, std::string_view name, std::span<const TrackColor> colors = {});  // likewise
   // Stores any text under a key, with the same rules, except that the first text of a key holds.
   void note(std::string_view key, std::string_view text);
 

@@ -95,10 +95,21 @@ struct SolidBox {
   Vec3 half_extents{0.5f, 0.5f, 0.5f};  // m
   std::array<int, 3> cells{4, 4, 4};
 };
+// A closed surface of triangles, which World::add_solid fills with tetrahedra of about equal size. Its own vertices are carried along:
+// World::soft_surface. The tetrahedra do not follow it exactly, so their density is scaled until the mass is that of the surface's volume.
+// Refused are surfaces that are open, cross themselves or have triangles without area. Refused too are features that are too thin for
+// the cells; the message then names a resolution that keeps them. The same surface and resolution give the same vertices everywhere.
+// docs/decisions/tetrahedral-fill.md has sizes and times.
+struct SolidSurface {
+  std::vector<Vec3> vertices{};            // m, in the frame of the pose
+  std::vector<std::uint32_t> triangles{};  // three indices each; all counter-clockwise seen from outside, or all clockwise
+  int resolution = 16;                     // cells along the longest side of its box: 2 to 128
+};
 struct SolidDef {
   std::optional<SolidBox> box{};            // or tetrahedra, used as they are:
   std::vector<Vec3> vertices{};             // m, in the frame of the pose
   std::vector<std::uint32_t> tetrahedra{};  // four indices each
+  std::optional<SolidSurface> surface{};    // or a surface to be filled
   Pose pose{};
   SolidModel model = SolidModel::neo_hookean;
   float density = 1000.0f;                  // kg/m^3
@@ -127,6 +138,7 @@ struct SoftInfo {
   float radius = 0.0f;          // m: that of a rope, half the thickness of a cloth, 0 of a solid
   int contacts = 0;             // of its vertices with shapes, in the last step
   std::uint64_t user_data = 0;
+  bool awake = true;
 };
 
 }  // namespace gyre

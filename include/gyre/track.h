@@ -1,4 +1,5 @@
-// The pose track of a recording: the bodies of each frame, their poses, which of them slept, and their shapes. It is read without
+// The pose track of a recording: the bodies of each frame, their poses, which of them slept, and their shapes; the vertices of ropes,
+// cloths and solids. It is read without
 // simulating, forward and back, and also by other versions than the one that wrote it (docs/recording.md). A Recorder (gyre/replay.h)
 // writes it.
 //
@@ -10,6 +11,7 @@
 #include <gyre/ids.h>
 #include <gyre/math.h>
 #include <gyre/result.h>
+#include <gyre/soft.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -41,7 +43,15 @@ struct TrackModel {
   std::vector<TrackShape> shapes{};
 };
 
-// The label that the recorder was given for a body (Recorder::label); empty if none.
+// A rope, cloth or solid, for drawing: its surface. Those that look the same share one. A rope has no triangles: its vertices are a line.
+struct TrackSoft {
+  SoftKind kind = SoftKind::rope;
+  float radius = 0.0f;                     // m: that of a rope, half the thickness of a cloth, 0 of a solid
+  std::uint32_t vertices = 0;              // their number
+  std::vector<std::uint32_t> triangles{};  // three vertices each, counter-clockwise from outside; a cloth's upper side is outside
+};
+
+// The label that the recorder was given for a body (Recorder::label) or for a rope, cloth or solid (Recorder::label_soft); empty if none.
 struct TrackLabel {
   std::string_view name{};               // as given, UTF-8 is not checked
   std::span<const TrackColor> colors{};  // of the model's shapes, in their order; may be fewer
@@ -49,7 +59,7 @@ struct TrackLabel {
 
 // The largest difference between a pose of the track and the recorded one.
 struct TrackAccuracy {
-  double position = 0.0;     // m, each coordinate of the body's origin
+  double position = 0.0;     // m, each coordinate of a body's origin or of a vertex
   double orientation = 0.0;  // rad, angle between the two orientations
 };
 
@@ -61,8 +71,12 @@ struct TrackFrame {
   std::span<const Pose> poses{};            // world_from_body, of the origins
   std::span<const std::uint8_t> awake{};    // 1: awake dynamic or kinematic body; 0: fixed or sleeping
   std::span<const std::uint32_t> models{};  // into PoseTrack::models()
-  // Counts changes of `ids` and `models`. Two frames of one track with the same number have the same `ids` and `models`.
+  // Counts changes of `ids`, `models`, `soft_ids` and `softs`. Two frames of one track with the same number have the same.
   std::uint64_t set_version = 0;
+
+  std::span<const SoftId> soft_ids{};      // ropes, cloths and solids, by ascending id index. `world` is 0
+  std::span<const std::uint32_t> softs{};  // into PoseTrack::softs()
+  std::span<const DVec3> vertices{};       // m, of all of them, one after the other; PoseTrack::softs() tells their numbers
 };
 
 class PoseTrack {
@@ -82,7 +96,9 @@ class PoseTrack {
 
   // All models, in the order of their first frame.
   std::span<const TrackModel> models() const;
-  TrackLabel label(BodyId body) const;  // ignores BodyId::world
+  std::span<const TrackSoft> softs() const;  // surfaces, likewise
+  TrackLabel label(BodyId body) const;       // ignores BodyId::world
+  TrackLabel soft_label(SoftId soft) const;  // ignores SoftId::world
   // The text that the recorder was given under `key` (Recorder::note); empty if none. `gyre simulate` notes "scene", a JSON object
   // with the scene's name and view.
   std::string_view note(std::string_view key) const;
@@ -93,6 +109,8 @@ class PoseTrack {
   Error seek(std::size_t frame);
   std::size_t position() const;  // the present frame; 0 after opening
   TrackFrame frame() const;      // the present frame
+  // The vertices of one rope, cloth or solid in the present frame, by its place among TrackFrame::soft_ids; empty if there is none.
+  std::span<const DVec3> soft_vertices(std::size_t i) const;
 
  private:
   struct Reader;

@@ -231,6 +231,12 @@ class World {
   SoftVertices vertices(SoftId soft) const;
   // The surface: three vertices each, counter-clockwise seen from outside (of a cloth: from one side). None of a rope.
   std::span<const std::uint32_t> soft_triangles(SoftId soft) const;
+  // The surface that a solid was made of (SolidDef::surface), carried along by its tetrahedra: for pictures. Copies up to out.size() places of
+  // its vertices, in the order of the definition; returns how many there are, 0 without such a surface.
+  std::size_t soft_surface(SoftId soft, std::span<DVec3> out) const;
+  std::span<const std::uint32_t> soft_surface_triangles(SoftId soft) const;  // counter-clockwise seen from outside
+  // Pairs of an edge and a triangle without a common vertex that intersect, of one or of two cloths: exact, for tests, and slow.
+  std::size_t cloth_crossings() const;
 
   // Copied at most once after a change, by the first thread that asks; both stay valid side by side until the next change or step.
   BodyColumns bodies() const;        // every body

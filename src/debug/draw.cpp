@@ -1,6 +1,6 @@
 // draw_debug: lines and points of every requested layer, from the same tables that users read. See <gyre/debug.h>.
 #include "base/float_mode.h"
-#include "debug/painter.h"
+#include "debug/draw_soft.h"
 #include "rigid/sleep/island.h"
 #include "world/world_access.h"
 #include "world/world_state.h"
@@ -322,6 +322,8 @@ void Drawing::draw() {
   if (paint_.wants(DrawLayer::velocities)) velocities();
   if (paint_.wants(DrawLayer::joints)) joints();
   if (paint_.wants(DrawLayer::islands)) islands();
+  if (paint_.wants(DrawLayer::soft_edges)) draw_soft_edges(gyre::state_of(world_).soft, paint_);
+  if (paint_.wants(DrawLayer::soft_contacts)) draw_soft_contacts(gyre::state_of(world_).soft, paint_);
 }
 
 }  // namespace
@@ -354,6 +356,10 @@ const char* to_string(DrawLayer layer) {
       return "joints";
     case DrawLayer::islands:
       return "islands";
+    case DrawLayer::soft_edges:
+      return "soft_edges";
+    case DrawLayer::soft_contacts:
+      return "soft_contacts";
   }
   return "unknown";
 }

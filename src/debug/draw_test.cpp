@@ -28,6 +28,10 @@ Scene make_scene(DVec3 at = {}) {
   }
   world.add_joint(SliderDef{.b = last, .anchor = at, .axis = {0, 1, 0}, .limits = Limits{-1, 1}});
   scene.boxes = 13;
+  const SoftId sheet = world.add_cloth(
+      {.grid = ClothGrid{.size = {0.3f, 0.2f}, .cells = {3, 2}}, .pose = {at + DVec3{-9, 0.01, 0}, {}}});
+  world.pin(sheet, 0);
+  world.add_rope({.points = {at + DVec3{-12, 0.03, 0}, at + DVec3{-11, 0.03, 0}}, .segments = 4});
   run(world, 0.2);
   return scene;
 }
@@ -97,6 +101,25 @@ TEST(Draw, PlacesAreRelativeToTheOrigin) {
   for (std::size_t i = 0; i < here.line_positions.size(); ++i) {
     ASSERT_NEAR(here.line_positions[i], there.line_positions[i], 2e-4f) << i;
   }
+}
+
+TEST(Draw, SoftMatterShowsEachEdgeOnceAndItsContacts) {
+  const Scene scene = make_scene();
+  const DebugDraw all = draw(scene.world, {});
+  const DebugDraw::Range edges = layer(all, DrawLayer::soft_edges);
+  // A grid of 3 by 2 cells with a diagonal each, and a rope of 4 segments.
+  EXPECT_EQ(edges.lines, 3u * 3 + 2u * 4 + 6 + 4);
+  EXPECT_EQ(edges.points, 1u) << "the pinned vertex";
+  int contacts = 0;
+  std::vector<SoftId> ids(scene.world.softs({}));
+  scene.world.softs(ids);
+  for (const SoftId id : ids) contacts += scene.world.soft_info(id).contacts;
+  EXPECT_GT(contacts, 5);
+  const DebugDraw::Range touching = layer(all, DrawLayer::soft_contacts);
+  EXPECT_EQ(touching.points, unsigned(contacts));
+  ASSERT_EQ(touching.lines, unsigned(contacts));
+  for (std::uint32_t i = touching.first_line; i < touching.first_line + touching.lines; ++i)
+    EXPECT_GT(all.line_positions[6 * i + 4], all.line_positions[6 * i + 1]) << "out of the ground";
 }
 
 TEST(Draw, StopsAtTheMostLines) {

@@ -14,7 +14,15 @@ namespace {
 constexpr int kRounds = 2, kSweeps = 2;
 // Rounds end when they would take less than this share of the energy that a fall in the half-step gives to the vertices in contact.
 constexpr double kContactTolerance = 1.0e-3;
-// The share of an error of position that is removed in a half-step.
+// The inertia of a fixed body that a vertex carries, in its own masses: beyond what hangs on it, below what rounding would show.
+constexpr float kGripShare = 1.0e3f;
+// How often a sub-step is solved because contacts open or begin to slide.
+constexpr int kGripPasses = 3;
+// A contact lets go when the vertex is further away than this share of the length of an edge.
+constexpr float kReleaseShare = 0.02f;
+// Friction below this share of its bound sticks.
+constexpr float kStickShare = 0.999f;
+// The share of an error of position that is removed in a sub-step.
 constexpr float kErrorShare = 0.2f;
 // Largest speed of removal of penetration, as a share of the speed of a fall from the length of an edge: as for contacts of bodies.
 constexpr float kSoftPushShare = 0.4f;
@@ -113,77 +121,103 @@ void move_held(const SoftSolve& s, SoftEntry& entry) {
   }
 }
 
-void add_force(Particles& p, std::uint32_t i, Vec3 force) {
-  p.fx[i] += force.x, p.fy[i] += force.y, p.fz[i] += force.z;
-}
-
-void add_forces_of_rows(SoftSolve& s, std::uint32_t member) {
-  const SoftWork& work = work_of(s, member);
-  Particles& p = entry_of(s, member).body.particles;
-  const float rate = 1.0f / s.h;
-  for (std::uint32_t k = work.first_row; k < work.last_row; ++k)
-    add_force(p, s.scratch->rows[k].particle, rate * s.scratch->rows[k].impulse);
-}
-
-// Gives attached vertices their part of the inertia of their bodies. Its velocity is that of the point of the body, and what removes a part of
-// the distance.
-void carry(SoftSolve& s, std::uint32_t member) {
+// Where the row acts now, and what it wants. Particles have not moved yet.
+void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
   const RigidWorld& w = *s.w;
-  const SoftWork& work = work_of(s, member);
-  Particles& p = entry_of(s, member).body.particles;
+  const DVec3 place = entry.body.particles.place(int(row.particle));
+  if (!row.is_contact) {
+    row.arm = rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
+    const DVec3 point = center_now(w, row.body) + DVec3(row.arm);
+    row.bias = (kErrorShare / s.h) * difference(place, point);
+  } else {
+    const SoftContact& contact = entry.contacts[row.source];
+    row.normal = turned_now(w, contact.body, contact.normal);
+    row.arm = turned_now(w, contact.body, contact.from_body);
+    const DVec3 point = center_now(w, contact.body) + DVec3(row.arm);
+    const float gap = dot(row.normal, difference(place, point)) - entry.radius;
+    if (gap > kReleaseShare * entry.size) row.grip = SoftGrip::open;
+    const float gravity = length(w.settings.gravity);
+    const float most = kSoftPushShare * std::sqrt((gravity > 0.0f ? gravity : kEarthGravity) * entry.size);
+    const float open = row.grip == SoftGrip::open ? gap / s.h : 0.0f;
+    const float wanted = gap > 0.0f ? open : max(kErrorShare * gap / s.h, -most);
+    row.bias = wanted * row.normal - contact.surface_velocity;
+  }
+  row.body_compliance = body_compliance(w, row);
+}
+
+Sym3 along(Vec3 n, float scale) {
+  return {scale * n.x * n.x, scale * n.y * n.y, scale * n.z * n.z,
+          scale * n.x * n.y, scale * n.x * n.z, scale * n.y * n.z};
+}
+
+// The inertia that the vertex of a row which grips carries.
+Sym3 gripped_inertia(const SoftSolve& s, const SoftRow& row, float mass) {
+  const float shares = row.touched >= 0 ? float(s.scratch->grips[row.touched]) : 0.0f;
+  const float give = row.is_contact ? 1.0f / (kGripShare * mass) : 0.0f;
+  if (row.grip == SoftGrip::slides)
+    return along(row.normal, 1.0f / (shares * dot(row.normal, row.body_compliance * row.normal) + give));
+  return inverse(shares * row.body_compliance + Sym3{give, give, give, 0.0f, 0.0f, 0.0f});
+}
+
+// Rows act as forces with their last impulses, and those that grip let their vertices carry inertia.
+void add_rows(SoftSolve& s, std::uint32_t member) {
+  SoftEntry& entry = entry_of(s, member);
+  SoftWork& work = work_of(s, member);
+  Particles& p = entry.body.particles;
   const float rate = 1.0f / s.h;
-  for (std::uint32_t k = work.first_joint; k < work.last_joint; ++k) {
-    SoftJoint& joint = s.scratch->joints[k];
-    const SoftAttachment& attachment = entry_of(s, member).attachments[joint.source];
-    joint.arm = rotate(orientation_now(w, joint.body), attachment.local);
-    const DVec3 point = center_now(w, joint.body) + DVec3(joint.arm);
-    const Vec3 apart = difference(point, p.place(int(joint.particle)));
-    const float part = 1.0f / float(s.scratch->held[joint.touched]);
-    s.scratch->carried[k] = {std::int32_t(joint.particle), part * inverse(body_compliance(w, joint)),
-                             velocity_of_body(s, joint) + (kErrorShare * rate) * apart};
-    add_force(p, joint.particle, rate * joint.impulse);
+  work.carried = 0;
+  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+    SoftRow& row = s.scratch->rows[k];
+    place_row(s, entry, row);
+    p.fx[row.particle] += rate * row.impulse.x;
+    p.fy[row.particle] += rate * row.impulse.y;
+    p.fz[row.particle] += rate * row.impulse.z;
+    row.carried = -1;
+    if (row.grip == SoftGrip::open || p.loose[row.particle] == 0.0f) continue;
+    row.carried = std::int32_t(work.first_row + work.carried++);
+    s.scratch->carried[row.carried] = {std::int32_t(row.particle),
+                                       gripped_inertia(s, row, p.mass[row.particle]),
+                                       velocity_of_body(s, row) - row.bias};
   }
 }
-// The momentum that the carried parts have gained.
-void find_joint_steps(SoftSolve& s, std::uint32_t member) {
+// Contacts that pull open, those that stick beyond their cones slide. True if there are any.
+bool loosen_grips(SoftSolve& s, std::uint32_t member) {
   const SoftWork& work = work_of(s, member);
-  const Particles& p = entry_of(s, member).body.particles;
-  for (std::uint32_t k = work.first_joint; k < work.last_joint; ++k) {
-    const CarriedInertia& carried = s.scratch->carried[k];
-    s.scratch->joints[k].step = carried.inertia * (carried.target - p.velocity(carried.particle));
+  bool any = false;
+  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+    SoftRow& row = s.scratch->rows[k];
+    if (!row.is_contact || row.carried < 0) continue;
+    const Vec3 impulse = row.impulse + row.carried_step;
+    const float normal = dot(row.normal, impulse);
+    SoftGrip grip = row.grip;
+    if (!(normal >= 0.0f)) {
+      grip = SoftGrip::open;
+    } else if (grip == SoftGrip::sticks &&
+               length(impulse - normal * row.normal) > row.static_friction * normal) {
+      grip = SoftGrip::slides;
+    }
+    any = any || grip != row.grip;
+    row.grip = grip;
   }
+  return any;
 }
+
+// The velocities, and what else the solution of an implicit sub-step changes.
+void copy_motion(const SoftBody& from, SoftBody& to) {
+  to.particles.vx = from.particles.vx, to.particles.vy = from.particles.vy,
+  to.particles.vz = from.particles.vz;
+  for (int axis = 0; axis < 3; ++axis) to.pull[axis] = from.pull[axis];
+  to.chain.tension = from.chain.tension;
+}
+
 std::span<const CarriedInertia> carried_by(SoftSolve& s, std::uint32_t member) {
   const SoftWork& work = work_of(s, member);
-  return s.scratch->carried.view().subspan(work.first_joint, work.last_joint - work.first_joint);
-}
-
-// Where a particle is when the half-step begins. Explicit schemes have moved it.
-DVec3 place_at_start(const SoftSolve& s, const SoftEntry& entry, const SoftWork& work,
-                     std::uint32_t particle) {
-  const Particles& p = entry.body.particles;
-  const DVec3 now = p.place(int(particle));
-  return work.step.method == SoftMethod::explicit_scheme
-             ? now - double(s.h) * DVec3(p.velocity(int(particle)))
-             : now;
+  return s.scratch->carried.view().subspan(work.first_row, work.carried);
 }
 
 void prepare_row(SoftSolve& s, SoftRow& row) {
-  const RigidWorld& w = *s.w;
-  const SoftEntry& entry = entry_of(s, row.member);
-  const SoftWork& work = work_of(s, row.member);
-  const SoftContact& contact = entry.contacts[row.source];
-  row.normal = turned_now(w, contact.body, contact.normal);
-  row.arm = turned_now(w, contact.body, contact.from_body);
-  const DVec3 point = center_now(w, contact.body) + DVec3(row.arm);
-  const float gap =
-      dot(row.normal, difference(place_at_start(s, entry, work, row.particle), point)) - entry.radius;
-  const float gravity = length(w.settings.gravity);
-  const float most = kSoftPushShare * std::sqrt((gravity > 0.0f ? gravity : kEarthGravity) * entry.size);
-  const float wanted = gap > 0.0f ? gap / s.h : max(kErrorShare * gap / s.h, -most);
-  row.bias = wanted * row.normal - contact.surface_velocity;
-  row.particle_inverse = inverse_mass(entry, work.step, row.particle);
-  row.compliance = row.particle_inverse + body_compliance(w, row);
+  row.particle_inverse = inverse_mass(entry_of(s, row.member), work_of(s, row.member).step, row.particle);
+  row.compliance = row.particle_inverse + row.body_compliance;
 }
 
 // ------------------------------------------------------------------------------------------------------------- rows
@@ -255,10 +289,11 @@ void respond_to_steps(SoftSolve& s) {
     }
     respond(entry_of(s, m), work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena,
             work.tasks);
-    for (std::uint32_t k = work.first_joint; k < work.last_joint; ++k) {
-      SoftJoint& joint = s.scratch->joints[k];
-      joint.step = -(s.scratch->carried[k].inertia * work.change[joint.particle]);
-      try_on_body(s, joint, joint.step);
+    for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+      SoftRow& row = s.scratch->rows[k];
+      if (row.carried < 0) continue;
+      row.carried_step = -(s.scratch->carried[row.carried].inertia * work.change[row.particle]);
+      try_on_body(s, row, row.carried_step);
     }
   }
 }
@@ -277,29 +312,48 @@ void change_bodies(SoftSolve& s, float share) {
 
 // Takes a share of the steps and of the changes that they make.
 void take_steps(SoftSolve& s, float share) {
-  for (SoftRow& row : s.scratch->rows) row.impulse += share * row.step;
+  for (SoftRow& row : s.scratch->rows) {
+    row.impulse += share * row.step;
+    if (row.carried >= 0) row.impulse += share * row.carried_step;
+  }
   for (std::uint32_t m = 0; m < s.members.size(); ++m) {
     SoftWork& work = work_of(s, m);
-    if (work.first_row == work.last_row) continue;
-    add_change(entry_of(s, m), work.step, work.change.view(), share);
-    for (std::uint32_t k = work.first_joint; k < work.last_joint; ++k)
-      s.scratch->joints[k].impulse += share * s.scratch->joints[k].step;
+    if (work.first_row != work.last_row) add_change(entry_of(s, m), work.step, work.change.view(), share);
   }
   change_bodies(s, share);
 }
 
-// Gives bodies the momentum that the parts carried by attached vertices have gained.
+// Gives bodies the momentum that the parts carried by vertices have gained.
 void give_to_bodies(SoftSolve& s) {
   for (VelocityChange& change : s.scratch->changes) change = {};
-  for (SoftJoint& joint : s.scratch->joints) {
-    try_on_body(s, joint, joint.step);
-    joint.impulse += joint.step;
+  for (SoftRow& row : s.scratch->rows) {
+    if (row.carried < 0) continue;
+    try_on_body(s, row, row.carried_step);
+    row.impulse += row.carried_step;
   }
   change_bodies(s, 1.0f);
 }
 
+// How contacts hold from now on: they stick within the cone of friction, slide at its bound, and are open without load.
+void set_grips(SoftSolve& s) {
+  for (std::uint32_t& grips : s.scratch->grips) grips = 0;
+  for (SoftRow& row : s.scratch->rows) {
+    if (row.is_contact) {
+      const float normal = dot(row.normal, row.impulse);
+      const float across = length(row.impulse - normal * row.normal);
+      const float bound =
+          row.grip == SoftGrip::sticks ? row.static_friction : kStickShare * row.dynamic_friction;
+      row.grip = !(normal > 0.0f)           ? SoftGrip::open
+                 : across <= bound * normal ? SoftGrip::sticks
+                                            : SoftGrip::slides;
+    }
+    if (row.touched >= 0 && row.grip != SoftGrip::open) ++s.scratch->grips[row.touched];
+  }
+}
+
 void sweep_contacts(SoftSolve& s) {
   for (SoftRow& row : s.scratch->rows) {
+    if (!row.is_contact) continue;
     const Vec3 before = row.impulse + row.step;
     const Vec3 change = next_impulse(row, before, row.error + tried_change(s, row)) - before;
     if (change == Vec3{}) continue;
@@ -351,6 +405,19 @@ void solve_contacts_in_rounds(SoftSolve& s) {
 
 }  // namespace
 
+// The momentum that vertices got by what they carry.
+void find_carried_steps(SoftSolve& s, std::uint32_t member) {
+  const SoftWork& work = work_of(s, member);
+  const Particles& p = entry_of(s, member).body.particles;
+  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+    SoftRow& row = s.scratch->rows[k];
+    row.carried_step = {};
+    if (row.carried < 0) continue;
+    const CarriedInertia& carried = s.scratch->carried[row.carried];
+    row.carried_step = carried.inertia * (carried.target - p.velocity(carried.particle));
+  }
+}
+
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   scratch.slots.clear(), scratch.touched.clear();
   store.ids.for_each_live([&](std::uint32_t slot) {
@@ -374,9 +441,10 @@ void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
 void make_soft_rows(SoftSolve& s) {
   SoftScratch& scratch = *s.scratch;
   const RigidWorld& w = *s.w;
-  scratch.rows.clear(), scratch.joints.clear();
-  scratch.held.assign(scratch.touched.size(), 0u);
-  scratch.changes.resize(scratch.touched.size()), scratch.pending.assign(scratch.touched.size(), VelocityChange{});
+  scratch.rows.clear();
+  scratch.grips.assign(scratch.touched.size(), 0u);
+  scratch.changes.resize(scratch.touched.size()),
+      scratch.pending.assign(scratch.touched.size(), VelocityChange{});
   for (std::uint32_t m = 0; m < s.members.size(); ++m) {
     SoftEntry& entry = entry_of(s, m);
     SoftWork& work = work_of(s, m);
@@ -384,34 +452,38 @@ void make_soft_rows(SoftSolve& s) {
     work.arena.reset();
     work.impulses.resize(padded), work.change.resize(padded);
     work.first_row = std::uint32_t(scratch.rows.size());
-    for (std::uint32_t k = 0; k < entry.contacts.size(); ++k) {
-      const SoftContact& one = entry.contacts[k];
+    const auto add = [&](std::uint32_t particle, std::int32_t body, std::uint32_t source) -> SoftRow& {
       SoftRow row;
-      row.member = m, row.particle = one.particle, row.source = k;
-      row.body = moves(w, one.body) ? one.body : -1;
+      row.member = m, row.particle = particle, row.source = source;
+      row.body = moves(w, body) ? body : -1;
       row.touched = find_touched(scratch, row.body);
-      row.static_friction = one.static_friction, row.dynamic_friction = one.dynamic_friction;
-      row.normal = one.normal, row.arm = one.from_body;
-      row.impulse = s.warm_scale * project(row, one.impulse);
       scratch.rows.push_back(row);
-    }
-    work.last_row = std::uint32_t(scratch.rows.size());
-    work.first_joint = std::uint32_t(scratch.joints.size());
+      return scratch.rows.back();
+    };
     for (std::uint32_t k = 0; k < entry.attachments.size(); ++k) {
       const SoftAttachment& one = entry.attachments[k];
       if (!yields(w, one.body)) continue;
       if (entry.body.particles.loose[one.particle] == 0.0f) let_go(entry.body, int(one.particle));
-      SoftJoint joint;
-      joint.member = m, joint.particle = one.particle, joint.body = one.body, joint.source = k;
-      joint.touched = find_touched(scratch, joint.body);
-      joint.arm = rotate(orientation_now(w, joint.body), one.local);
-      joint.impulse = s.warm_scale * one.impulse;
-      ++scratch.held[joint.touched];
-      scratch.joints.push_back(joint);
+      SoftRow& row = add(one.particle, one.body, k);
+      row.grip = SoftGrip::sticks;
+      row.arm = rotate(orientation_now(w, row.body), one.local);
+      row.impulse = s.warm_scale * one.impulse;
     }
-    work.last_joint = std::uint32_t(scratch.joints.size());
-    scratch.carried.resize(scratch.joints.size());
+    for (std::uint32_t k = 0; k < entry.contacts.size(); ++k) {
+      const SoftContact& one = entry.contacts[k];
+      SoftRow& row = add(one.particle, one.body, k);
+      row.is_contact = true;
+      row.static_friction = one.static_friction, row.dynamic_friction = one.dynamic_friction;
+      row.normal = one.normal, row.arm = one.from_body;
+      row.grip = one.grip;
+      row.impulse = s.warm_scale * project(row, one.impulse);
+    }
+    work.last_row = std::uint32_t(scratch.rows.size());
   }
+  scratch.carried.resize(scratch.rows.size());
+  for (const SoftRow& row : scratch.rows)
+    if (row.touched >= 0 && row.grip != SoftGrip::open) ++scratch.grips[row.touched];
+  begin_soft_surfaces(s);
 }
 
 void begin_soft_members(SoftSolve& s, int begin, int end) {
@@ -420,24 +492,35 @@ void begin_soft_members(SoftSolve& s, int begin, int end) {
     SoftWork& work = work_of(s, m);
     work.mark = work.arena.mark();
     move_held(s, entry);
-    set_field_forces(*s.w, entry, s.time, s.h);
-    add_forces_of_rows(s, m);
-    carry(s, m);
-    work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels, work.arena, work.tasks);
-    find_joint_steps(s, m);
+    const bool is_implicit = entry.settings().integrator == SoftIntegrator::implicit;
+    if (is_implicit && work.first_row != work.last_row) copy_motion(entry.body, work.before);
+    for (int pass = 0; pass < kGripPasses; ++pass) {
+      set_field_forces(*s.w, entry, s.time, s.h);
+      add_rows(s, m);
+      add_forces_of_surfaces(s, m);
+      work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels,
+                                  work.arena, work.tasks);
+      find_carried_steps(s, m);
+      if (!is_implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
+      work.arena.release(work.mark);
+      copy_motion(work.before, entry.body);
+    }
   }
 }
 
 void warm_start_soft_rows(SoftSolve& s, int, int) {
-  const float part = -1.0f / float(s.parts);
-  for (const SoftRow& row : s.scratch->rows) push_body(*s.w, row, part * row.impulse);
-  for (const SoftJoint& joint : s.scratch->joints) push_body(*s.w, joint, part * joint.impulse);
+  for (const SoftRow& row : s.scratch->rows) push_body(*s.w, row, (-1.0f / float(s.parts)) * row.impulse);
 }
 
 void solve_soft_rows(SoftSolve& s, int, int) {
   give_to_bodies(s);
-  for (SoftRow& row : s.scratch->rows) prepare_row(s, row);
-  if (!s.scratch->rows.empty()) solve_contacts_in_rounds(s);
+  bool any_contact = false;
+  for (SoftRow& row : s.scratch->rows) {
+    prepare_row(s, row);
+    any_contact = any_contact || row.is_contact;
+  }
+  if (any_contact) solve_contacts_in_rounds(s);
+  set_grips(s);
   for (VelocityChange& pending : s.scratch->pending) pending = {};
 }
 
@@ -451,10 +534,14 @@ void finish_soft_members(SoftSolve& s, int begin, int end) {
 }
 
 void keep_soft_rows(SoftSolve& s) {
-  for (const SoftRow& row : s.scratch->rows)
-    entry_of(s, row.member).contacts[row.source].impulse = row.impulse;
-  for (const SoftJoint& joint : s.scratch->joints)
-    entry_of(s, joint.member).attachments[joint.source].impulse = joint.impulse;
+  for (const SoftRow& row : s.scratch->rows) {
+    SoftEntry& entry = entry_of(s, row.member);
+    if (row.is_contact) {
+      entry.contacts[row.source].impulse = row.impulse, entry.contacts[row.source].grip = row.grip;
+    } else {
+      entry.attachments[row.source].impulse = row.impulse;
+    }
+  }
 }
 
 }  // namespace gyre

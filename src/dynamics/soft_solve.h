@@ -1,14 +1,16 @@
 // Ropes, cloths and solids within the sub-steps of a batch: their own step, and the rows that couple them with bodies and with each other.
 //
-// An attached vertex carries inertia of its body: K^-1 / n, with K the compliance of the point that it is attached to and n the number of vertices
-// that are attached to the body. The vertex and this part move as one through the whole solve, so a rope between heavy bodies, or over a pulley
-// with loads of a thousand times its mass, knows what hangs on it. The body then gets the momentum that its part has gained. With one vertex
-// that is exact; with several, the parts may differ from the body by what is left for the next sub-step.
+// A row is a vertex against a point of a body: an attachment, or a contact with friction. A row that grips (an attachment; a contact that bore
+// load in the last sub-step) lets its vertex carry inertia of the body: K^-1 / n, with K the compliance of the point and n the number of rows
+// that grip the body; of a fixed body kGripShare times its own mass. A contact that sticks does so in all directions, one that slides
+// along its normal. The vertex and this part move as one through the whole solve, so a rope between heavy bodies, or over a pulley with loads
+// of a thousand times its mass, knows what it is held by. The body then gets the momentum that its part has gained, and the difference
+// that is left is the start of the next sub-step. A contact that pulls opens, and one that sticks beyond its cone slides: then the sub-step is solved
+// anew, kGripPasses times at most.
 //
-// A row is a contact of a vertex with a point of a body, with friction. Contacts are solved in rounds: sweeps of sequential impulses find
-// impulses with the block of each vertex alone, which does not know what moves along with it; of these the share is
-// taken that minimises the energy of the coupled system, found from the true response of all vertices. A round never makes the system worse, whatever
-// masses and stiffnesses meet.
+// Contacts are solved further in rounds: sweeps of sequential impulses find impulses with the block of each vertex alone, which does not know
+// what moves along with it; of these the share is taken that minimises the energy of the coupled system, found from the true
+// response of all vertices. A round never makes the system worse, whatever masses and stiffnesses meet.
 //
 // Soft matter moves once in a whole sub-step, bodies in each of its half-steps. A vertex gets the impulse of a row at once; a body gets an
 // equal part of it in each half-step: the first when the row is solved, the others as the change by contacts, which starts the solve of
@@ -21,6 +23,7 @@
 #pragma once
 
 #include "base/arena/arena.h"
+#include "dynamics/soft_surfaces.h"
 #include "rigid/store/rigid_world.h"
 #include "soft/solver/soft_step.h"
 #include "task/task_system.h"
@@ -30,34 +33,27 @@
 
 namespace gyre {
 
-// A contact as a row of three.
+// A row of three.
 struct SoftRow {
   std::uint32_t member = 0;  // index in SoftSolve::members
   std::uint32_t particle = 0;
   std::int32_t body = -1;     // -1: it does not move
   std::int32_t touched = -1;  // index of the body in SoftScratch::touched
-  std::uint32_t source = 0;   // index among the entry's contacts
+  std::uint32_t source = 0;   // index among the entry's attachments or contacts
+  bool is_contact = false;
+  SoftGrip grip = SoftGrip::open;
+  std::int32_t carried = -1;  // index in SoftScratch::carried
   float static_friction = 0.0f, dynamic_friction = 0.0f;
-  Vec3 normal{};            // out of the body, now
+  Vec3 normal{};            // contacts: out of the body, now
   Vec3 arm{};               // from the body's centre of mass, now
   Vec3 bias{};              // m/s, added to the relative velocity: what is wanted is that both cancel
-  Sym3 compliance{};        // 1/kg, of both sides
+  Sym3 body_compliance{};   // 1/kg
   Sym3 particle_inverse{};  // 1/kg, of the vertex alone
+  Sym3 compliance{};        // 1/kg, of both
   Vec3 impulse{};           // N s on the vertex
   Vec3 error{};             // m/s: relative velocity and bias when the round began
   Vec3 step{};              // N s: the change of impulse that is tried
-};
-
-// An attachment to a body that yields; its CarriedInertia has the same index.
-struct SoftJoint {
-  std::uint32_t member = 0;
-  std::uint32_t particle = 0;
-  std::int32_t body = 0;
-  std::int32_t touched = 0;
-  std::uint32_t source = 0;  // index among the entry's attachments
-  Vec3 arm{};                // from the body's centre of mass, now
-  Vec3 impulse{};  // N s on the vertex
-  Vec3 step{};     // N s: that on the vertex which the body has not got yet
+  Vec3 carried_step{};      // N s: on the vertex, by what it carries
 };
 
 // Memory of one body of soft matter, which lasts; its arena is used within a half-step.
@@ -66,9 +62,10 @@ struct SoftWork {
   TaskSystem tasks;  // serial
   Arena::Mark mark{};
   SoftStep step;
-  Array<Vec3> impulses, change;                   // by particle
-  std::uint32_t first_row = 0, last_row = 0;      // in SoftScratch::rows
-  std::uint32_t first_joint = 0, last_joint = 0;  // in SoftScratch::joints
+  SoftBody before;                            // what a sub-step that is solved anew begins with
+  Array<Vec3> impulses, change;               // by particle
+  std::uint32_t first_row = 0, last_row = 0;  // in SoftScratch::rows
+  std::uint32_t carried = 0;                  // rows that carry, from first_row on in SoftScratch::carried
 };
 
 // A change of velocity of a body, m/s and rad/s.
@@ -82,11 +79,11 @@ struct SoftScratch {
   Array<std::uint32_t> touched;  // bodies that move and are touched or held by soft matter, ascending
   Array<std::uint32_t> slots;    // of all there are
   Array<SoftRow> rows;
-  Array<SoftJoint> joints;
-  Array<CarriedInertia> carried;
-  Array<std::uint32_t> held;  // attachments to each touched body
+  Array<CarriedInertia> carried;  // room for one of each row, member by member
+  Array<std::uint32_t> grips;     // rows that grip each touched body
   // Of touched bodies: the change by the impulses that are tried; what the other half-steps of the sub-step are to bring.
   Array<VelocityChange> changes, pending;
+  SoftSurfaces surfaces;
 };
 
 // The context of the stages below.
@@ -106,6 +103,9 @@ struct SoftSolve {
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch);
 // Makes the rows of a step; holds vertices that are attached to what does not yield.
 void make_soft_rows(SoftSolve& s);
+
+// The momentum that vertices get by what they carry, at their present velocities. To be found again by whoever changes these.
+void find_carried_steps(SoftSolve& s, std::uint32_t member);
 
 // Stages. Members are independent of each other; the others have one block.
 void begin_soft_members(SoftSolve& s, int begin, int end);

@@ -216,6 +216,7 @@ SoftInfo World::soft_info(SoftId soft) const {
   info.radius = entry.radius;
   info.contacts = int(entry.contacts.size());
   info.user_data = entry.settings().user_data;
+  info.awake = entry.is_awake();
   info.elastic_energy = elastic_energy(entry.body);
   for (int i = 0; i < p.count; ++i) {
     info.mass += double(p.mass[i]);
@@ -233,6 +234,18 @@ SoftVertices World::vertices(SoftId soft) const {
 std::span<const std::uint32_t> World::soft_triangles(SoftId soft) const {
   if (!exists(soft)) return {};
   return state_->soft.entries[soft.index].triangles.view();
+}
+std::size_t World::soft_surface(SoftId soft, std::span<DVec3> out) const {
+  if (!exists(soft)) return 0;
+  const FloatMode mode;
+  const SoftEntry& entry = state_->soft.entries[soft.index];
+  const std::size_t count = entry.surface.points.size();
+  for (std::size_t i = 0; i < min(count, out.size()); ++i) out[i] = surface_position(entry, i);
+  return count;
+}
+std::span<const std::uint32_t> World::soft_surface_triangles(SoftId soft) const {
+  if (!exists(soft)) return {};
+  return state_->soft.entries[soft.index].surface.triangles.view();
 }
 
 const char* to_string(SoftKind kind) {

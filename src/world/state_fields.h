@@ -196,7 +196,7 @@ void for_each_field(T& r, F&& f) {
 template <Is<SoftContact> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.shape), f(r.body), f(r.triangle), for_each_field(r.normal, f), for_each_field(r.from_body, f), f(r.gap);
-  f(r.static_friction), f(r.dynamic_friction), for_each_field(r.surface_velocity, f), for_each_field(r.impulse, f);
+  f(r.static_friction), f(r.dynamic_friction), for_each_field(r.surface_velocity, f), for_each_field(r.impulse, f), f(r.grip);
 }
 template <Is<RigidSettings> T, class F>
 void for_each_field(T& r, F&& f) {

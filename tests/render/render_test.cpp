@@ -311,6 +311,55 @@ TEST_F(Render, ATrackIsLookedAtWithoutSimulating) {
   EXPECT_EQ(count_frames(folder_ / "whole.gif", width, height), 21);
 }
 
+// The red sheet of 1 m hangs in the plane z = 0 and is seen from both sides: its back is paler. A recording of poses alone shows the same.
+TEST_F(Render, ACapeHasTwoSidesInAReplayAndInATrack) {
+  struct Sink : ByteSink {
+    std::string bytes;
+    bool write(std::span<const std::byte> more) override {
+      bytes.append(reinterpret_cast<const char*>(more.data()), more.size());
+      return true;
+    }
+  };
+  for (const bool commands : {true, false}) {
+    Result<World> world = World::create({.gravity = {}});
+    ASSERT_TRUE(world);
+    // A quarter turn about x: the upper side looks along +z.
+    const SoftId sheet = world->add_cloth({.grid = ClothGrid{.size = {1, 1}, .cells = {4, 4}},
+                                           .pose = {{0, 0, 0}, from_axis_angle({1, 0, 0}, 0.5f * kPi)}});
+    Sink sink;
+    {
+      Recorder recorder(*world, sink, {.commands = commands});
+      const TrackColor red{200, 0, 0};
+      recorder.label_soft(sheet, "cape", {&red, 1});
+      for (int i = 0; i < 3; ++i) world->step(1.0f / 60.0f);
+      ASSERT_TRUE(recorder.finish());
+    }
+    write("cape.gyrec", sink.bytes);
+    const auto look = [&](const char* eye) {
+      const Finished done = draw({"cape.gyrec", "--out", "cape.png", "--size", "100x100", "--samples", "4",
+                                  "--camera", eye, "--look-at", "0,0,0", "--fov", "20"});
+      EXPECT_EQ(done.code, 0) << done.err;
+      return read_png(folder_ / "cape.png");
+    };
+    // Half of the sheet takes 0.5 / (10 tan 10 degrees) of half of the picture: 14 pixels.
+    const Pixels front = look("0,0,10"), back = look("0,0,-10");
+    ASSERT_EQ(front.bytes.size(), 30000u);
+    const auto part = [](const Pixels& picture, int x, int y, int of) {
+      return int(picture.bytes[std::size_t(3 * (100 * y + x) + of)]);
+    };
+    for (const int offset : {-12, 0, 12}) {
+      EXPECT_TRUE(front.is_red(50 + offset, 50)) << offset;
+      EXPECT_TRUE(front.is_red(50, 50 + offset)) << offset;
+      EXPECT_GT(part(back, 50 + offset, 50, 1), part(front, 50 + offset, 50, 1) + 40) << offset;
+      EXPECT_GT(part(back, 50 + offset, 50, 0), part(back, 50 + offset, 50, 1) + 20) << "reddish still";
+    }
+    for (const int outside : {-17, 17}) {
+      EXPECT_FALSE(front.is_red(50 + outside, 50));
+      EXPECT_FALSE(front.is_red(50, 50 + outside));
+    }
+  }
+}
+
 TEST_F(Render, TooManyFramesAreRefusedBeforeTheWork) {
   expect_refused({"fall.gyre.json", "--out", "a.gif", "--seconds", "10000000"}, 2, "200000000 frames");
   expect_refused({"fall.gyre.json", "--out", "%d.png", "--seconds", "10000000"}, 2, "at most 10000000");

@@ -104,13 +104,17 @@ class TypeScriptWriter:
         if element == "byte":
             return "Bytes"
         if element is not None:
-            return f"{self.input_type(element)} | readonly {self.input_type(element)}[]" if m.is_struct(element) else "Numbers"
+            return f"{self.input_type(element)} | readonly {self.input_type(element)}[]" if m.is_struct(element) else self.rows_type(element)
         outer, inner = m.inner(kind)
         if outer == "optional":
             return self.input_type(inner)
         if match := re.fullmatch(r"(\w+)\[(\w+)\]", kind):
             return f"readonly {self.input_type(match.group(1))}[]"
         return self.input_name(kind)
+
+    @staticmethod
+    def rows_type(element):
+        return f"Numbers | readonly {VECTOR_INPUT[element]}[]" if element in VECTOR_INPUT else "Numbers"
 
     def output_type(self, kind, name=""):
         m = self.model

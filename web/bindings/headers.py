@@ -179,7 +179,8 @@ def plain_type(text):
     text = re.sub(r"\b(const|struct|class)\b", " ", text)
     text = text.replace("&", " ").replace("std::", "")
     text = re.sub(r"\s+", " ", text).strip()
-    return re.sub(r"\s*([<>,*])\s*", r"\1", text)
+    text = re.sub(r"\s*([<>,*])\s*", r"\1", text)
+    return re.sub(r"\barray<(\w+),(\w+)>", r"\1[\2]", text)
 
 
 def parse_enum(doc, body):

@@ -10,7 +10,7 @@ from pathlib import Path
 import headers
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "joints", "events", "fields", "world", "replay", "debug", "track"]
+HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "joints", "events", "soft", "fields", "world", "replay", "debug", "track"]
 # Public headers that are not bound, and why.
 NOT_BOUND = {"gyre": "includes the others", "decomposition": "seconds of work on a mesh, done before a page is made; its hulls come as hulls",
              "bounds": "measures meshes before they are cooked; a page does not choose volumes",
@@ -59,6 +59,7 @@ RENAMED = {
     "World::exists(ShapeId)": "shapeExists",
     "World::exists(JointId)": "jointExists",
     "World::exists(FieldId)": "fieldExists",
+    "World::exists(SoftId)": "softExists",
     "World::create(WorldDef)": "createWorld",
     "Replay::open(vector<byte>,WorldDef)": "openReplay",
     "PoseTrack::open(vector<byte>)": "openPoseTrack",
@@ -73,7 +74,6 @@ NUMBERS = {"float": None, "double": None, "int": (-2**31, 2**31 - 1), "int32_t":
            "uint32_t": (0, 2**32 - 1), "uint16_t": (0, 65535), "uint8_t": (0, 255), "size_t": (0, 2**32 - 1)}
 ARRAYS = {"float": "Float32Array", "double": "Float64Array", "int": "Int32Array", "int32_t": "Int32Array",
           "uint32_t": "Uint32Array", "uint16_t": "Uint16Array", "uint8_t": "Uint8Array", "bool": "Uint8Array"}
-IDS = ("BodyId", "ShapeId", "JointId", "FieldId")
 # Structs that functions by hand take.
 TAKEN_BY_HAND = ("Stepping", "RecordOptions")
 # 64-bit numbers that are bits rather than counts: bigint in TypeScript. The others are numbers, the largest is Infinity.

@@ -9,6 +9,7 @@
 #include <emscripten.h>
 
 #include <string>
+#include <vector>
 
 namespace gyre::web {
 namespace {
@@ -33,6 +34,23 @@ void overrule(Call& call, SceneWorld& world) {
 
 int refuse_scene(Answer& answer, const SceneError& error) {
   return answer.checked(make_error(ErrorCode::invalid_data, "%s", error.text().c_str()));
+}
+
+// What is held at the start, vertices of a region among it, which a scene as it stands names one by one.
+std::vector<std::vector<SceneHold>> holds_of(const SceneRunner& runner) {
+  std::vector<std::vector<SceneHold>> holds;
+  bool by_region = false;
+  const Scene& scene = runner.scene();
+  for (const SceneRope& rope : scene.ropes) holds.push_back(rope.holds);
+  for (const SceneCloth& cloth : scene.cloths) holds.push_back(cloth.holds);
+  for (const SceneSoftBody& solid : scene.soft_bodies) {
+    holds.push_back(solid.holds);
+    by_region = by_region || solid.pinned_region.has_value();
+  }
+  if (!by_region) return holds;
+  const std::vector<SceneSoftBody> solids = runner.final_scene().soft_bodies;
+  for (std::size_t i = 0; i < solids.size(); ++i) holds[holds.size() - solids.size() + i] = solids[i].holds;
+  return holds;
 }
 
 }  // namespace
@@ -109,6 +127,29 @@ EMSCRIPTEN_KEEPALIVE int gyre_scene_looks(Host* host) {
   answer.number(scene.view.has_value());
   if (scene.view)
     put(answer, scene.view->eye), put(answer, scene.view->target), put(answer, scene.view->field_of_view);
+  return answer.done();
+}
+
+// Ropes, cloths and soft bodies, in this order: how many, their ids, and of each its name, its colour as 0xrrggbb, and the vertices
+// that the scene holds: how many, and of each its number and which body of the scene holds it, -1 for the world.
+EMSCRIPTEN_KEEPALIVE int gyre_scene_softs(Host* host) {
+  Answer answer(host, 0);
+  const SceneRunner& runner = scene_of(host).runner;
+  const std::vector<std::vector<SceneHold>> holds = holds_of(runner);
+  std::vector<SoftId> ids;
+  for (const std::span<const SoftId> some : {runner.ropes(), runner.cloths(), runner.soft_bodies()})
+    ids.insert(ids.end(), some.begin(), some.end());
+  put_array(answer, std::span<const SoftId>(ids));
+  std::size_t index = 0;
+  runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
+    const SoftInfo info = runner.world().soft_info(id);
+    put_text(answer, std::string_view(soft.name));
+    const SceneColor color = resolved_soft_color(runner.scene(), info.kind, std::size_t(info.user_data));
+    answer.number(double(color.red << 16 | color.green << 8 | color.blue));
+    put_list(answer, std::span<const SceneHold>(holds[index]),
+             [&](const SceneHold& hold) { put(answer, hold.vertex), put(answer, hold.body); });
+    ++index;
+  });
   return answer.done();
 }
 

@@ -12,6 +12,7 @@
 
 #include <gyre/gyre.h>
 
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <deque>
@@ -158,6 +159,10 @@ inline void get(Call& call, std::string_view& out) {
 }
 template <class T, std::size_t N>
 void get(Call& call, T (&out)[N]) {
+  for (T& part : out) get(call, part);
+}
+template <class T, std::size_t N>
+void get(Call& call, std::array<T, N>& out) {
   for (T& part : out) get(call, part);
 }
 template <class T>

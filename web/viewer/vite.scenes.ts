@@ -37,17 +37,29 @@ function meshFiles(): string[] {
     .flatMap((folder) => readdirSync(join(scenes, folder)).map((file) => `${folder}/${file}`));
 }
 
+interface SceneJson {
+  name?: string;
+  bodies?: unknown[];
+  joints?: unknown[];
+  ropes?: unknown[];
+  cloths?: unknown[];
+  soft_bodies?: unknown[];
+}
+
 const pictureOf = (file: string): string => file.replace(/\.gyre\.json$/, '.webp');
 
 function list(): string {
   const entries = sceneFiles().map((file) => {
-    const scene = JSON.parse(readFileSync(join(scenes, file), 'utf8')) as { name?: string; bodies?: unknown[]; joints?: unknown[] };
+    const scene = JSON.parse(readFileSync(join(scenes, file), 'utf8')) as SceneJson;
     return {
       name: scene.name ?? basename(file, '.gyre.json'),
       file,
       thumbnail: existsSync(join(thumbnails, pictureOf(file))) ? pictureOf(file) : null,
       bodies: scene.bodies?.length ?? 0,
       joints: scene.joints?.length ?? 0,
+      ropes: scene.ropes?.length ?? 0,
+      cloths: scene.cloths?.length ?? 0,
+      softBodies: scene.soft_bodies?.length ?? 0,
     };
   });
   return `${JSON.stringify({ scenes: entries }, null, 1)}\n`;

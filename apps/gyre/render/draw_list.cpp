@@ -1,6 +1,7 @@
 // A world as coloured triangles. See draw_list.h.
 #include "render/draw_list.h"
 
+#include "render/soft_mesh.h"
 #include "render/tube.h"
 #include "render/turning.h"
 #include "scene/scene_color.h"
@@ -50,6 +51,51 @@ void add_link(const SeenLink& link, Vec3 down, const Subject& subject, DrawList&
         {point.position, point.normal, {kRodColor.red, kRodColor.green, kRodColor.blue}, Paint::matter});
   }
   add_quads(list, first, std::uint32_t(line.size()), kSides + 1);
+}
+
+// A rope is drawn as the smooth line through its vertices.
+void add_rope(const SeenSoft& rope, const std::vector<Vec3>& vertices, float radius, DrawList& list) {
+  constexpr int kSides = 16;
+  constexpr int kPieces = 4;
+  if (vertices.size() < 2) return;
+  const auto first = std::uint32_t(list.vertices.size());
+  const std::vector<TubePoint> tube = capped_tube(smooth_line(vertices, kPieces), radius, kSides);
+  for (const TubePoint& point : tube) {
+    list.vertices.push_back(
+        {point.position, point.normal, {rope.color.red, rope.color.green, rope.color.blue}, Paint::matter});
+  }
+  add_quads(list, first, std::uint32_t(tube.size()) / (kSides + 1), kSides + 1);
+}
+
+void add_mesh(const ShapeMesh& mesh, SceneColor color, Paint paint, DrawList& list) {
+  const auto first = std::uint32_t(list.vertices.size());
+  for (const MeshVertex& vertex : mesh.vertices)
+    list.vertices.push_back({vertex.position, vertex.normal, {color.red, color.green, color.blue}, paint});
+  for (const std::uint32_t index : mesh.indices) list.solid.push_back(first + index);
+}
+
+// The back of a cloth is paler than its front.
+SceneColor back_of(SceneColor color) {
+  const auto pale = [](std::uint8_t part) { return std::uint8_t((2 * int(part) + 3 * 222) / 5); };
+  return {pale(color.red), pale(color.green), pale(color.blue)};
+}
+
+void add_soft(const Sight& sight, const SeenSoft& soft, const Subject& subject, DrawList& list) {
+  std::vector<Vec3> vertices;
+  for (const DVec3& vertex : sight.vertices_of(soft)) vertices.push_back(difference(vertex, subject.origin));
+  if (soft.kind == SoftKind::rope) {
+    // A rope thinner than a pixel would not be seen.
+    add_rope(soft, vertices, max(soft.radius, 0.15f * subject.rod_radius), list);
+    return;
+  }
+  if (soft.kind == SoftKind::solid) {
+    add_mesh(solid_mesh(vertices, soft.triangles), soft.color, Paint::matter, list);
+    return;
+  }
+  const ClothMesh mesh = cloth_mesh(vertices, soft.triangles, soft.radius);
+  add_mesh(mesh.front, soft.color, Paint::sheet, list);
+  add_mesh(mesh.back, back_of(soft.color), Paint::sheet, list);
+  add_mesh(mesh.rim, soft.color, Paint::matter, list);
 }
 
 std::uint8_t toned(std::uint8_t part, float tone) { return std::uint8_t(float(part) * tone + 0.5f); }
@@ -132,6 +178,7 @@ DrawList DrawListMaker::make(const Sight& sight, const Camera& camera, const Sub
     }
   }
   for (const SeenLink& link : sight.links) add_link(link, sight.down, subject, list);
+  for (const SeenSoft& soft : sight.softs) add_soft(sight, soft, subject, list);
   if (subject.floor && list.ground.empty()) {
     add_plane(subject, {subject.origin.x, *subject.floor, subject.origin.z}, {0, 1, 0}, kGroundColor,
               Paint::floor, list);

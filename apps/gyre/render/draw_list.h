@@ -1,4 +1,4 @@
-// What there is to draw at one moment: all shapes and ropes as coloured triangles, placed relative to an origin near
+// What there is to draw at one moment: all shapes, links, ropes, cloths and solids as coloured triangles, placed relative to an origin near
 // the subject.
 #pragma once
 
@@ -21,6 +21,7 @@ enum class Paint : std::uint8_t {
   matter,  // shaded, casts shadows
   ground,  // a plane of the world: with a grid, fading into the background
   floor,   // put under a scene that has no plane: without a grid
+  sheet,   // one side of a cloth: as matter, but dull, and not to be seen from behind
 };
 
 struct DrawVertex {

@@ -150,7 +150,7 @@ bool replays_alike(Replay& replay) {
   return replay.seek(0).ok() && matches;
 }
 
-// Replayed where that is possible, as a track knows no ropes; else its track is looked at.
+// Replayed where that is possible, as a track knows no links; else its track is looked at.
 std::unique_ptr<Player> open_recording(const std::string& path, const std::string& bytes,
                                        std::optional<Scene> look, int threads, std::string& error) {
   const auto* data = reinterpret_cast<const std::byte*>(bytes.data());

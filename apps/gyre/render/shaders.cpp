@@ -94,7 +94,10 @@ float grid(vec3 place, vec3 normal) {
 
 void main() {
   vec3 normal = normalize(world_normal);
-  if (!gl_FrontFacing) normal = -normal;
+  if (!gl_FrontFacing) {
+    if (painted == 3u) discard;
+    normal = -normal;
+  }
   float towards_sun = max(dot(normal, sun_direction), 0.0);
   float towards_sky = max(dot(normal, sky_direction), 0.0);
   float sun = towards_sun > 0.0 ? towards_sun * reaches(sun_map, sun_from_world, sun_texel, normal, sun_direction) : 0.0;
@@ -102,10 +105,10 @@ void main() {
   float sky = towards_sky > 0.0 ? 2.0 * towards_sky * reaches(sky_map, sky_from_world, sky_texel, normal, sky_direction) : 0.0;
   vec3 light = sun * sun_color + sky * sky_color + (0.5 - 0.5 * normal.y) * bounce_color;
   vec3 color = albedo * light;
-  if (painted == 0u) {
+  if (painted == 0u || painted == 3u) {
     vec3 half_way = normalize(sun_direction + normalize(eye - world_position));
     float gloss = pow(max(dot(normal, half_way), 0.0), 60.0);
-    color += 0.25 * gloss * (towards_sun > 0.0 ? sun / towards_sun : 0.0) * sun_color;
+    color += (painted == 3u ? 0.05 : 0.25) * gloss * (towards_sun > 0.0 ? sun / towards_sun : 0.0) * sun_color;
   } else {
     if (painted == 1u) color *= 1.0 - grid(world_position + grid_shift, normal);
     vec3 background = mix(background_low, background_high, gl_FragCoord.y / picture_height);

@@ -189,36 +189,6 @@ ShapeMesh hull_mesh(const HullView& hull) {
   return mesh;
 }
 
-// A corner's normal is the mean, by area, of the triangles around the vertex that lie about as its own does.
-ShapeMesh surface_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices) {
-  const std::size_t triangles = indices.size() / 3;
-  std::vector<Vec3> areas(triangles), normals(triangles);
-  std::vector<std::uint32_t> offsets(vertices.size() + 1), around(indices.size());
-  for (std::size_t t = 0; t < triangles; ++t) {
-    const Vec3 a = vertices[indices[3 * t]], b = vertices[indices[3 * t + 1]],
-               c = vertices[indices[3 * t + 2]];
-    areas[t] = cross(b - a, c - a);
-    normals[t] = normalized(areas[t]);
-  }
-  for (const std::uint32_t index : indices) ++offsets[index + 1];
-  for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
-  std::vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
-  for (std::size_t i = 0; i < indices.size(); ++i) around[next[indices[i]]++] = std::uint32_t(i / 3);
-
-  ShapeMesh mesh;
-  mesh.vertices.reserve(indices.size());
-  mesh.indices.reserve(indices.size());
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    const std::uint32_t vertex = indices[i];
-    Vec3 sum;
-    for (std::uint32_t k = offsets[vertex]; k < offsets[vertex + 1]; ++k) {
-      if (dot(normals[around[k]], normals[i / 3]) > kCreaseCosine) sum = sum + areas[around[k]];
-    }
-    mesh.indices.push_back(add_vertex(mesh, vertices[vertex], normalized(sum)));
-  }
-  return mesh;
-}
-
 ShapeMesh height_field_mesh(const HeightFieldView& field) {
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> indices;
@@ -240,7 +210,7 @@ ShapeMesh height_field_mesh(const HeightFieldView& field) {
       indices.insert(indices.end(), {a, c, b, b, c, d});
     }
   }
-  return surface_mesh(vertices, indices);
+  return smooth_mesh(vertices, indices, kCreaseCosine);
 }
 
 ShapeMesh cooked_mesh(const Geometry& geometry) {
@@ -249,7 +219,7 @@ ShapeMesh cooked_mesh(const Geometry& geometry) {
       return hull_mesh(view_hull(geometry));
     case ShapeKind::mesh: {
       const MeshView view = view_mesh(geometry);
-      return surface_mesh(view.vertices, view.indices);
+      return smooth_mesh(view.vertices, view.indices, kCreaseCosine);
     }
     case ShapeKind::height_field:
       return height_field_mesh(view_height_field(geometry));
@@ -328,6 +298,36 @@ struct RoundingMaker {
 };
 
 }  // namespace
+
+ShapeMesh smooth_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices,
+                      float crease_cosine) {
+  const std::size_t triangles = indices.size() / 3;
+  std::vector<Vec3> areas(triangles), normals(triangles);
+  std::vector<std::uint32_t> offsets(vertices.size() + 1), around(indices.size());
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const Vec3 a = vertices[indices[3 * t]], b = vertices[indices[3 * t + 1]],
+               c = vertices[indices[3 * t + 2]];
+    areas[t] = cross(b - a, c - a);
+    normals[t] = normalized(areas[t]);
+  }
+  for (const std::uint32_t index : indices) ++offsets[index + 1];
+  for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+  std::vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
+  for (std::size_t i = 0; i < indices.size(); ++i) around[next[indices[i]]++] = std::uint32_t(i / 3);
+
+  ShapeMesh mesh;
+  mesh.vertices.reserve(indices.size());
+  mesh.indices.reserve(indices.size());
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::uint32_t vertex = indices[i];
+    Vec3 sum;
+    for (std::uint32_t k = offsets[vertex]; k < offsets[vertex + 1]; ++k) {
+      if (dot(normals[around[k]], normals[i / 3]) > crease_cosine) sum = sum + areas[around[k]];
+    }
+    mesh.indices.push_back(add_vertex(mesh, vertices[vertex], normalized(sum)));
+  }
+  return mesh;
+}
 
 ShapeMesh make_shape_mesh(const AnyShape& shape, int segments) {
   return std::visit(MeshMaker{(std::max(segments, 8) + 7) / 8 * 8}, shape);

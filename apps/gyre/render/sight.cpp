@@ -36,12 +36,35 @@ void look_at_links(const World& world, const Scene* scene, Sight& out) {
   }
 }
 
+std::size_t count_of(const Scene& scene, SoftKind kind) {
+  if (kind == SoftKind::rope) return scene.ropes.size();
+  return kind == SoftKind::cloth ? scene.cloths.size() : scene.soft_bodies.size();
+}
+
+// Ropes, cloths and soft bodies of a scene carry their number among their kind as user data.
+void look_at_softs(const World& world, const Scene* scene, Sight& out) {
+  std::vector<SoftId> ids(world.softs({}));
+  world.softs(ids);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const SoftInfo info = world.soft_info(ids[i]);
+    const SoftVertices vertices = world.vertices(ids[i]);
+    const bool known = scene && info.user_data < count_of(*scene, info.kind);
+    const SceneColor color = known ? resolved_soft_color(*scene, info.kind, std::size_t(info.user_data))
+                                   : automatic_color(BodyType::dynamic, i);
+    out.softs.push_back({ids[i], info.kind, info.radius, world.soft_triangles(ids[i]), out.vertices.size(),
+                         vertices.size(), color});
+    for (std::size_t k = 0; k < vertices.size(); ++k) out.vertices.push_back(vertices.position(k));
+  }
+}
+
 }  // namespace
 
 void look_at(const World& world, const Scene* scene, std::span<const BodyId> bodies, Sight& out) {
   out.bodies.clear();
   out.shapes.clear();
   out.links.clear();
+  out.softs.clear();
+  out.vertices.clear();
   out.down = normalized(world.gravity(), Vec3{0, -1, 0});
   const BodyColumns all = world.bodies();
   for (std::size_t i = 0; i < all.ids.size(); ++i) {
@@ -61,6 +84,7 @@ void look_at(const World& world, const Scene* scene, std::span<const BodyId> bod
     }
   }
   look_at_links(world, scene, out);
+  look_at_softs(world, scene, out);
 }
 
 }  // namespace gyre

@@ -6,6 +6,7 @@
 #include <gyre/geometry.h>
 #include <gyre/ids.h>
 #include <gyre/math.h>
+#include <gyre/soft.h>
 #include <gyre/world.h>
 
 #include <cstddef>
@@ -35,14 +36,29 @@ struct SeenLink {
   bool spring = false;
 };
 
+// A rope, cloth or solid.
+struct SeenSoft {
+  SoftId id{};
+  SoftKind kind = SoftKind::rope;
+  float radius = 0.0f;                         // m: that of a rope, half the thickness of a cloth
+  std::span<const std::uint32_t> triangles{};  // those of the world or the file
+  std::size_t first_vertex = 0, vertex_count = 0;
+  SceneColor color{};
+};
+
 struct Sight {
   std::vector<SeenBody> bodies;  // in order of their ids
   std::vector<SeenShape> shapes;
   std::vector<SeenLink> links;
+  std::vector<SeenSoft> softs;
+  std::vector<DVec3> vertices;  // of the softs
   Vec3 down{0, -1, 0};  // unit
 
   std::span<const SeenShape> shapes_of(const SeenBody& body) const {
     return {shapes.data() + body.first_shape, body.shape_count};
+  }
+  std::span<const DVec3> vertices_of(const SeenSoft& soft) const {
+    return {vertices.data() + soft.first_vertex, soft.vertex_count};
   }
 };
 

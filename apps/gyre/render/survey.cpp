@@ -96,8 +96,31 @@ void Survey::look_at_moving(const Sight& sight) {
       lowest_ = min(lowest_, pose.position.y - double(radius));
     }
   }
+  for (const SeenSoft& soft : sight.softs) look_at_soft(soft, sight.vertices_of(soft));
   ends_.push_back(moving_.size());
   if (ends_.size() > kMaxMoments) thin_out();
+}
+
+// The vertices that lie farthest in some directions stand for all of them: so a cloth of many does not outvote all else.
+void Survey::look_at_soft(const SeenSoft& soft, std::span<const DVec3> vertices) {
+  constexpr Vec3 kDirections[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+  for (const Vec3 direction : kDirections) {
+    const DVec3* farthest[2] = {nullptr, nullptr};
+    float reach[2] = {0, 0};
+    for (const DVec3& vertex : vertices) {
+      if (!is_finite(vertex)) continue;
+      const float far = dot(direction, difference(vertex, vertices[0]));
+      for (int side = 0; side < 2; ++side) {
+        const float ahead = side == 0 ? far : -far;
+        if (farthest[side] == nullptr || ahead > reach[side]) farthest[side] = &vertex, reach[side] = ahead;
+      }
+    }
+    for (const DVec3* const vertex : farthest) {
+      if (vertex == nullptr) continue;
+      moving_.push_back({*vertex, soft.radius});
+      lowest_ = min(lowest_, vertex->y - double(soft.radius));
+    }
+  }
 }
 
 // Every other moment goes.

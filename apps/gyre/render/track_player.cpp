@@ -2,7 +2,7 @@
 #include "render/track_player.h"
 
 #include "scene/scene_color.h"
-#include "scene/scene_reader.h"
+#include "scene/scene_labels.h"
 
 namespace gyre {
 namespace {
@@ -25,6 +25,13 @@ class TrackPlayer : public Player {
         out.shapes.push_back({&shape.geometry, shape.local,
                               plane ? kGroundColor : automatic_color(model.type, i), shape.sensor});
       }
+    }
+    for (std::size_t i = 0; i < frame.soft_ids.size(); ++i) {
+      const TrackSoft& soft = track_.softs()[frame.softs[i]];
+      const std::span<const DVec3> vertices = track_.soft_vertices(i);
+      out.softs.push_back({frame.soft_ids[i], soft.kind, soft.radius, soft.triangles, out.vertices.size(),
+                           vertices.size(), automatic_color(BodyType::dynamic, i)});
+      out.vertices.insert(out.vertices.end(), vertices.begin(), vertices.end());
     }
     apply_track_colors(track_, out);
   }
@@ -80,19 +87,12 @@ void apply_track_colors(const PoseTrack& track, Sight& sight) {
       sight.shapes[body.first_shape + k].color = {colors[k].red, colors[k].green, colors[k].blue};
     }
   }
+  for (SeenSoft& soft : sight.softs) {
+    const std::span<const TrackColor> colors = track.soft_label(soft.id).colors;
+    if (!colors.empty()) soft.color = {colors[0].red, colors[0].green, colors[0].blue};
+  }
 }
 
-// The note is a JSON object of members that a scene has, too.
-std::optional<SceneView> view_of_track(const PoseTrack& track) {
-  const std::string_view note = track.note("scene");
-  const std::size_t open = note.find('{');
-  if (open == std::string_view::npos) return {};
-  const std::string_view members = note.substr(open + 1);
-  const bool empty =
-      members.substr(0, members.find_first_not_of(" \t\r\n") + 1).find('}') != std::string_view::npos;
-  const std::string text = R"({"gyre_scene": 1)" + std::string(empty ? "" : ", ") + std::string(members);
-  const SceneResult<Scene> scene = read_scene(text);
-  return scene ? scene->view : std::nullopt;
-}
+std::optional<SceneView> view_of_track(const PoseTrack& track) { return view_of_note(track.note("scene")); }
 
 }  // namespace gyre

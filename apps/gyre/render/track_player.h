@@ -1,5 +1,5 @@
 // Recordings with a pose track as something to play: frame by frame where the bodies were, without simulating. Such a track can be
-// looked at by other versions than the one that wrote it, but knows no ropes.
+// looked at by other versions than the one that wrote it, but knows no joints: links are not drawn.
 #pragma once
 
 #include "render/player.h"

@@ -21,6 +21,7 @@ namespace {
 constexpr std::size_t kGroupBytes = std::size_t(1) << 20;
 constexpr std::size_t kMaxFramesInGroup = 120;
 constexpr std::size_t kRowBytes = 7 * sizeof(float) + 1;
+constexpr std::size_t kVertexBytes = 3 * sizeof(float);
 // m; what lies nearer to zero is drawn where it is.
 constexpr double kFar = 1000.0;
 
@@ -157,25 +158,50 @@ void describe_surfaces(Answer& answer, std::span<const TrackModel> models) {
   answer.json.end_array();
 }
 
-// The bodies of a frame, and of all others with its number.
-void describe_set(JsonWriter& json, const PoseTrack& track, const TrackFrame& frame) {
-  json.begin_object(JsonLayout::one_line);
-  json.key("ids").begin_array();
-  for (const BodyId id : frame.ids) json.value(std::int64_t(id.index | std::uint64_t(id.generation) << 32));
+void describe_softs(Answer& answer, std::span<const TrackSoft> softs) {
+  JsonWriter& json = answer.json;
+  json.key("softs").begin_array();
+  for (const TrackSoft& soft : softs) {
+    json.begin_object(JsonLayout::one_line);
+    json.field("kind", to_string(soft.kind));
+    json.field("radius", soft.radius);
+    json.field("vertices", std::int64_t(soft.vertices));
+    answer.array("triangles", std::span<const std::uint32_t>(soft.triangles));
+    json.end_object();
+  }
   json.end_array();
-  json.key("models").begin_array();
-  for (const std::uint32_t model : frame.models) json.value(std::int64_t(model));
+}
+
+// Parallel arrays: the ids of bodies or of soft matter, the numbers of their models or surfaces, and their labels.
+template <typename Tag, typename LabelOf>
+void describe_members(JsonWriter& json, std::span<const Id<Tag>> ids, const char* looks_name,
+                      std::span<const std::uint32_t> looks, LabelOf label_of) {
+  json.key("ids").begin_array();
+  for (const Id<Tag> id : ids) json.value(std::int64_t(id.index | std::uint64_t(id.generation) << 32));
+  json.end_array();
+  json.key(looks_name).begin_array();
+  for (const std::uint32_t look : looks) json.value(std::int64_t(look));
   json.end_array();
   json.key("names").begin_array();
-  for (const BodyId id : frame.ids) json.value(track.label(id).name);
+  for (const Id<Tag> id : ids) json.value(label_of(id).name);
   json.end_array();
   json.key("colors").begin_array();
-  for (const BodyId id : frame.ids) {
+  for (const Id<Tag> id : ids) {
     json.begin_array();
-    for (const TrackColor c : track.label(id).colors) json.value(c.red << 16 | c.green << 8 | c.blue);
+    for (const TrackColor c : label_of(id).colors) json.value(c.red << 16 | c.green << 8 | c.blue);
     json.end_array();
   }
   json.end_array();
+}
+
+// The bodies and the soft matter of a frame, and of all others with its number.
+void describe_set(JsonWriter& json, const PoseTrack& track, const TrackFrame& frame) {
+  json.begin_object(JsonLayout::one_line);
+  describe_members(json, frame.ids, "models", frame.models, [&](BodyId id) { return track.label(id); });
+  json.key("soft").begin_object();
+  describe_members(json, frame.soft_ids, "surfaces", frame.softs,
+                   [&](SoftId id) { return track.soft_label(id); });
+  json.end_object();
   json.end_object();
 }
 
@@ -187,12 +213,19 @@ void place(Answer& answer, const TrackFrame& frame, DVec3 origin) {
     const Quat q = pose.orientation;
     poses.insert(poses.end(), {float(p.x), float(p.y), float(p.z), q.x, q.y, q.z, q.w});
   }
+  std::vector<float> vertices;
+  vertices.reserve(3 * frame.vertices.size());
+  for (const DVec3 vertex : frame.vertices) {
+    const DVec3 p = vertex - origin;
+    vertices.insert(vertices.end(), {float(p.x), float(p.y), float(p.z)});
+  }
   answer.json.begin_object(JsonLayout::one_line);
   answer.json.field("step", std::int64_t(frame.step));
   answer.json.field("time", frame.time);
   answer.json.field("set", std::int64_t(frame.set_version));
   answer.array("poses", std::span<const float>(poses));
   answer.array("awake", frame.awake);
+  answer.array("vertices", std::span<const float>(vertices));
   answer.json.end_object();
 }
 
@@ -240,8 +273,9 @@ Error ServedRecording::open() {
   track_ = *std::move(track);
   const TrackFrame first = track_->frame();
   origin_ = origin_of(first);
-  frames_in_group_ = std::clamp(kGroupBytes / (kRowBytes * std::max<std::size_t>(first.ids.size(), 1)),
-                                std::size_t(1), kMaxFramesInGroup);
+  const std::size_t frame_bytes = kRowBytes * first.ids.size() + kVertexBytes * first.vertices.size();
+  frames_in_group_ =
+      std::clamp(kGroupBytes / std::max<std::size_t>(frame_bytes, 1), std::size_t(1), kMaxFramesInGroup);
   return {};
 }
 
@@ -265,6 +299,7 @@ Result<std::string> ServedRecording::scene() {
   for (const TrackModel& model : track_->models()) describe_model(json, model);
   json.end_array();
   describe_surfaces(answer, track_->models());
+  describe_softs(answer, track_->softs());
   json.end_object();
   return answer.take();
 }

@@ -134,7 +134,7 @@ double SurfaceField::winding(DVec3 p) const {
   return (far + 2.0 * near.total()) / (4.0 * kPiDouble);
 }
 
-double SurfaceField::distance(DVec3 p, double max_distance) const {
+SurfaceField::Nearest SurfaceField::nearest(DVec3 p, double max_distance) const {
   struct Entry {
     std::uint32_t child;
     double square;
@@ -143,6 +143,7 @@ double SurfaceField::distance(DVec3 p, double max_distance) const {
   int depth = 0;
   stack[depth++] = {0, 0.0};
   double best = max_distance * max_distance;
+  std::uint32_t triangle = kNoTriangle;
   while (depth > 0) {
     const Entry entry = stack[--depth];
     if (!(entry.square < best)) continue;
@@ -150,7 +151,10 @@ double SurfaceField::distance(DVec3 p, double max_distance) const {
       for (std::uint32_t i = leaf_first(entry.child); i < leaf_first(entry.child) + leaf_count(entry.child);
            ++i) {
         const SimplexPoint near = closest_on_triangle(p, corner(i, 0), corner(i, 1), corner(i, 2));
-        best = min(best, length_squared(near.point - p));
+        const double square = length_squared(near.point - p);
+        if (!(square < best)) continue;
+        best = square;
+        triangle = tree_.items[i];
       }
       continue;
     }
@@ -166,7 +170,35 @@ double SurfaceField::distance(DVec3 p, double max_distance) const {
       stack[slot] = {node.child[lane], square};
     }
   }
-  return std::sqrt(best);
+  return {std::sqrt(best), triangle};
+}
+
+SurfaceField::Crossing SurfaceField::first_crossing(DVec3 p, DVec3 q) const {
+  // Edges belong to both of their triangles, so that no segment slips through between them.
+  constexpr double kEdgeSlack = 1.0e-12;
+  Crossing first{1.0, kNoTriangle};
+  const Vec3 a = to_float(p), b = to_float(q);
+  // Wider than the rounding of the ends; boxes of the tree are wider still.
+  const Aabb box = grow(Aabb{min(a, b), max(a, b)}, 2.0e-7f);
+  walk_overlaps(
+      tree_, box, [](std::uint32_t, int) { return true; },
+      [&](std::uint32_t begin, std::uint32_t count) {
+        for (std::uint32_t i = begin; i < begin + count; ++i) {
+          const DVec3 u = corner(i, 0) - p, v = corner(i, 1) - p, w = corner(i, 2) - p, along = q - p;
+          const double weights[3] = {dot(along, cross(v, w)), dot(along, cross(w, u)),
+                                     dot(along, cross(u, v))};
+          const double sum = weights[0] + weights[1] + weights[2];
+          const double slack = kEdgeSlack * length(along);
+          const auto beyond = [&](double weight) { return sum > 0.0 ? weight < -slack : weight > slack; };
+          if (sum == 0.0 || beyond(weights[0]) || beyond(weights[1]) || beyond(weights[2])) continue;
+          const double fraction = dot(cross(v - u, w - u), u) / sum;
+          if (!(fraction >= 0.0 && fraction <= 1.0)) continue;
+          const bool sooner = fraction < first.fraction || first.triangle == kNoTriangle ||
+                              (fraction == first.fraction && tree_.items[i] < first.triangle);
+          if (sooner) first = {fraction, tree_.items[i]};
+        }
+      });
+  return first;
 }
 
 }  // namespace gyre

@@ -29,7 +29,20 @@ class SurfaceField {
   double winding(DVec3 p) const;
   bool inside(DVec3 p) const { return winding(p) > kInsideWinding; }
   // The distance to the closest triangle, or `max_distance` if that is less.
-  double distance(DVec3 p, double max_distance) const;
+  double distance(DVec3 p, double max_distance) const { return nearest(p, max_distance).distance; }
+  // The same with the triangle, kNoTriangle if none is closer than `max_distance`.
+  static constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+  struct Nearest {
+    double distance;
+    std::uint32_t triangle;
+  };
+  Nearest nearest(DVec3 p, double max_distance) const;
+  // The first triangle that the segment from p to q meets, and the fraction of the segment before it.
+  struct Crossing {
+    double fraction;
+    std::uint32_t triangle;
+  };
+  Crossing first_crossing(DVec3 p, DVec3 q) const;
 
  private:
   // Triangles as seen from far away.

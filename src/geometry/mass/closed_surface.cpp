@@ -30,20 +30,21 @@ std::uint32_t edge_end(const TriangleSurface& s, std::uint32_t half) {
   return s.welded[s.indices[half % 3 == 2 ? half - 2 : half + 1]];
 }
 
-Error edge_error(const TriangleSurface& s, std::uint32_t half, bool open) {
+// `total`: how many triangles have the edge; an odd number leaves it open.
+Error edge_error(const TriangleSurface& s, std::uint32_t half, int total) {
   const std::uint32_t from = edge_start(s, half), to = edge_end(s, half);
-  if (open) {
+  if (total % 2 != 0) {
     return make_error(
         ErrorCode::invalid_geometry,
-        "mesh: edge from vertex %u to %u of triangle %u is open; allowed are closed surfaces, where another "
-        "triangle runs back along each edge",
-        from, to, s.name(half / 3));
+        "mesh: edge from vertex %u to %u of triangle %u is open (triangles with it: %d); allowed are closed "
+        "surfaces, where another triangle runs back along each edge",
+        from, to, s.name(half / 3), total);
   }
-  return make_error(
-      ErrorCode::invalid_geometry,
-      "mesh: edge from vertex %u to %u of triangle %u is run the same way by another triangle; allowed are "
-      "surfaces wound alike",
-      from, to, s.name(half / 3));
+  return make_error(ErrorCode::invalid_geometry,
+                    "mesh: edge from vertex %u to %u of triangle %u is run the same way by another triangle "
+                    "(triangles with it: "
+                    "%d); allowed are surfaces wound alike",
+                    from, to, s.name(half / 3), total);
 }
 
 bool share_vertex(const TriangleSurface& s, std::uint32_t a, std::uint32_t b) {
@@ -241,7 +242,8 @@ Error check_edges(const TriangleSurface& surface) {
   radix_sort_pairs(keys, halves, key_scratch, half_scratch);
   // Of all wrong edges, the one of the lowest triangle is reported.
   std::uint32_t worst = 0;
-  bool found = false, open = false;
+  bool found = false;
+  int worst_total = 0;
   for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
     int balance = 0, total = 0;
     for (end = begin; end < keys.size() && keys[end] == keys[begin]; ++end, ++total) {
@@ -250,9 +252,9 @@ Error check_edges(const TriangleSurface& surface) {
     if (balance == 0 || (found && halves[begin] > worst)) continue;
     found = true;
     worst = halves[begin];
-    open = total % 2 != 0;
+    worst_total = total;
   }
-  return found ? edge_error(surface, worst, open) : Error{};
+  return found ? edge_error(surface, worst, worst_total) : Error{};
 }
 
 Error check_covered_once(const TriangleSurface& surface) { return CoverCheck(surface).check(); }

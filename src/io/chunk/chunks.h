@@ -39,6 +39,10 @@ enum class ChunkKind : std::uint32_t {
   track_note = 262,
 
   motion_hash = 263,  // step count of the world (u64), hash of the motion (u64); instead of a step hash
+
+  track_soft = 264,      // the surface of a rope, cloth or solid
+  track_vertices = 265,  // of all of them, for the frame that follows
+  track_soft_label = 266,
 };
 
 // A reader skips unknown kinds from here on: later versions may add some.

@@ -259,10 +259,15 @@ void fields(C& c, T& v) {
   auto& [half_extents, cells] = v;
   all(c, half_extents, cells);
 }
+template <class C, Is<SolidSurface> T>
+void fields(C& c, T& v) {
+  auto& [vertices, triangles, resolution] = v;
+  all(c, vertices, triangles, resolution);
+}
 template <class C, Is<SolidDef> T>
 void fields(C& c, T& v) {
-  auto& [box, vertices, tetrahedra, pose, model, density, modulus, ratio, settings] = v;
-  all(c, box, vertices, tetrahedra, pose, model, density, modulus, ratio, settings);
+  auto& [box, vertices, tetrahedra, surface, pose, model, density, modulus, ratio, settings] = v;
+  all(c, box, vertices, tetrahedra, surface, pose, model, density, modulus, ratio, settings);
 }
 // The kind, then the definition.
 void fields(FieldWriter& c, const std::shared_ptr<const SoftDef>& def) {

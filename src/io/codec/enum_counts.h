@@ -3,6 +3,7 @@
 
 #include "collision/broadphase/proxy.h"
 #include "io/codec/bytes.h"
+#include "soft/store/soft_store.h"
 
 #include <gyre/defs.h>
 #include <gyre/fields.h>
@@ -38,6 +39,8 @@ inline constexpr int kEnumCount<TimeStepping> = kTimeSteppingCount;
 template <>
 inline constexpr int kEnumCount<FieldKind> = int(FieldKind::buoyancy) + 1;
 template <>
+inline constexpr int kEnumCount<SoftKind> = int(SoftKind::solid) + 1;
+template <>
 inline constexpr int kEnumCount<SoftIntegrator> = int(SoftIntegrator::verlet) + 1;
 template <>
 inline constexpr int kEnumCount<RopeLinks> = int(RopeLinks::rods) + 1;
@@ -45,6 +48,8 @@ template <>
 inline constexpr int kEnumCount<ClothLinks> = int(ClothLinks::membrane) + 1;
 template <>
 inline constexpr int kEnumCount<SolidModel> = int(SolidModel::neo_hookean) + 1;
+template <>
+inline constexpr int kEnumCount<SoftGrip> = int(SoftGrip::sticks) + 1;
 template <>
 inline constexpr int kEnumCount<ProxyMotion> = int(ProxyMotion::moving) + 1;
 

@@ -15,8 +15,8 @@ namespace gyre {
 namespace {
 
 bool can_record(const RecordOptions& options) {
-  return (options.commands || options.poses) && options.frame_interval > 0 &&
-         options.hash_interval > 0 && options.pose_accuracy >= 1.0e-12f && options.pose_accuracy <= 1.0e5f;
+  return (options.commands || options.poses) && options.frame_interval > 0 && options.hash_interval > 0 &&
+         options.pose_accuracy >= 1.0e-12f && options.pose_accuracy <= 1.0e5f;
 }
 
 // True if the command may change the look of existing bodies.
@@ -160,8 +160,15 @@ Recorder::~Recorder() { finish(); }
 void Recorder::label(BodyId body, std::string_view name, std::span<const TrackColor> colors) {
   if (log_->state == nullptr || !log_->track) return;
   ByteWriter payload;
-  write_track_label(payload, body, name, colors);
+  write_track_label(payload, body.index, body.generation, name, colors);
   log_->emit(ChunkKind::track_label, payload.view());
+}
+
+void Recorder::label_soft(SoftId soft, std::string_view name, std::span<const TrackColor> colors) {
+  if (log_->state == nullptr || !log_->track) return;
+  ByteWriter payload;
+  write_track_label(payload, soft.index, soft.generation, name, colors);
+  log_->emit(ChunkKind::track_soft_label, payload.view());
 }
 
 void Recorder::note(std::string_view key, std::string_view text) {

@@ -47,14 +47,15 @@ bool complete_orientation(RoundedPose& pose, PoseSteps steps) {
   return true;
 }
 
+std::int64_t round_coordinate(double coordinate, PoseSteps steps) {
+  const double scaled = coordinate * power_of_two(steps.position_bits);
+  const double limit = double(kMaxPosition);
+  return scaled >= limit ? kMaxPosition : scaled <= -limit ? -kMaxPosition : nearest(scaled);
+}
+
 RoundedPose round_pose(const Pose& pose, PoseSteps steps) {
   RoundedPose rounded;
-  const double per_metre = power_of_two(steps.position_bits);
-  for (int i = 0; i < 3; ++i) {
-    const double scaled = pose.position[i] * per_metre;
-    const double limit = double(kMaxPosition);
-    rounded.position[i] = scaled >= limit ? kMaxPosition : scaled <= -limit ? -kMaxPosition : nearest(scaled);
-  }
+  for (int i = 0; i < 3; ++i) rounded.position[i] = round_coordinate(pose.position[i], steps);
   const Quat q = pose.orientation == Quat{0, 0, 0, 0} ? Quat{} : pose.orientation;
   const double components[4] = {double(q.x), double(q.y), double(q.z), double(q.w)};
   double square = 0.0;

@@ -39,7 +39,8 @@ struct RoundedPose {
   bool operator==(const RoundedPose&) const = default;
 };
 
-// The nearest pose that can be stored. The pose must be finite.
+// The nearest coordinate and pose that can be stored. Both must be finite.
+std::int64_t round_coordinate(double coordinate, PoseSteps steps);
 RoundedPose round_pose(const Pose& pose, PoseSteps steps);
 Pose unrounded(const RoundedPose& pose, PoseSteps steps);
 // The largest error of a stored pose.
@@ -90,7 +91,8 @@ void code_difference(Bits& bits, std::int64_t& difference, std::int64_t& size) {
     const std::uint64_t folded = fold_sign(difference), high = folded >> low_bits;
     if (high < kMaxHigh) {
       constexpr int kMaxLowBitsWithUnary = 64 - int(kMaxHigh);
-      const std::uint64_t ones = (std::uint64_t(1) << high) - 1, low = folded & ((std::uint64_t(1) << low_bits) - 1);
+      const std::uint64_t ones = (std::uint64_t(1) << high) - 1,
+                          low = folded & ((std::uint64_t(1) << low_bits) - 1);
       const int unary = int(high) + 1;
       if (low_bits <= kMaxLowBitsWithUnary) {
         bits.code_bits(low << unary | ones, unary + low_bits);

@@ -213,10 +213,10 @@ bool read_track_model(std::span<const std::byte> payload, std::span<const Geomet
   return in.finished();
 }
 
-void write_track_label(ByteWriter& out, BodyId body, std::string_view name,
+void write_track_label(ByteWriter& out, std::uint32_t index, std::uint16_t generation, std::string_view name,
                        std::span<const TrackColor> colors) {
-  out.put(body.index);
-  out.put(body.generation);
+  out.put(index);
+  out.put(generation);
   put_text(out, name);
   out.put(std::uint64_t(colors.size()));
   for (const TrackColor& color : colors) out.put(color.red), out.put(color.green), out.put(color.blue);
@@ -224,8 +224,8 @@ void write_track_label(ByteWriter& out, BodyId body, std::string_view name,
 
 bool read_track_label(std::span<const std::byte> payload, StoredLabel& label) {
   ByteReader in(payload);
-  label.body.index = in.get<std::uint32_t>();
-  label.body.generation = in.get<std::uint16_t>();
+  label.index = in.get<std::uint32_t>();
+  label.generation = in.get<std::uint16_t>();
   label.name = get_text(in);
   label.colors.resize(in.get_count(3));
   for (TrackColor& color : label.colors) {
@@ -244,6 +244,26 @@ bool read_track_note(std::span<const std::byte> payload, StoredNote& note) {
   ByteReader in(payload);
   note.key = get_text(in);
   note.text = get_text(in);
+  return in.finished();
+}
+
+void write_track_soft(ByteWriter& out, SoftKind kind, float radius, std::uint32_t vertex_count,
+                      std::span<const std::uint32_t> triangles) {
+  out.put(kind);
+  out.put(radius);
+  out.put(vertex_count);
+  out.put_all(triangles);
+}
+
+bool read_track_soft(std::span<const std::byte> payload, TrackSoft& soft) {
+  ByteReader in(payload);
+  soft.kind = in.get<SoftKind>();
+  soft.radius = get_size(in);
+  soft.vertices = in.get<std::uint32_t>();
+  soft.triangles = in.get_all<std::uint32_t>();
+  if (soft.triangles.size() % 3 != 0) in.fail();
+  for (const std::uint32_t vertex : soft.triangles)
+    if (vertex >= soft.vertices) in.fail();
   return in.finished();
 }
 

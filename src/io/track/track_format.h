@@ -6,6 +6,9 @@
 //   track_keyframe, track_frame: steps done (u64), time (f64), set version (u64), then bits (track_coder.h)
 //   track_label: of a body: index (u32), generation (u16), name, colours
 //   track_note: key and text
+//   track_soft: the kind, radius, number of vertices and triangles of a rope, cloth or solid; numbered likewise
+//   track_vertices: bits (soft_coder.h); of the frame that follows it
+//   track_soft_label: as track_label, of a rope, cloth or solid
 //
 // Geometry is stored as its input, not cooked: cooked data may change from version to version.
 #pragma once
@@ -43,12 +46,14 @@ void write_track_model(ByteWriter& out, BodyType type, std::uint32_t shape_count
 bool read_track_model(std::span<const std::byte> payload, std::span<const Geometry> geometry,
                       TrackModel& model);
 
+// `index` and `generation` are those of the body's id, or of the rope's, cloth's or solid's.
 struct StoredLabel {
-  BodyId body;
+  std::uint32_t index = 0;
+  std::uint16_t generation = 0;
   std::string name;
   std::vector<TrackColor> colors;
 };
-void write_track_label(ByteWriter& out, BodyId body, std::string_view name,
+void write_track_label(ByteWriter& out, std::uint32_t index, std::uint16_t generation, std::string_view name,
                        std::span<const TrackColor> colors);
 bool read_track_label(std::span<const std::byte> payload, StoredLabel& label);
 
@@ -57,6 +62,12 @@ struct StoredNote {
 };
 void write_track_note(ByteWriter& out, std::string_view key, std::string_view text);
 bool read_track_note(std::span<const std::byte> payload, StoredNote& note);
+
+// The surface of a rope, cloth or solid.
+void write_track_soft(ByteWriter& out, SoftKind kind, float radius, std::uint32_t vertex_count,
+                      std::span<const std::uint32_t> triangles);
+// False if the payload is invalid.
+bool read_track_soft(std::span<const std::byte> payload, TrackSoft& soft);
 
 struct FrameHead {
   std::uint64_t step = 0;

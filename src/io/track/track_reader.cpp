@@ -2,6 +2,7 @@
 // track chunks only, so it opens recordings of other versions whose state it cannot read.
 #include "base/container/flat_map.h"
 #include "io/chunk/chunks.h"
+#include "io/track/soft_coder.h"
 #include "io/track/track_coder.h"
 #include "io/track/track_format.h"
 
@@ -13,7 +14,8 @@ namespace {
 
 struct ListedFrame {
   std::span<const std::byte> payload;
-  std::size_t keyframe = 0;  // the last one up to this frame
+  std::span<const std::byte> vertices;  // empty: there is no soft matter
+  std::size_t keyframe = 0;             // the last one up to this frame
 };
 
 // Appends an item that `read` fills in. False if that fails.
@@ -25,7 +27,27 @@ bool append(std::vector<Item>& items, Read&& read) {
   return good;
 }
 
-std::uint64_t label_key(BodyId body) { return std::uint64_t(body.index) << 16 | body.generation; }
+std::uint64_t label_key(std::uint32_t index, std::uint16_t generation) {
+  return std::uint64_t(index) << 16 | generation;
+}
+
+// Names and colours by id; the last label of an id holds.
+struct LabelTable {
+  std::vector<StoredLabel> labels;
+  FlatMap<std::uint32_t> numbers;
+
+  bool read(std::span<const std::byte> payload) {
+    if (!append(labels, [&](StoredLabel& label) { return read_track_label(payload, label); })) return false;
+    numbers.insert(label_key(labels.back().index, labels.back().generation),
+                   std::uint32_t(labels.size() - 1));
+    return true;
+  }
+  TrackLabel find(std::uint32_t index, std::uint16_t generation) const {
+    const std::uint32_t* const number = numbers.find(label_key(index, generation));
+    if (number == nullptr) return {};
+    return {labels[*number].name, labels[*number].colors};
+  }
+};
 
 }  // namespace
 
@@ -34,16 +56,19 @@ struct PoseTrack::Reader {
   TrackStart start;
   std::vector<Geometry> geometry;
   std::vector<TrackModel> models;
-  std::vector<StoredLabel> labels;
-  FlatMap<std::uint32_t> label_of;  // by body: its last label
+  std::vector<TrackSoft> surfaces;
+  std::vector<std::uint32_t> vertex_counts;  // of the surfaces
+  LabelTable labels, soft_labels;
   std::vector<StoredNote> notes;
   std::vector<ListedFrame> frames;
+  std::span<const std::byte> vertices;  // for the frame that follows
   bool started = false;
   bool closed = false;
 
-  // The bodies of frame `decoded`, or of none.
+  // What frame `decoded` holds, or nothing.
   static constexpr std::size_t kNone = SIZE_MAX;
   std::vector<TrackedBody> bodies;
+  std::vector<TrackedSoft> softs;
   std::size_t decoded = kNone;
 
   // The present frame.
@@ -53,12 +78,17 @@ struct PoseTrack::Reader {
   std::vector<Pose> poses;
   std::vector<std::uint8_t> awake;
   std::vector<std::uint32_t> model_of;
+  std::vector<SoftId> soft_ids;
+  std::vector<std::uint32_t> surface_of;
+  std::vector<std::size_t> vertex_ends;  // of each in `places`
+  std::vector<DVec3> places;
 
   bool read_chunk(const Chunk& chunk, Error& why);
   bool read_start(const Chunk& chunk, Error& why);
   bool read_frame_chunk(const Chunk& chunk);
   bool decode(std::size_t frame);
   void publish(std::size_t frame);
+  void publish_softs();
 };
 
 bool PoseTrack::Reader::read_start(const Chunk& chunk, Error& why) {
@@ -71,12 +101,9 @@ bool PoseTrack::Reader::read_start(const Chunk& chunk, Error& why) {
 bool PoseTrack::Reader::read_frame_chunk(const Chunk& chunk) {
   if (!started || chunk.payload.size() < kFrameHeadBytes) return false;
   const std::size_t number = frames.size();
-  if (chunk.kind == ChunkKind::track_keyframe) {
-    frames.push_back({chunk.payload, number});
-    return true;
-  }
-  if (number == 0) return false;
-  frames.push_back({chunk.payload, frames.back().keyframe});
+  const bool key = chunk.kind == ChunkKind::track_keyframe;
+  if (number == 0 && !key) return false;
+  frames.push_back({chunk.payload, std::exchange(vertices, {}), key ? number : frames.back().keyframe});
   return true;
 }
 
@@ -97,11 +124,18 @@ bool PoseTrack::Reader::read_chunk(const Chunk& chunk, Error& why) {
     case ChunkKind::track_model:
       return append(models,
                     [&](TrackModel& model) { return read_track_model(chunk.payload, geometry, model); });
-    case ChunkKind::track_label:
-      if (!append(labels, [&](StoredLabel& label) { return read_track_label(chunk.payload, label); }))
+    case ChunkKind::track_soft:
+      if (!append(surfaces, [&](TrackSoft& soft) { return read_track_soft(chunk.payload, soft); }))
         return false;
-      label_of.insert(label_key(labels.back().body), std::uint32_t(labels.size() - 1));
+      vertex_counts.push_back(surfaces.back().vertices);
       return true;
+    case ChunkKind::track_vertices:
+      vertices = chunk.payload;
+      return true;
+    case ChunkKind::track_label:
+      return labels.read(chunk.payload);
+    case ChunkKind::track_soft_label:
+      return soft_labels.read(chunk.payload);
     case ChunkKind::track_note:
       return append(notes, [&](StoredNote& note) { return read_track_note(chunk.payload, note); });
     case ChunkKind::end:
@@ -112,15 +146,18 @@ bool PoseTrack::Reader::read_chunk(const Chunk& chunk, Error& why) {
   }
 }
 
-// Decodes `bodies` up to the frame, from the present frame or from a keyframe.
+// Decodes `bodies` and `softs` up to the frame, from the present frame or from a keyframe.
 bool PoseTrack::Reader::decode(std::size_t frame) {
   const std::size_t keyframe = frames[frame].keyframe;
   std::size_t next = decoded != kNone && decoded >= keyframe && decoded <= frame ? decoded + 1 : keyframe;
   FrameDecoder decoder(std::uint32_t(models.size()), start.steps);
   for (; next <= frame; ++next) {
-    if (next == frames[next].keyframe) bodies.clear();
+    const ListedFrame& listed = frames[next];
+    if (next == listed.keyframe) bodies.clear();
+    if (next == listed.keyframe || listed.vertices.empty()) softs.clear();
     decoded = kNone;
-    if (!decoder.decode(frames[next].payload.subspan(kFrameHeadBytes), bodies)) return false;
+    if (!listed.vertices.empty() && !decode_softs(listed.vertices, vertex_counts, softs)) return false;
+    if (!decoder.decode(listed.payload.subspan(kFrameHeadBytes), bodies)) return false;
     decoded = next;
   }
   return true;
@@ -138,6 +175,22 @@ void PoseTrack::Reader::publish(std::size_t frame) {
     poses.push_back(unrounded(body.pose.now, start.steps));
     awake.push_back(body.awake);
     model_of.push_back(body.model);
+  }
+  publish_softs();
+}
+
+void PoseTrack::Reader::publish_softs() {
+  soft_ids.clear();
+  surface_of.clear();
+  vertex_ends.clear();
+  places.clear();
+  const double metre = power_of_two(-start.steps.position_bits);
+  for (const TrackedSoft& soft : softs) {
+    soft_ids.push_back({soft.index, soft.generation, 0});
+    surface_of.push_back(soft.surface);
+    for (const RoundedVertex& vertex : soft.now)
+      places.push_back({double(vertex[0]) * metre, double(vertex[1]) * metre, double(vertex[2]) * metre});
+    vertex_ends.push_back(places.size());
   }
 }
 
@@ -182,12 +235,11 @@ std::uint64_t PoseTrack::step(std::size_t frame) const {
 
 TrackAccuracy PoseTrack::accuracy() const { return accuracy_of(reader_->start.steps); }
 std::span<const TrackModel> PoseTrack::models() const { return reader_->models; }
+std::span<const TrackSoft> PoseTrack::softs() const { return reader_->surfaces; }
 
-TrackLabel PoseTrack::label(BodyId body) const {
-  const std::uint32_t* const number = reader_->label_of.find(label_key(body));
-  if (number == nullptr) return {};
-  const StoredLabel& label = reader_->labels[*number];
-  return {label.name, label.colors};
+TrackLabel PoseTrack::label(BodyId body) const { return reader_->labels.find(body.index, body.generation); }
+TrackLabel PoseTrack::soft_label(SoftId soft) const {
+  return reader_->soft_labels.find(soft.index, soft.generation);
 }
 
 std::string_view PoseTrack::note(std::string_view key) const {
@@ -215,7 +267,15 @@ std::size_t PoseTrack::position() const { return reader_->position; }
 
 TrackFrame PoseTrack::frame() const {
   const Reader& r = *reader_;
-  return {r.head.step, r.head.time, r.ids, r.poses, r.awake, r.model_of, r.head.set_version};
+  return {r.head.step, r.head.time,        r.ids,      r.poses,      r.awake,
+          r.model_of,  r.head.set_version, r.soft_ids, r.surface_of, r.places};
+}
+
+std::span<const DVec3> PoseTrack::soft_vertices(std::size_t i) const {
+  const Reader& r = *reader_;
+  if (i >= r.vertex_ends.size()) return {};
+  const std::size_t begin = i == 0 ? 0 : r.vertex_ends[i - 1];
+  return std::span(r.places).subspan(begin, r.vertex_ends[i] - begin);
 }
 
 }  // namespace gyre

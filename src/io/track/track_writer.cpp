@@ -179,6 +179,7 @@ void TrackWriter::frame(const WorldState& state, EmitChunk emit) {
   if (bodies_.size() < slots) bodies_.resize(slots);
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) update_body(state, i, key, emit);
   models_stale_ = false;
+  if (softs_.frame(state.soft, key, emit)) ++set_version_;
   ByteWriter payload;
   write_frame_head(payload, {state.step_count, state.time, set_version_});
   payload.put_bytes(frame_bits());

@@ -6,6 +6,7 @@
 #include "base/function_ref.h"
 #include "io/chunk/chunks.h"
 #include "io/track/rounding_tolerance.h"
+#include "io/track/soft_track_writer.h"
 #include "io/track/track_coder.h"
 #include "io/track/track_format.h"
 #include "world/world_state.h"
@@ -16,7 +17,7 @@ using EmitChunk = FunctionRef<void(ChunkKind, std::span<const std::byte>)>;
 
 class TrackWriter {
  public:
-  explicit TrackWriter(const TrackStart& start) : start_(start) {}
+  explicit TrackWriter(const TrackStart& start) : start_(start), softs_(start.steps) {}
 
   void begin(EmitChunk emit) const;
   void frame(const WorldState& state, EmitChunk emit);
@@ -55,8 +56,9 @@ class TrackWriter {
   std::uint32_t geometry_number(const AnyShape& shape, EmitChunk emit);
 
   TrackStart start_;
-  std::vector<WrittenBody> bodies_;          // by index
-  std::vector<Change> changes_;              // of the present frame, by index
+  std::vector<WrittenBody> bodies_;  // by index
+  std::vector<Change> changes_;      // of the present frame, by index
+  SoftTrackWriter softs_;
   FlatMap<std::uint32_t> geometry_numbers_;  // by content hash
   FlatMap<std::uint32_t> model_numbers_;     // by hash of the written model
   bool models_stale_ = false;

@@ -5,6 +5,7 @@
 #include "soft/elements/cloth.h"
 #include "soft/elements/rope.h"
 #include "soft/elements/solid.h"
+#include "soft/mesh/tetrahedral_fill.h"
 
 #include <cmath>
 
@@ -145,6 +146,16 @@ void add_outer_faces(std::span<const std::uint32_t> tetrahedra, const SoftBody& 
   }
 }
 
+// The mass is that of the surface's volume, which the tetrahedra do not have exactly.
+void build_filled(const SolidSurface& surface, const Pose& pose, SolidMaterial material, SoftEntry& entry) {
+  Result<TetrahedralMesh> mesh =
+      fill_with_tetrahedra(surface.vertices, surface.triangles, surface.resolution);
+  material.density = float(double(material.density) * mesh->surface_volume / mesh->filled_volume);
+  entry.body = tetrahedral_solid(placed(mesh->vertices, pose), mesh->tetrahedra, material);
+  add_outer_faces(mesh->tetrahedra, entry.body, entry.triangles);
+  entry.surface = std::move(mesh->surface);
+}
+
 void build(const SolidDef& def, SoftEntry& entry) {
   entry.kind = SoftKind::solid;
   const SolidMaterial material{.density = def.density,
@@ -157,6 +168,8 @@ void build(const SolidDef& def, SoftEntry& entry) {
     const int cells[3] = {def.box->cells[0], def.box->cells[1], def.box->cells[2]};
     entry.body = box_solid(def.box->half_extents, cells, pose, material);
     add_outer_faces(box_tetrahedra(cells), entry.body, entry.triangles);
+  } else if (def.surface) {
+    build_filled(*def.surface, pose, material, entry);
   } else {
     entry.body = tetrahedral_solid(placed(def.vertices, pose), def.tetrahedra, material);
     add_outer_faces(def.tetrahedra, entry.body, entry.triangles);
@@ -177,6 +190,22 @@ float edge_size(const SoftEntry& entry) {
   return count > 0 ? float(sum / double(count)) : 0.0f;
 }
 
+// Solids keep this share of the length of an edge from other surfaces and from themselves.
+constexpr float kSolidRadius = 0.02f;
+
+std::shared_ptr<const SoftSurface> make_surface(const SoftEntry& entry, const SoftDef& def) {
+  if (entry.triangles.empty()) return nullptr;
+  Array<DVec3> places;
+  for (int i = 0; i < entry.body.particles.count; ++i) places.push_back(entry.body.particles.place(i));
+  const float radius = entry.kind == SoftKind::solid ? kSolidRadius * entry.size : entry.radius;
+  SoftSurface surface = make_surface(places, entry.triangles, radius);
+  const SoftSettings& settings = entry.settings();
+  surface.static_friction = settings.static_friction;
+  surface.dynamic_friction = settings.dynamic_friction;
+  if (const ClothDef* const cloth = std::get_if<ClothDef>(&def)) surface.self_collision = cloth->self_collision;
+  return std::make_shared<const SoftSurface>(std::move(surface));
+}
+
 void set_start(const SoftSettings& settings, Particles& particles) {
   for (std::size_t i = 0; i < settings.positions.size(); ++i)
     particles.set_place(int(i), settings.positions[i]);
@@ -191,6 +220,7 @@ SoftEntry build_soft(std::shared_ptr<const SoftDef> def) {
   std::visit([&](const auto& one) { build(one, entry); }, *def);
   entry.size = edge_size(entry);
   entry.def = std::move(def);
+  entry.contact_surface = make_surface(entry, *entry.def);
   set_start(entry.settings(), entry.body.particles);
   return entry;
 }

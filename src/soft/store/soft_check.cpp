@@ -1,4 +1,5 @@
 // The checks of definitions. See soft_builder.h.
+#include "soft/mesh/tetrahedral_fill.h"
 #include "soft/store/soft_builder.h"
 
 namespace gyre {
@@ -9,6 +10,7 @@ constexpr float kLargest = 1.0e12f;   // of lengths and stiffness, in their unit
 constexpr double kFarthest = 1.0e12;  // m
 constexpr std::size_t kMaxElements = 8u << 20;
 
+Error refused(const char* words) { return make_error(ErrorCode::invalid_argument, "%s", words); }
 template <class... Args>
 Error refused(const char* format, Args... args) {
   return make_error(ErrorCode::invalid_argument, format, args...);
@@ -116,6 +118,29 @@ Error has_volumes(const SolidDef& def) {
   return {};
 }
 
+// Sets how many vertices the box has.
+Error good_box(const SolidBox& box, std::size_t& vertices) {
+  Error e = above_zero("box.half_extents.x", box.half_extents.x);
+  if (e.ok()) e = above_zero("box.half_extents.y", box.half_extents.y);
+  if (e.ok()) e = above_zero("box.half_extents.z", box.half_extents.z);
+  vertices = 1;
+  for (const int cells : box.cells) {
+    if (e.ok() && (cells < 1 || cells > 256))
+      e = refused("box.cells has %d; it must lie within 1 and 256", cells);
+    vertices *= e.ok() ? std::size_t(cells) + 1 : 1;
+  }
+  return e.ok() ? good_count(vertices) : e;
+}
+
+// Fills the surface, since only that tells whether it can be done, and how many vertices it takes.
+Error good_surface(const SolidSurface& surface, std::size_t& vertices) {
+  const Result<TetrahedralMesh> mesh =
+      fill_with_tetrahedra(surface.vertices, surface.triangles, surface.resolution);
+  if (!mesh) return make_error(mesh.error().code, "surface.%s", mesh.error().message);
+  vertices = mesh->vertices.size();
+  return good_count(vertices);
+}
+
 }  // namespace
 
 Error check_soft(const RopeDef& def) {
@@ -187,23 +212,18 @@ Error check_soft(const ClothDef& def) {
 
 Error check_soft(const SolidDef& def) {
   Error e;
-  std::size_t vertices = def.vertices.size();
+  std::size_t vertices = 0;
+  const int forms = int(def.box.has_value()) + int(def.surface.has_value()) +
+                    int(!def.vertices.empty() || !def.tetrahedra.empty());
+  if (forms > 1) return refused("%d of box, surface and tetrahedra are given; a solid is one of them", forms);
   if (def.box) {
-    const SolidBox& box = *def.box;
-    if (!def.vertices.empty() || !def.tetrahedra.empty())
-      return refused("box and tetrahedra are both given; a solid is one of them");
-    e = above_zero("box.half_extents.x", box.half_extents.x);
-    if (e.ok()) e = above_zero("box.half_extents.y", box.half_extents.y);
-    if (e.ok()) e = above_zero("box.half_extents.z", box.half_extents.z);
-    vertices = 1;
-    for (const int cells : box.cells) {
-      if (e.ok() && (cells < 1 || cells > 256))
-        e = refused("box.cells has %d; it must lie within 1 and 256", cells);
-      vertices *= e.ok() ? std::size_t(cells) + 1 : 1;
-    }
-    if (e.ok()) e = good_count(vertices);
+    e = good_box(*def.box, vertices);
+  } else if (def.surface) {
+    e = good_surface(*def.surface, vertices);
   } else {
-    if (def.vertices.empty()) return refused("neither box nor vertices are given; a solid is one of them");
+    if (def.vertices.empty())
+      return refused("neither box nor surface nor vertices are given; a solid is one of them");
+    vertices = def.vertices.size();
     e = good_elements(def.vertices, def.tetrahedra, 4, "tetrahedra");
     if (e.ok()) e = has_volumes(def);
   }

@@ -5,6 +5,8 @@
 #include "base/container/array.h"
 #include "base/container/slot_map.h"
 #include "soft/body/soft_body.h"
+#include "soft/contact/soft_surface.h"
+#include "soft/mesh/embedded_surface.h"
 
 #include <gyre/soft.h>
 
@@ -27,20 +29,23 @@ struct SoftAttachment {
   Vec3 impulse{};  // N s on the vertex in the last half-step, where the body yields: the warm start
 };
 
+// How a contact held its vertex in the last sub-step.
+enum class SoftGrip : std::uint8_t { open, slides, sticks };
+
 // A vertex near a shape, found once a step. The shape's surface is a plane here, which moves with the body.
 struct SoftContact {
   std::uint32_t particle = 0;
   std::uint32_t shape = 0;
-  std::int32_t body = 0;       // of the shape; it may be a fixed one
-  std::uint32_t triangle = 0;  // of a mesh or height field
-  Vec3 normal{};               // unit, out of the shape, world axes, when the step began
-  Vec3
-      from_body{};  // from the body's centre of mass to the point on the surface, world axes, when the step began
+  std::int32_t body = 0;                            // of the shape; it may be a fixed one
+  std::uint32_t triangle = 0;                       // of a mesh or height field
+  Vec3 normal{};     // unit, out of the shape, world axes, when the step began
+  Vec3 from_body{};  // from the body's centre of mass to the point on the surface, likewise
   float gap = 0.0f;  // m, of vertex and surface less the thickness, when the step began
   float static_friction = 0.0f;
   float dynamic_friction = 0.0f;
   Vec3 surface_velocity{};  // m/s, of a conveyor belt, world axes
   Vec3 impulse{};           // N s on the vertex in the last half-step: the warm start
+  SoftGrip grip = SoftGrip::open;
 };
 
 // Rest, as of bodies.
@@ -57,6 +62,9 @@ struct SoftEntry {
   Array<SoftContact> contacts;        // ascending by particle, then shape
   Array<std::uint32_t>
       triangles;  // of the surface, three vertices each, seen from outside counter-clockwise; none of a rope
+  std::shared_ptr<const SoftSurface> contact_surface;  // of the triangles; null: there are none
+  // Of a solid that was made of a surface: what was given, carried along by its tetrahedra, for pictures.
+  EmbeddedSurface surface;
   Array<SoftRest> rest{SoftRest{}};  // one
   float radius = 0.0f;               // m: half the thickness, which the surface keeps from shapes
   float size = 0.0f;                 // m: the mean length of its edges, by which speculative distances go
@@ -66,6 +74,17 @@ struct SoftEntry {
     return std::visit([](const auto& one) -> const SoftSettings& { return one.settings; }, *def);
   }
 };
+
+// Where a point of the embedded surface is. The corners are taken from the first, so that the rounding of the weights does not grow with
+// the distance from the origin.
+inline DVec3 surface_position(const SoftEntry& entry, std::size_t point) {
+  const EmbeddedPoint& embedded = entry.surface.points[point];
+  const DVec3 first = entry.body.particles.place(int(embedded.corner[0]));
+  DVec3 sum = first;
+  for (int k = 1; k < 4; ++k)
+    sum += double(embedded.weight[k]) * (entry.body.particles.place(int(embedded.corner[k])) - first);
+  return sum;
+}
 
 struct SoftStore {
   IdPool ids;

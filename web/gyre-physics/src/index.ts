@@ -7,7 +7,7 @@ import { Scene, type SceneOptions } from './scene.js';
 export * from './generated.js';
 export type { LoadOptions } from './load.js';
 export type { Build } from './runtime.js';
-export { Scene, type SceneOptions, type SceneSettings, type SceneView } from './scene.js';
+export { Scene, type SceneHold, type SceneOptions, type SceneSettings, type SceneView } from './scene.js';
 export { GyreError } from './stream.js';
 export type { Bytes, Numbers, QuaternionInput, VectorInput, WritableNumbers } from './stream.js';
 export { Recorder, World } from './world.js';

@@ -1,5 +1,5 @@
 // Scene files: the engine's own reader and runner.
-import { type BodyId, type JointId, type RecordOptions, type SteppingInput, type Vec3, writeStepping } from './generated.js';
+import { type BodyId, type JointId, type RecordOptions, type SoftId, type SteppingInput, type Vec3, writeStepping } from './generated.js';
 import type { Runtime } from './runtime.js';
 import type { Bytes, VectorInput } from './stream.js';
 import { type Recorder, World } from './world.js';
@@ -37,6 +37,13 @@ export interface SceneView {
   fieldOfView: number;
 }
 
+/** A vertex that the scene pins, or attaches to a body. */
+export interface SceneHold {
+  vertex: number;
+  /** Into sceneBodies; -1: the vertex stays where it is in the world. */
+  body: number;
+}
+
 /** A world made from a scene file. It knows the scene's names, and its step() plays the scene's timed forces. */
 export class Scene extends World {
   readonly name: string;
@@ -47,6 +54,13 @@ export class Scene extends World {
   readonly bodyNames: readonly string[];
   readonly sceneJoints: readonly JointId[];
   readonly jointNames: readonly string[];
+  /** Ropes, cloths and soft bodies, in this order; ids stay in their places when one is removed. */
+  readonly sceneSofts: readonly SoftId[];
+  readonly softNames: readonly string[];
+  /** Of each of them: its colour as 0xrrggbb. */
+  readonly softColors: readonly number[];
+  /** Of each of them: the vertices that it is held by. */
+  readonly softHolds: readonly (readonly SceneHold[])[];
   /** Of each shape of each body, in the order of the scene: the name of its material, empty if it has none. */
   readonly materialNames: readonly (readonly string[])[];
   /** Of each shape of each body: its colour as 0xrrggbb. What the scene leaves open has a colour from a fixed cycle. */
@@ -83,6 +97,17 @@ export class Scene extends World {
     this.view = looks.boolean()
       ? { eye: looks.vector(3) as Vec3, target: looks.vector(3) as Vec3, fieldOfView: looks.number() }
       : undefined;
+    runtime.begin();
+    const softs = runtime.call('gyre_scene_softs', pointer);
+    this.sceneSofts = Array.from(softs.array(Float64Array, 1));
+    const all = this.sceneSofts.map(() => ({
+      name: softs.text(),
+      color: softs.number(),
+      holds: softs.list((r) => ({ vertex: r.number(), body: r.number() })),
+    }));
+    this.softNames = all.map(({ name }) => name);
+    this.softColors = all.map(({ color }) => color);
+    this.softHolds = all.map(({ holds }) => holds);
   }
 
   /** @internal */
@@ -129,9 +154,12 @@ export class Scene extends World {
     const { name, view } = this;
     const noted = view && { eye: view.eye, target: view.target, field_of_view: view.fieldOfView };
     recorder.note('scene', JSON.stringify({ name, view: noted }));
+    const parts = (color: number) => ({ red: color >> 16, green: (color >> 8) & 255, blue: color & 255 });
     this.sceneBodies.forEach((body, i) => {
-      const parts = this.colors[i]!.map((color) => ({ red: color >> 16, green: (color >> 8) & 255, blue: color & 255 }));
-      if (this.bodyExists(body)) recorder.label(body, this.bodyNames[i]!, parts);
+      if (this.bodyExists(body)) recorder.label(body, this.bodyNames[i]!, this.colors[i]!.map(parts));
+    });
+    this.sceneSofts.forEach((soft, i) => {
+      if (this.softExists(soft)) recorder.labelSoft(soft, this.softNames[i]!, parts(this.softColors[i]!));
     });
     return recorder;
   }

@@ -177,7 +177,7 @@ export class Writer {
   }
 
   /** Any number of rows of `width` numbers: flat, or an array of rows. */
-  list(value: Numbers | readonly Numbers[], width: number, where: string): void {
+  list(value: Numbers | readonly (VectorInput | QuaternionInput)[], width: number, where: string): void {
     if (typeof value !== 'object' || value === null || !('length' in value)) throw this.wrong(where, value, 'an array of numbers');
     if (value.length > 0 && typeof value[0] === 'object') {
       this.reserve(1 + value.length * width);

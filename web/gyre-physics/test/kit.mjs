@@ -22,7 +22,10 @@ export async function engine(build = 'simd') {
 }
 
 export const sceneFolder = join(root, 'scenes');
-export const sceneNames = readdirSync(sceneFolder).filter((name) => name.endsWith('.gyre.json')).sort();
+const scenesIn = (folder) => readdirSync(join(sceneFolder, folder)).filter((name) => name.endsWith('.gyre.json')).sort().map((name) => join(folder, name));
+export const sceneNames = scenesIn('.');
+/** Of ropes, cloths and soft bodies. */
+export const softSceneNames = scenesIn('soft');
 
 export function sceneText(name) {
   return readFileSync(join(sceneFolder, name), 'utf8');

@@ -83,6 +83,13 @@ export class Console {
     return [...(this.viewer.playback.frame?.poses ?? [])];
   }
 
+  // Of a rope, cloth or solid by name: its vertices in the frame that is shown, 3 numbers each, m.
+  vertices(name: string): number[] | null {
+    const drawn = this.viewer.softs.named(name);
+    const frame = this.viewer.playback.frame;
+    return drawn && frame ? [...frame.softVertices.slice(3 * drawn.first, 3 * (drawn.first + drawn.soft.vertices))] : null;
+  }
+
   names(): string[] {
     return [...this.viewer.bodies.keys].map((key) => this.viewer.bodies.known.get(key)?.name ?? '');
   }

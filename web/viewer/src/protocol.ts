@@ -48,6 +48,19 @@ export interface BodyDescription {
   shapes: ShapeDescription[];
 }
 
+export type SoftKind = 'rope' | 'cloth' | 'solid';
+
+// A rope, a cloth or a solid: vertices that move one by one.
+export interface SoftDescription {
+  key: number; // names it in requests; another count than that of bodies, never used twice while the scene is open
+  name: string;
+  kind: SoftKind;
+  vertices: number;
+  radius: number; // m: that of a rope, half the thickness of a cloth, 0 of a solid
+  triangles: Uint32Array; // the surface, three vertices each, counter-clockwise from outside; none of a rope
+  color: number | null; // sRGB, 0xrrggbb; null: the page picks one
+}
+
 // Those that commands change in the course of a run, and that are others again in its past.
 export interface RunSettings {
   gravity: Vec3;
@@ -89,12 +102,14 @@ export interface SceneDescription {
   posesOnly: string; // of a recording without a world behind its poses, in words why; empty if there is one
 }
 
-// Sent whenever bodies came or went. Row i of every frame with this number belongs to keys[i].
+// Sent whenever bodies or soft matter came or went. Row i of every frame with this number belongs to keys[i], and the frame's
+// softVertices are those of softs[0], then those of softs[1], and so on.
 export interface Structure {
   number: number;
   keys: Uint32Array;
   added: BodyDescription[]; // those the page does not know yet, or knows differently
   surfaces: Surface[]; // likewise
+  softs: SoftDescription[]; // all that there are
 }
 
 // --------------------------------------------------------------------------------------------------------------- what happens
@@ -115,6 +130,8 @@ export interface Stats {
   linear: Vec3; // kg m/s
   angular: Vec3; // kg m^2/s, about the world's origin
   maxPenetration: number; // m
+  softs: number; // ropes, cloths and solids
+  softVertices: number;
 }
 
 export type OverlayName =
@@ -164,6 +181,7 @@ export interface Frame {
   poses: Float32Array; // 7 a row: x, y, z, qx, qy, qz, qw
   velocities: Float32Array; // 6 a row: linear of the centre of mass, angular
   flags: Uint8Array; // BodyFlag a row
+  softVertices: Float32Array; // 3 a vertex
   stats: Stats;
   measured: boolean; // whether a world stands behind the numbers; without, only bodies are counted
   links: Float32Array; // rods, ropes and springs: 6 each, the anchors on a and on b
@@ -187,6 +205,15 @@ export interface BodyReport {
   kinetic: number;
   words: string; // why it is awake or asleep, by the engine
 }
+export interface SoftReport {
+  key: number;
+  name: string;
+  kind: SoftKind;
+  vertices: number;
+  triangles: number; // of the surface
+  // Of a recording without a world behind it there is no more.
+  state: { mass: number; kinetic: number; elastic: number; contacts: number } | null;
+}
 export type DoubleVec3 = [number, number, number];
 
 // ------------------------------------------------------------------------------------------------------------------ requests
@@ -201,10 +228,12 @@ export type Throwable = 'ball' | 'box' | 'capsule' | 'cylinder' | 'cone';
 // again repeats it.
 export type Command =
   | { do: 'grab'; key: number; at: Vec3 }
+  | { do: 'grab_soft'; key: number; at: Vec3 } // its vertex that is nearest
   | { do: 'pull'; to: Vec3 }
   | { do: 'release' }
   | { do: 'throw'; what: Throwable; size: number; density: number; from: Vec3; velocity: Vec3 }
   | { do: 'remove'; key: number }
+  | { do: 'remove_soft'; key: number }
   | { do: 'push'; key: number; at: Vec3; impulse: Vec3 }
   | { do: 'wake'; key: number; awake: boolean }
   | { do: 'gravity'; value: Vec3 }
@@ -221,6 +250,7 @@ export interface Requests {
   overlays: { ask: { names: OverlayName[] }; answer: FrameMessage };
   configure: { ask: { settings: NewWorldSettings }; answer: { scene: SceneDescription; frame: FrameMessage } };
   inspect: { ask: { key: number }; answer: BodyReport | null };
+  inspect_soft: { ask: { key: number }; answer: SoftReport | null };
   hash: { ask: Record<string, never>; answer: string };
   save: { ask: { what: 'scene' | 'snapshot' }; answer: { name: string; bytes: Uint8Array } };
 }

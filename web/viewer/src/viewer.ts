@@ -8,6 +8,7 @@ import { CameraRig } from './draw/camera_rig';
 import { Links } from './draw/links';
 import { Picker } from './draw/picker';
 import { Selection } from './draw/selection';
+import { Softs } from './draw/softs';
 import { Stage } from './draw/stage';
 import { Inspection } from './input/inspection';
 import { Pointer } from './input/pointer';
@@ -25,6 +26,7 @@ export class Viewer {
   readonly history = new History();
   readonly stage: Stage;
   readonly bodies: Bodies;
+  readonly softs = new Softs(preferences.quality.peek());
   readonly picker: Picker;
   readonly rig: CameraRig;
   readonly thrower: Thrower;
@@ -48,7 +50,7 @@ export class Viewer {
     this.stage = new Stage(holder);
     this.painter = new BodyPainter(this.stage.colors);
     this.bodies = new Bodies(this.stage.ground, this.painter, preferences.quality.peek());
-    this.stage.scene.add(this.bodies.group, this.links.object);
+    this.stage.scene.add(this.bodies.group, this.softs.group, this.links.object);
     this.picker = new Picker(this.stage.camera, this.stage.renderer.domElement);
     this.selection = new Selection(this.bodies);
     this.stage.scene.add(this.selection.object);
@@ -77,6 +79,7 @@ export class Viewer {
       const quality = preferences.quality.value;
       this.stage.setQuality(quality);
       this.bodies.setQuality(quality);
+      this.softs.setQuality(quality);
       this.repaint();
     });
     effect(() => {
@@ -113,6 +116,7 @@ export class Viewer {
   private welcome(): void {
     const scene = store.scene.peek()!;
     this.bodies.clear();
+    this.softs.clear();
     this.history.clear();
     this.bounds = new Box3(new Vector3(...scene.bounds.low), new Vector3(...scene.bounds.high));
     this.bounds.getCenter(this.center);
@@ -127,6 +131,7 @@ export class Viewer {
   private receive(frame: Frame, structure: Structure | null, jumped: boolean): void {
     if (structure) {
       this.bodies.restructure(structure);
+      this.softs.restructure(structure);
       this.selection.show(store.selected.peek());
       this.painted = false;
     }
@@ -152,6 +157,7 @@ export class Viewer {
     const scene = store.scene.peek();
     if (between && scene) {
       this.bodies.place(between.from, between.to, between.part);
+      this.softs.place(between.from, between.to, between.part);
       if (!this.painted) {
         this.painted = true;
         this.bodies.paint(between.to);
@@ -160,6 +166,7 @@ export class Viewer {
       this.updateOverlays(between.to);
       this.stage.lightAround(store.following.peek() ? this.rig.controls.target : this.center);
     }
+    this.softs.highlight(store.selectedSoft.peek(), this.stage.colors.selection);
     this.pointer.update();
     this.rig.update(seconds);
     this.stage.render();

@@ -1,10 +1,19 @@
 // What lies under the pointer: a ray from the camera against what is drawn.
 import { type PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from 'three';
 import type { Bodies } from './bodies';
+import type { DrawnSoft, Softs } from './softs';
+
+const NEAR_A_ROPE = 0.012; // rad: a rope may be this far from the ray, for it is thin
 
 export interface Picked {
   key: number;
   row: number;
+  point: Vector3;
+  distance: number;
+}
+
+export interface PickedSoft {
+  key: number;
   point: Vector3;
   distance: number;
 }
@@ -35,6 +44,30 @@ export class Picker {
         const row = batch.rows[hit.instanceId]!;
         best = { key: bodies.keys[row]!, row, point: hit.point.clone(), distance: hit.distance };
       }
+    }
+    return best;
+  }
+
+  // Soft matter that is nearer than `limit`.
+  pickSoft(softs: Softs, x: number, y: number, limit = Infinity): PickedSoft | null {
+    this.aim(x, y);
+    let best: PickedSoft | null = null;
+    for (const drawn of softs.toPick) {
+      const hit = drawn.soft.kind === 'rope' ? this.onRope(drawn) : this.caster.intersectObject(drawn.mesh, false)[0];
+      if (hit && hit.distance < (best?.distance ?? limit)) best = { key: drawn.soft.key, point: hit.point.clone(), distance: hit.distance };
+    }
+    return best;
+  }
+
+  private onRope({ soft, vertices }: DrawnSoft): { point: Vector3; distance: number } | null {
+    const { ray } = this.caster;
+    const [a, b, onRay, onRope] = [new Vector3(), new Vector3(), new Vector3(), new Vector3()];
+    let best: { point: Vector3; distance: number } | null = null;
+    for (let i = 0; i + 1 < soft.vertices; i++) {
+      const away = Math.sqrt(ray.distanceSqToSegment(a.fromArray(vertices, 3 * i), b.fromArray(vertices, 3 * i + 3), onRay, onRope));
+      const distance = onRay.distanceTo(ray.origin);
+      if (away > soft.radius + NEAR_A_ROPE * distance || (best && distance >= best.distance)) continue;
+      best = { point: onRope.clone(), distance: distance - soft.radius };
     }
     return best;
   }

@@ -1,4 +1,4 @@
-// Keeps the report on the selected body fresh: asked for at a reader's pace, never two questions at a time.
+// Keeps the report on what is selected fresh: asked for at a reader's pace, never two questions at a time.
 import { effect } from '@preact/signals';
 import type { Playback } from '../playback/playback';
 import type { Frame } from '../protocol';
@@ -13,15 +13,23 @@ export class Inspection {
 
   constructor(private readonly playback: Playback) {
     effect(() => {
-      const key = store.selected.value;
+      const body = store.selected.value;
+      const soft = store.selectedSoft.value;
       store.report.value = null;
-      if (key === null) store.following.value = false;
-      else this.ask();
+      if (body === null) store.following.value = false;
+      if (body !== null || soft !== null) this.ask();
     });
   }
 
+  private question(): { name: 'inspect' | 'inspect_soft'; key: number } | null {
+    const body = store.selected.peek();
+    const soft = store.selectedSoft.peek();
+    if (body !== null) return { name: 'inspect', key: body };
+    return soft === null ? null : { name: 'inspect_soft', key: soft };
+  }
+
   follow(_frame: Frame): void {
-    if (store.selected.peek() === null) return;
+    if (this.question() === null) return;
     if (store.playing.peek() && performance.now() - this.asked < PACE) return;
     this.ask();
   }
@@ -31,18 +39,20 @@ export class Inspection {
       this.again = true;
       return;
     }
-    const key = store.selected.peek();
-    if (key === null) return;
+    const question = this.question();
+    if (question === null) return;
+    const { name, key } = question;
     this.waiting = true;
     this.again = false;
     this.asked = performance.now();
     this.playback.client
-      .request('inspect', { key })
+      .request(name, { key })
       .then(
         (report) => {
-          if (store.selected.peek() !== key) return;
+          const now = this.question();
+          if (now?.name !== name || now.key !== key) return;
           store.report.value = report;
-          if (!report) store.selected.value = null;
+          if (!report) store.select(null);
         },
         () => undefined, // the reason is shown by what failed first
       )

@@ -23,7 +23,7 @@ function closeTopmost(): void {
   else if (store.notice.peek() && !store.notice.peek()!.fatal) store.notice.value = null;
   else if (store.scenesOpen.peek()) store.scenesOpen.value = false;
   else if (store.panel.peek()) store.panel.value = null;
-  else store.selected.value = null;
+  else store.select(null);
 }
 
 export const shortcuts: readonly Shortcut[] = [
@@ -56,7 +56,10 @@ function stepByKey(viewer: Viewer, event: KeyboardEvent): void {
 
 function removeSelected(viewer: Viewer): void {
   const key = store.selected.peek();
-  if (key !== null && store.scene.peek()?.live) viewer.playback.command({ do: 'remove', key });
+  const soft = store.selectedSoft.peek();
+  if (!store.scene.peek()?.live) return;
+  if (key !== null) viewer.playback.command({ do: 'remove', key });
+  else if (soft !== null) viewer.playback.command({ do: 'remove_soft', key: soft });
 }
 
 function toggleByKey(key: string): void {

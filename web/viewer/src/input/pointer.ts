@@ -1,6 +1,7 @@
-// The hand. On a body that can move it pulls; a click without moving selects; everywhere else it is the camera's.
+// The hand. On a body that can move, and on ropes, cloths and solids, it pulls; a click without moving selects; everywhere else it is the
+// camera's.
 import { Vector3 } from 'three';
-import { BodyFlag } from '../protocol';
+import { BodyFlag, type Command } from '../protocol';
 import * as store from '../state/store';
 import type { Surroundings } from './surroundings';
 
@@ -10,8 +11,9 @@ interface Press {
   id: number;
   x: number;
   y: number;
-  key: number | null;
-  grabbed: Vector3 | null; // where in the scene the body was taken hold of
+  key: number | null; // of a body
+  soft: number | null;
+  grabbed: Vector3 | null; // where in the scene something was taken hold of
 }
 
 export class Pointer {
@@ -43,15 +45,26 @@ export class Pointer {
     // A second finger means the camera.
     if (this.touches.size > 1) return this.letGo();
     if (event.button !== 0 || !frame) return;
-    const picked = viewer.picker.pick(viewer.bodies, event.clientX, event.clientY);
-    this.press = { id: event.pointerId, x: event.clientX, y: event.clientY, key: picked?.key ?? null, grabbed: null };
-    const movable = picked && (frame.flags[picked.row]! & BodyFlag.dynamic) !== 0 && store.scene.peek()?.live;
-    if (!movable || event.ctrlKey || event.metaKey || event.shiftKey) return;
-    this.press.grabbed = picked.point;
+    const { key, soft, hold } = this.under(event.clientX, event.clientY);
+    this.press = { id: event.pointerId, x: event.clientX, y: event.clientY, key, soft, grabbed: null };
+    if (!hold || event.ctrlKey || event.metaKey || event.shiftKey) return;
+    this.press.grabbed = new Vector3(...hold.at);
     viewer.rig.controls.enabled = false;
     viewer.stage.renderer.domElement.setPointerCapture(event.pointerId);
     viewer.stage.renderer.domElement.style.cursor = 'grabbing';
-    viewer.playback.command({ do: 'grab', key: picked.key, at: picked.point.toArray() });
+    viewer.playback.command(hold);
+  }
+
+  // The body or soft matter under the pointer, and how to take hold of it.
+  private under(x: number, y: number): { key: number | null; soft: number | null; hold: Extract<Command, { at: unknown; do: 'grab' | 'grab_soft' }> | null } {
+    const { picker, bodies, softs, playback } = this.viewer;
+    const live = store.scene.peek()?.live === true;
+    const body = picker.pick(bodies, x, y);
+    const soft = picker.pickSoft(softs, x, y, body?.distance);
+    if (soft) return { key: null, soft: soft.key, hold: live ? { do: 'grab_soft', key: soft.key, at: soft.point.toArray() } : null };
+    if (!body) return { key: null, soft: null, hold: null };
+    const movable = live && (playback.frame!.flags[body.row]! & BodyFlag.dynamic) !== 0;
+    return { key: body.key, soft: null, hold: movable ? { do: 'grab', key: body.key, at: body.point.toArray() } : null };
   }
 
   private move(event: PointerEvent): void {
@@ -65,15 +78,15 @@ export class Pointer {
     const still = Math.hypot(event.clientX - press.x, event.clientY - press.y) < CLICK;
     this.letGo();
     if (still && event.type === 'pointerup') {
-      store.selected.value = press.key;
-      if (press.key !== null && innerWidth > 900) store.panel.value = 'inspect';
+      store.select(press.key, press.soft);
+      if ((press.key ?? press.soft) !== null && innerWidth > 900) store.panel.value = 'inspect';
     }
   }
 
   private doubleClick(event: MouseEvent): void {
     const picked = this.viewer.picker.pick(this.viewer.bodies, event.clientX, event.clientY);
     if (!picked || this.viewer.bodies.known.get(picked.key)?.type === 'fixed') return;
-    store.selected.value = picked.key;
+    store.select(picked.key);
     store.following.value = true;
   }
 
@@ -101,8 +114,6 @@ export class Pointer {
     const { viewer } = this;
     const frame = viewer.playback.frame;
     if (!frame || frame.flags.length > 4000) return;
-    const picked = viewer.picker.pick(viewer.bodies, this.at.x, this.at.y);
-    const movable = picked && (frame.flags[picked.row]! & BodyFlag.dynamic) !== 0 && store.scene.peek()?.live;
-    viewer.stage.renderer.domElement.style.cursor = movable ? 'grab' : '';
+    viewer.stage.renderer.domElement.style.cursor = this.under(this.at.x, this.at.y).hold ? 'grab' : '';
   }
 }

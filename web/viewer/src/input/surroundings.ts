@@ -2,6 +2,7 @@
 import type { Bodies } from '../draw/bodies';
 import type { CameraRig } from '../draw/camera_rig';
 import type { Picker } from '../draw/picker';
+import type { Softs } from '../draw/softs';
 import type { Stage } from '../draw/stage';
 import type { Playback } from '../playback/playback';
 
@@ -9,6 +10,7 @@ export interface Surroundings {
   readonly playback: Playback;
   readonly stage: Stage;
   readonly bodies: Bodies;
+  readonly softs: Softs;
   readonly picker: Picker;
   readonly rig: CameraRig;
   readonly radius: number; // m, of a ball around the scene

@@ -33,7 +33,8 @@ export class Thrower {
     const { viewer } = this;
     if (!store.scene.peek()?.live) return;
     const { x, y } = viewer.pointer.place;
-    const picked = viewer.picker.pick(viewer.bodies, x, y);
+    const body = viewer.picker.pick(viewer.bodies, x, y);
+    const picked = viewer.picker.pickSoft(viewer.softs, x, y, body?.distance) ?? body;
     if (picked) this.add(picked.point.add(new Vector3(0, 1.5 * this.size, 0)), NOTHING);
   }
 

@@ -58,7 +58,7 @@ export class Playback {
     const answer = await this.exclusively(() => this.client.request('open', { source, settings }, transfer as Transferable[]));
     batch(() => {
       store.scene.value = answer.scene;
-      store.selected.value = null;
+      store.select(null);
       store.report.value = null;
       store.following.value = false;
       store.speed.value = 1;

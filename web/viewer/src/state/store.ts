@@ -1,7 +1,7 @@
 // What the page shows, as signals. The frame itself changes sixty times a second and is no signal: whoever draws it listens with
 // onFrame; the interface reads the few numbers it shows from `shown`, which follows at a reader's pace.
-import { signal } from '@preact/signals';
-import type { BodyReport, SceneDescription, Stats } from '../protocol';
+import { batch, signal } from '@preact/signals';
+import type { BodyReport, SceneDescription, SoftReport, Stats } from '../protocol';
 
 // Whether the page can run scenes; one without the engine plays recordings (vite.config.ts).
 export const hasEngine: boolean = import.meta.env.MODE !== 'recordings';
@@ -14,6 +14,9 @@ export interface SceneEntry {
   thumbnail: string | null; // under scenes/
   bodies: number;
   joints: number;
+  ropes: number;
+  cloths: number;
+  softBodies: number;
 }
 
 export interface Notice {
@@ -35,10 +38,18 @@ export const stats = signal<Stats | null>(null);
 export const framesPerSecond = signal(0);
 
 export const selected = signal<number | null>(null); // key of a body
-export const report = signal<BodyReport | null>(null);
+export const selectedSoft = signal<number | null>(null); // key of a rope, cloth or solid; one of the two at most
+export const report = signal<BodyReport | SoftReport | null>(null);
 export const following = signal(false);
 
 export const panel = signal<Panel | null>(null);
 export const scenesOpen = signal(false);
 export const helpOpen = signal(false);
 export const sceneList = signal<SceneEntry[]>([]);
+
+export function select(body: number | null, soft: number | null = null): void {
+  batch(() => {
+    selected.value = body;
+    selectedSoft.value = soft;
+  });
+}

@@ -1,8 +1,8 @@
-// The body that was clicked, in numbers and in words.
+// The body, or the rope, cloth or solid, that was clicked, in numbers and in words.
 import { Moon, MousePointerClick, Sun, Trash2, Video } from 'lucide-preact';
 import type { JSX } from 'preact';
 import { fixed, short } from '../format';
-import type { BodyReport } from '../protocol';
+import type { BodyReport, SoftReport } from '../protocol';
 import * as store from '../state/store';
 import type { Viewer } from '../viewer';
 import { Row, Section } from './parts';
@@ -11,7 +11,7 @@ const TYPES = { fixed: 'Fixed', kinematic: 'Kinematic', dynamic: 'Dynamic' } as 
 
 export function InspectPanel({ viewer }: { viewer: Viewer }): JSX.Element {
   const report = store.report.value;
-  if (store.selected.value === null || !report) {
+  if (!report) {
     return (
       <div class="empty">
         <MousePointerClick size={28} />
@@ -20,7 +20,42 @@ export function InspectPanel({ viewer }: { viewer: Viewer }): JSX.Element {
       </div>
     );
   }
-  return <Report report={report} viewer={viewer} />;
+  return 'kind' in report ? <OnSoft report={report} viewer={viewer} /> : <Report report={report} viewer={viewer} />;
+}
+
+const KINDS = { rope: 'Rope', cloth: 'Cloth', solid: 'Solid' } as const;
+
+function OnSoft({ report, viewer }: { report: SoftReport; viewer: Viewer }): JSX.Element {
+  const { state } = report;
+  return (
+    <>
+      <div class="body-head">
+        <h2>{report.name}</h2>
+        <span class="badge">{KINDS[report.kind]}</span>
+      </div>
+      {store.scene.value?.live && (
+        <div class="body-actions">
+          <button type="button" class="danger" onClick={() => viewer.playback.command({ do: 'remove_soft', key: report.key })}>
+            <Trash2 size={15} /> Remove
+          </button>
+        </div>
+      )}
+      <Section title="Matter">
+        <dl>
+          <Row name="Vertices">{report.vertices.toLocaleString('en')}</Row>
+          {report.triangles > 0 && <Row name="Triangles of the surface">{report.triangles.toLocaleString('en')}</Row>}
+          {state && (
+            <>
+              <Row name="Mass">{short(state.mass)} kg</Row>
+              <Row name="Kinetic energy">{short(state.kinetic)} J</Row>
+              <Row name="Elastic energy">{short(state.elastic)} J</Row>
+              <Row name="Vertices in contact">{state.contacts.toLocaleString('en')}</Row>
+            </>
+          )}
+        </dl>
+      </Section>
+    </>
+  );
 }
 
 function Report({ report, viewer }: { report: BodyReport; viewer: Viewer }): JSX.Element {

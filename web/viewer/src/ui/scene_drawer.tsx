@@ -60,8 +60,7 @@ export function SceneDrawer({ viewer }: { viewer: Viewer }): JSX.Element | null 
             {entry.thumbnail && <img src={`./scenes/${entry.thumbnail}`} alt="" width="320" height="200" loading="lazy" />}
             <span class="scene-card-name">{entry.name}</span>
             <span class="hint">
-              {plural(entry.bodies, 'body', 'bodies')}
-              {entry.joints > 0 && `, ${plural(entry.joints, 'joint')}`}
+              {contents(entry)}
             </span>
           </button>
         ))}
@@ -69,4 +68,15 @@ export function SceneDrawer({ viewer }: { viewer: Viewer }): JSX.Element | null 
       </div>
     </aside>
   );
+}
+
+// "3 bodies, 1 rope": the bodies, and whatever else there is.
+function contents({ bodies, joints, ropes, cloths, softBodies }: store.SceneEntry): string {
+  const told = [
+    joints > 0 && plural(joints, 'joint'),
+    ropes > 0 && plural(ropes, 'rope'),
+    cloths > 0 && plural(cloths, 'cloth'),
+    softBodies > 0 && plural(softBodies, 'soft body', 'soft bodies'),
+  ].filter((words) => words !== false);
+  return [plural(bodies, 'body', 'bodies'), ...told].join(', ');
 }

@@ -46,6 +46,11 @@ export function TopBar(): JSX.Element {
             </span>
           )}
           <span>{plural(stats.bodies, 'body', 'bodies')}</span>
+          {stats.softs > 0 && (
+            <span class="extra" title="Of ropes, cloths and solids">
+              {plural(stats.softVertices, 'vertex', 'vertices')}
+            </span>
+          )}
           {scene.live && <span class="extra">{stats.awake.toLocaleString('en')} awake</span>}
           {scene.live && <span class="extra">{plural(stats.contactPoints, 'contact')}</span>}
         </div>

@@ -1,10 +1,11 @@
 // The poses of a recording, decoded by the engine in the page. See poses.ts.
-import { ErrorCode, type Gyre, GyreError, type PoseTrack } from 'gyre-physics';
+import { ErrorCode, type Gyre, GyreError, type PoseTrack, type TrackLabel } from 'gyre-physics';
 import type { Surface, Vec3 } from '../protocol';
 import { Describer, typeName } from './describe';
 import { placeOf } from './keys';
-import { type Model, originOf, type PoseFrame, type PoseLabel, type PoseSource } from './poses';
+import { type Model, originOf, type PoseFrame, type PoseLabel, type PoseSource, type SoftSurface } from './poses';
 import { trackOf } from './replayed_world';
+import { softKindName } from './softs';
 
 export class DecodedPoses implements PoseSource {
   readonly frames: number;
@@ -17,11 +18,13 @@ export class DecodedPoses implements PoseSource {
   private readonly describer: Describer;
   private readonly models: ReturnType<PoseTrack['models']>;
   private readonly described: Model[] = [];
+  private readonly softs: SoftSurface[];
 
   constructor(gyre: Gyre, bytes: Uint8Array) {
     this.track = openTrack(gyre, bytes);
     this.describer = new Describer(gyre);
     this.models = this.track.models();
+    this.softs = this.track.softs().map(({ kind, radius, vertices, triangles }) => ({ kind: softKindName(kind), radius, vertices, triangles: triangles.slice() }));
     this.frames = this.track.frameCount();
     this.truncated = this.track.truncated();
     this.timeStep = this.frames > 1 ? this.track.time(1) - this.track.time(0) : 1 / 60;
@@ -32,13 +35,24 @@ export class DecodedPoses implements PoseSource {
 
   frame(index: number): PoseFrame {
     if (index !== this.track.position()) this.track.seek(index);
-    const { step, time, setVersion, ids, models, awake, positions, orientations } = this.track.frame();
+    const { step, time, setVersion, ids, models, awake, positions, orientations, softIds, softs, vertices } = this.track.frame();
     const poses = new Float32Array(7 * ids.length);
     for (let row = 0; row < ids.length; row++) {
       for (let i = 0; i < 3; i++) poses[7 * row + i] = positions[3 * row + i]! - this.origin[i]!;
       for (let i = 0; i < 4; i++) poses[7 * row + 3 + i] = orientations[4 * row + i]!;
     }
-    return { step: Number(step), time, set: Number(setVersion), ids: Float64Array.from(ids, placeOf), models: models.slice(), awake: awake.slice(), poses };
+    return {
+      step: Number(step),
+      time,
+      set: Number(setVersion),
+      ids: Float64Array.from(ids, placeOf),
+      models: models.slice(),
+      awake: awake.slice(),
+      poses,
+      softIds: Float64Array.from(softIds, placeOf),
+      softs: softs.slice(),
+      softVertices: Float32Array.from(vertices, (value, i) => value - this.origin[i % 3]!),
+    };
   }
 
   model(index: number): Model {
@@ -54,8 +68,15 @@ export class DecodedPoses implements PoseSource {
   }
 
   label(id: number): PoseLabel {
-    const { name, colors } = this.track.label(id);
-    return { name, colors: Array.from({ length: colors.count }, (_, i) => (colors.red[i]! << 16) | (colors.green[i]! << 8) | colors.blue[i]!) };
+    return labelOf(this.track.label(id));
+  }
+
+  soft(index: number): SoftSurface {
+    return this.softs[index]!;
+  }
+
+  softLabel(id: number): PoseLabel {
+    return labelOf(this.track.softLabel(id));
   }
 
   vertices(surface: string): Float32Array | undefined {
@@ -69,6 +90,10 @@ export class DecodedPoses implements PoseSource {
   close(): void {
     this.track.dispose();
   }
+}
+
+function labelOf({ name, colors }: TrackLabel): PoseLabel {
+  return { name, colors: Array.from({ length: colors.count }, (_, i) => (colors.red[i]! << 16) | (colors.green[i]! << 8) | colors.blue[i]!) };
 }
 
 function openTrack(gyre: Gyre, bytes: Uint8Array): PoseTrack {

@@ -3,9 +3,18 @@
 import { emptyBox, include, moved, shapeBox, sizeOf } from '../boxes';
 import type { BodyDescription, Box, Quat, Vec3 } from '../protocol';
 
-// `poses`: 7 a body, as in frames.
-export function extent(bodies: readonly BodyDescription[], poses: Float32Array, vertices: (surface: string) => Float32Array | undefined): Box {
+// `poses`: 7 a body, `soft`: 3 a vertex, as in frames.
+export function extent(
+  bodies: readonly BodyDescription[],
+  poses: Float32Array,
+  vertices: (surface: string) => Float32Array | undefined,
+  soft: Float32Array,
+): Box {
   const moving = emptyBox();
+  for (let i = 0; i < soft.length; i += 3) {
+    const place = Array.from(soft.subarray(i, i + 3)) as Vec3;
+    include(moving, { low: place, high: place });
+  }
   const fixed: Box[] = [];
   bodies.forEach((body, row) => {
     const place = Array.from(poses.subarray(7 * row, 7 * row + 3)) as Vec3;

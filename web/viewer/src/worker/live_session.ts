@@ -1,5 +1,5 @@
 // A scene that is simulated here: steps, commands, the way back, settings, and what the page is told after each.
-import { BroadPhaseKind, type Gyre, IntegratorKind, type Scene, SolverKind, type BodyId } from 'gyre-physics';
+import { BroadPhaseKind, type Gyre, IntegratorKind, type Scene, SolverKind, type BodyId, type SoftId } from 'gyre-physics';
 import type {
   BodyDescription,
   BodyReport,
@@ -10,6 +10,8 @@ import type {
   OverlayName,
   RunSettings,
   SceneDescription,
+  SoftDescription,
+  SoftReport,
   Structure,
   Vec3,
   WorldSettings,
@@ -23,6 +25,7 @@ import { Looks } from './looks';
 import { Past } from './past';
 import type { SceneText } from './scene_source';
 import type { Session } from './session';
+import { describeSoft, readSoftVertices, reportOnSoft, softKindName } from './softs';
 import { throwableShape } from './throwables';
 import { readFlags, readLinks, readOverlays, readRows, readStats, reportOn, withNames } from './world_reader';
 
@@ -41,12 +44,15 @@ function valueOf<F extends string, T extends Readonly<Record<string, number>>>(f
   return (key === undefined ? {} : { [field]: kinds[key] }) as { [K in F]?: T[keyof T] };
 }
 
+const equal = (a: Float64Array, b: Float64Array): boolean => a.length === b.length && a.every((value, i) => value === b[i]);
+
 export class LiveSession implements Session {
   private scene: Scene;
   private settings: WorldSettings;
   private readonly origin: Vec3;
   private readonly looks: Looks;
   private readonly keys = new Keys();
+  private readonly softKeys = new Keys();
   private readonly past = new Past();
   private readonly hand = new Hand();
   private readonly describer: Describer;
@@ -54,6 +60,7 @@ export class LiveSession implements Session {
   private overlays: ReadonlySet<OverlayName> = new Set();
   private ids = new Float64Array(0);
   private types = new Uint8Array(0);
+  private softIds = new Float64Array(0);
   private structure = 0;
   private readonly sent = new Set<number>(); // keys of bodies that the page knows
   private appliedHere = 0; // how many of the commands at this step have been done
@@ -74,6 +81,7 @@ export class LiveSession implements Session {
     this.origin = this.middle();
     this.settings = this.readSettings(threads, asked.simdWidth ?? 0);
     this.scene.sceneBodies.forEach((id) => this.keys.key(id));
+    this.scene.sceneSofts.forEach((id) => this.softKeys.key(id));
     this.past.keep({ step: 0, bytes: this.scene.saveSnapshot(), hand: null });
   }
 
@@ -151,7 +159,8 @@ export class LiveSession implements Session {
   private bounds(): Box {
     const { ids, poses } = readRows(this.scene, this.origin);
     const bodies = Array.from(ids, (id) => this.describer.body(this.scene, id, 0, ''));
-    return extent(bodies, poses, (surface) => this.describer.vertices(surface));
+    const soft = readSoftVertices(this.scene, this.scene.softs(), this.origin);
+    return extent(bodies, poses, (surface) => this.describer.vertices(surface), soft);
   }
 
   // -------------------------------------------------------------------------------------------------------------- going on
@@ -176,6 +185,7 @@ export class LiveSession implements Session {
   private forgetFuture(): void {
     this.past.cut(this.step);
     this.keys.keepOnly(this.scene.bodies().ids);
+    this.softKeys.keepOnly(this.scene.softs());
     for (const key of this.thrown.keys()) {
       if (!this.keys.has(key)) this.thrown.delete(key);
     }
@@ -215,12 +225,14 @@ export class LiveSession implements Session {
 
   private do(command: Command): void {
     const { scene } = this;
-    const world = worldPart(scene.sceneBodies[0] ?? scene.bodies().ids[0] ?? 0);
+    const world = this.worldNumber();
     const idOf = (key: number): BodyId => this.keys.id(key, world);
     try {
       switch (command.do) {
         case 'grab':
           return this.hand.grab(scene, idOf(command.key), this.inWorld(command.at));
+        case 'grab_soft':
+          return this.grabSoft(this.softKeys.id(command.key, world), command);
         case 'pull':
           return this.hand.pull(scene, this.inWorld(command.to));
         case 'release':
@@ -230,6 +242,9 @@ export class LiveSession implements Session {
         case 'remove':
           if (this.hand.state?.body === idOf(command.key)) this.hand.release(scene);
           return scene.removeBody(idOf(command.key));
+        case 'remove_soft':
+          if (this.hand.state?.grip) this.hand.release(scene);
+          return scene.removeSoft(this.softKeys.id(command.key, world));
         case 'push':
           return scene.addImpulseAt(idOf(command.key), command.impulse, this.inWorld(command.at));
         case 'wake':
@@ -244,6 +259,21 @@ export class LiveSession implements Session {
     } catch (error) {
       this.problem = (error as Error).message;
     }
+  }
+
+  // As ids of this world carry it; 0 if there is nothing in the world.
+  private worldNumber(): number {
+    return worldPart(this.scene.bodies().ids[0] ?? this.scene.softs()[0] ?? 0);
+  }
+
+  // What the scene holds stays held; the hand is strong enough for the bodies that hang there.
+  private grabSoft(id: SoftId, { key, at }: Extract<Command, { do: 'grab_soft' }>): void {
+    const { scene } = this;
+    if (!id || !scene.softExists(id)) return;
+    const holds = scene.softHolds[key] ?? [];
+    const loads = new Set(holds.map(({ body }) => body).filter((body) => body >= 0));
+    const load = [...loads].reduce((sum, body) => sum + scene.massProperties(scene.sceneBodies[body]!).mass, 0);
+    this.hand.grabSoft(scene, id, this.inWorld(at), new Set(holds.map(({ vertex }) => vertex)), load);
   }
 
   // What sleeps does not feel gravity change by itself.
@@ -284,7 +314,8 @@ export class LiveSession implements Session {
   frame(fresh = false): FrameMessage {
     const { scene } = this;
     const rows = readRows(scene, this.origin);
-    const structure = this.restructure(rows.ids, fresh);
+    const softIds = scene.softs().slice();
+    const structure = this.restructure(rows.ids, softIds, fresh);
     return {
       frame: {
         step: this.step,
@@ -294,6 +325,7 @@ export class LiveSession implements Session {
         poses: rows.poses,
         velocities: rows.velocities,
         flags: readFlags(scene, rows.ids, this.types),
+        softVertices: readSoftVertices(scene, softIds, this.origin),
         stats: readStats(scene, this.stepMs),
         measured: true,
         links: readLinks(scene, this.origin),
@@ -305,11 +337,11 @@ export class LiveSession implements Session {
     };
   }
 
-  private restructure(ids: Float64Array, fresh: boolean): Structure | null {
-    const same = ids.length === this.ids.length && ids.every((id, row) => id === this.ids[row]);
-    if (same && !fresh) return null;
+  private restructure(ids: Float64Array, softIds: Float64Array, fresh: boolean): Structure | null {
+    if (equal(ids, this.ids) && equal(softIds, this.softIds) && !fresh) return null;
     if (fresh) this.sent.clear();
     this.ids = ids as Float64Array<ArrayBuffer>;
+    this.softIds = softIds as Float64Array<ArrayBuffer>;
     this.types = Uint8Array.from(ids, (id) => this.scene.type(id));
     this.structure++;
     const keys = Uint32Array.from(ids, (id) => this.keys.key(id));
@@ -319,7 +351,17 @@ export class LiveSession implements Session {
       this.sent.add(key);
       added.push(this.describeBody(ids[row]!, key));
     });
-    return { number: this.structure, keys, added, surfaces: this.describer.takeSurfaces() };
+    const softs = Array.from(softIds, (id) => this.describeSoft(id));
+    return { number: this.structure, keys, added, surfaces: this.describer.takeSurfaces(), softs };
+  }
+
+  private describeSoft(id: SoftId): SoftDescription {
+    const key = this.softKeys.key(id);
+    return describeSoft(this.scene, id, { key, name: this.softName(id, key), color: this.scene.softColors[key] ?? null });
+  }
+
+  private softName(id: SoftId, key: number): string {
+    return this.scene.softNames[key] ?? `${softKindName(this.scene.softInfo(id).kind)} ${key + 1}`;
   }
 
   private describeBody(id: BodyId, key: number): BodyDescription {
@@ -338,9 +380,14 @@ export class LiveSession implements Session {
   }
 
   inspect(key: number): BodyReport | null {
-    const id = this.keys.id(key, worldPart(this.ids[0] ?? 0));
+    const id = this.keys.id(key, this.worldNumber());
     if (!id || !this.scene.bodyExists(id)) return null;
     return reportOn(this.gyre, this.scene, id, key, this.nameOf(key), withNames(this.scene.explain(id).words, this.ids, (other) => this.nameOf(this.keys.key(other))));
+  }
+
+  inspectSoft(key: number): SoftReport | null {
+    const id = this.softKeys.id(key, this.worldNumber());
+    return id && this.scene.softExists(id) ? reportOnSoft(this.scene, id, key, this.softName(id, key)) : null;
   }
 
   // -------------------------------------------------------------------------------------------------------------- settings
@@ -368,13 +415,13 @@ export class LiveSession implements Session {
       scene.dispose();
       throw error;
     }
-    const before = worldPart(this.ids[0] ?? 0);
+    const before = this.worldNumber();
     this.scene.dispose();
     this.scene = scene;
     this.settings = next;
-    const now = worldPart(scene.bodies().ids[0] ?? 0);
-    this.past.moveWorld(now - before);
-    this.hand.moveWorld(now - before);
+    const by = this.worldNumber() - before;
+    this.past.moveWorld(by);
+    this.hand.moveWorld(by);
   }
 
   hash(): string {

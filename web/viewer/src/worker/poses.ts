@@ -1,16 +1,19 @@
 // Where the poses of a recording come from: from its file, which the engine in the page decodes (decoded_poses.ts), or from a server
 // that decodes it (served_poses.ts). Ids are those of the engine without the number of the world (keys.ts).
-import type { BodyType, ShapeDescription, Surface, Vec3 } from '../protocol';
+import type { BodyType, ShapeDescription, SoftDescription, Surface, Vec3 } from '../protocol';
 
-// One frame: parallel arrays over all bodies that exist in it, by ascending slot.
+// One frame: parallel arrays over all bodies that exist in it, and over all ropes, cloths and solids, by ascending slot.
 export interface PoseFrame {
   step: number; // steps that the world had done
   time: number; // s
-  set: number; // two frames with the same number have the same ids and models
+  set: number; // two frames with the same number have the same ids, models, softIds and softs
   ids: ArrayLike<number>;
   models: ArrayLike<number>;
   awake: ArrayLike<number>;
   poses: Float32Array; // 7 a row, relative to the origin
+  softIds: ArrayLike<number>;
+  softs: ArrayLike<number>; // which surface
+  softVertices: Float32Array; // 3 a vertex, of all of them one after the other, relative to the origin
 }
 
 export interface Model {
@@ -23,6 +26,8 @@ export interface PoseLabel {
   colors: number[]; // of the first shapes, 0xrrggbb
 }
 
+export type SoftSurface = Pick<SoftDescription, 'kind' | 'radius' | 'vertices' | 'triangles'>;
+
 export interface PoseSource {
   readonly frames: number; // at least 1
   readonly truncated: boolean;
@@ -33,6 +38,8 @@ export interface PoseSource {
   frame(index: number): PoseFrame | Promise<PoseFrame>;
   model(index: number): Model;
   label(id: number): PoseLabel;
+  soft(index: number): SoftSurface;
+  softLabel(id: number): PoseLabel;
   vertices(surface: string): Float32Array | undefined;
   takeSurfaces(): Surface[]; // those that it has not given yet
   close(): void;

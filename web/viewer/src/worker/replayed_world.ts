@@ -1,9 +1,10 @@
 // The world of a recording, for what its poses do not tell: contacts, forces, trees, islands, joints, masses, energies. A recording
 // that also holds commands is simulated again beside its track, to the last bit; one that holds poses only has no such world.
 import type { Gyre, Replay, World } from 'gyre-physics';
-import type { BodyDescription, BodyReport, OverlayData, OverlayName, Stats, Vec3 } from '../protocol';
+import type { BodyDescription, BodyReport, OverlayData, OverlayName, SoftReport, Stats, Vec3 } from '../protocol';
 import { placeOf, worldPart } from './keys';
 import type { PoseFrame } from './poses';
+import { reportOnSoft } from './softs';
 import type { WorldAtFrame, WorldBehind } from './world_behind';
 import { readLinks, readOverlays, readRows, readStats, reportOn, withNames } from './world_reader';
 
@@ -115,6 +116,11 @@ class WorldAtStep implements WorldAtFrame {
   mass(id: number): Pick<BodyDescription, 'mass' | 'centerOfMass' | 'inertia'> {
     const { mass, center, inertia } = this.world.massProperties(id + worldPart(this.world.bodies().ids[0] ?? 0));
     return { mass, centerOfMass: center, inertia };
+  }
+
+  softReport(place: number, key: number, name: string): SoftReport | null {
+    const id = this.world.softs().find((one) => placeOf(one) === place);
+    return id === undefined ? null : reportOnSoft(this.world, id, key, name);
   }
 
   report(row: number, key: number, nameOf: (id: number) => string): BodyReport {

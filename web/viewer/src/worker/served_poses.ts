@@ -1,8 +1,8 @@
 // The poses of a recording, decoded by the server that has the file (`gyre view`): with ?scene the server says what there is to see,
 // with ?frames=N it sends the Nth group of frames. Each answer is a JSON text and the arrays that it names by their place behind it
 // (apps/gyre/view/served_recording.h). See poses.ts.
-import type { BodyType, Quat, ShapeDescription, ShapeGeometry, Surface, Vec3 } from '../protocol';
-import type { Model, PoseFrame, PoseLabel, PoseSource } from './poses';
+import type { BodyType, Quat, ShapeDescription, ShapeGeometry, SoftKind, Surface, Vec3 } from '../protocol';
+import type { Model, PoseFrame, PoseLabel, PoseSource, SoftSurface } from './poses';
 import { fans, grid } from './triangles';
 
 type Place = [begin: number, count: number]; // of an array: bytes behind the JSON, elements
@@ -17,6 +17,7 @@ interface SceneAnswer {
   note: string;
   models: { type: BodyType; shapes: { geometry: ShapeGeometry; position: Vec3; rotation: Quat; sensor: boolean }[] }[];
   surfaces: SurfaceAnswer[];
+  softs: { kind: SoftKind; radius: number; vertices: number; triangles: Place }[];
 }
 type SurfaceAnswer = { key: string } & (
   | { kind: 'hull'; vertices: Place; face_offsets: Place; face_indices: Place }
@@ -25,8 +26,13 @@ type SurfaceAnswer = { key: string } & (
 );
 
 interface FramesAnswer {
-  frames: { step: number; time: number; set: number; poses: Place; awake: Place }[];
-  sets: Record<string, { ids: number[]; models: number[]; names: string[]; colors: number[][] }>;
+  frames: { step: number; time: number; set: number; poses: Place; awake: Place; vertices: Place }[];
+  sets: Record<string, Members & { models: number[]; soft: Members & { surfaces: number[] } }>;
+}
+interface Members {
+  ids: number[];
+  names: string[];
+  colors: number[][];
 }
 
 const MOST_KEPT = 128e6; // bytes of groups that were fetched
@@ -65,9 +71,11 @@ export class ServedPoses implements PoseSource {
   readonly accuracy: { position: number; orientation: number };
   readonly note: string;
   private readonly models: Model[];
+  private readonly softs: SoftSurface[];
   private readonly surfaces: Map<string, Surface>;
   private readonly perGroup: number;
   private readonly labels = new Map<number, PoseLabel>();
+  private readonly softLabels = new Map<number, PoseLabel>();
   private readonly groups = new Map<number, Group | Promise<Group>>(); // the one used last comes last
   private surfacesTaken = false;
 
@@ -87,6 +95,7 @@ export class ServedPoses implements PoseSource {
       type,
       shapes: shapes.map((shape): ShapeDescription => ({ ...shape, material: '', color: null })),
     }));
+    this.softs = json.softs.map((soft) => ({ ...soft, triangles: answer.integers(soft.triangles) }));
     this.surfaces = new Map(json.surfaces.map((surface) => [surface.key, triangles(surface, answer)]));
   }
 
@@ -114,8 +123,9 @@ export class ServedPoses implements PoseSource {
   private async fetchGroup(number: number): Promise<Group> {
     try {
       const group = await ask<FramesAnswer>(this.url, `frames=${number}`);
-      for (const { ids, names, colors } of Object.values(group.json.sets)) {
-        ids.forEach((id, row) => this.labels.set(id, { name: names[row]!, colors: colors[row]! }));
+      for (const set of Object.values(group.json.sets)) {
+        keepLabels(this.labels, set);
+        keepLabels(this.softLabels, set.soft);
       }
       if (this.groups.has(number)) this.groups.set(number, group);
       this.forgetSome();
@@ -138,9 +148,10 @@ export class ServedPoses implements PoseSource {
   }
 
   private read(group: Group, inside: number): PoseFrame {
-    const { step, time, set, poses, awake } = group.json.frames[inside]!;
-    const { ids, models } = group.json.sets[set]!;
-    return { step, time, set, ids, models, awake: group.octets(awake), poses: group.floats(poses) };
+    const { step, time, set, poses, awake, vertices } = group.json.frames[inside]!;
+    const { ids, models, soft } = group.json.sets[set]!;
+    const softly = { softIds: soft.ids, softs: soft.surfaces, softVertices: group.floats(vertices) };
+    return { step, time, set, ids, models, awake: group.octets(awake), poses: group.floats(poses), ...softly };
   }
 
   model(index: number): Model {
@@ -149,6 +160,14 @@ export class ServedPoses implements PoseSource {
 
   label(id: number): PoseLabel {
     return this.labels.get(id) ?? { name: '', colors: [] };
+  }
+
+  soft(index: number): SoftSurface {
+    return this.softs[index]!;
+  }
+
+  softLabel(id: number): PoseLabel {
+    return this.softLabels.get(id) ?? { name: '', colors: [] };
   }
 
   vertices(surface: string): Float32Array | undefined {
@@ -164,6 +183,10 @@ export class ServedPoses implements PoseSource {
   close(): void {
     this.groups.clear();
   }
+}
+
+function keepLabels(labels: Map<number, PoseLabel>, { ids, names, colors }: Members): void {
+  ids.forEach((id, row) => labels.set(id, { name: names[row]!, colors: colors[row]! }));
 }
 
 async function ask<T>(url: string, question: string): Promise<Answer<T>> {

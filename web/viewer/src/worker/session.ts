@@ -1,5 +1,5 @@
 // What is open: a scene that is simulated (live_session.ts) or a recording that is played (track_session.ts).
-import type { BodyReport, Command, FrameMessage, NewWorldSettings, OverlayName, SceneDescription } from '../protocol';
+import type { BodyReport, Command, FrameMessage, NewWorldSettings, OverlayName, SceneDescription, SoftReport } from '../protocol';
 
 export interface Session {
   describe(): SceneDescription;
@@ -10,6 +10,7 @@ export interface Session {
   setOverlays(names: readonly OverlayName[]): void;
   configure(settings: NewWorldSettings): void;
   inspect(key: number): BodyReport | null;
+  inspectSoft(key: number): SoftReport | null;
   hash(): string;
   save(what: 'scene' | 'snapshot'): { name: string; bytes: Uint8Array };
   close(): void;

@@ -12,6 +12,8 @@ import {
   type OverlayName,
   type Quat,
   type SceneDescription,
+  type SoftDescription,
+  type SoftReport,
   type Stats,
   type Structure,
   type Vec3,
@@ -24,7 +26,7 @@ import type { WorldAtFrame, WorldBehind } from './world_behind';
 
 const NO_STATS: Stats = {
   stepMs: 0, stageMs: [], bodies: 0, awake: 0, pairs: 0, touching: 0, contactPoints: 0, kinetic: 0, potential: 0, elastic: 0,
-  linear: [0, 0, 0], angular: [0, 0, 0], maxPenetration: 0,
+  linear: [0, 0, 0], angular: [0, 0, 0], maxPenetration: 0, softs: 0, softVertices: 0,
 };
 
 const NEEDS_WORLD: ReadonlySet<OverlayName> = new Set<OverlayName>(['contacts', 'friction', 'bounds', 'tree', 'islands', 'mass', 'joints', 'velocities']);
@@ -37,6 +39,7 @@ interface SceneNote {
 
 export class TrackSession implements Session {
   private readonly keys = new Keys();
+  private readonly softKeys = new Keys();
   private readonly note: SceneNote;
   private readonly sent = new Map<number, number>(); // key to model, as the page knows it
   private set = -1;
@@ -86,9 +89,9 @@ export class TrackSession implements Session {
   }
 
   private bounds(): Box {
-    const { ids, models, poses } = this.at;
+    const { ids, models, poses, softVertices } = this.at;
     const bodies = Array.from(ids, (id, row) => this.describeBody(id, 0, models[row]!));
-    return extent(bodies, poses, (surface) => this.source.vertices(surface));
+    return extent(bodies, poses, (surface) => this.source.vertices(surface), softVertices);
   }
 
   advance(steps: number, _commands: readonly Command[]): Promise<FrameMessage> {
@@ -103,7 +106,7 @@ export class TrackSession implements Session {
   }
 
   frame(fresh = false): FrameMessage {
-    const { ids, models, awake, poses, time } = this.at;
+    const { ids, models, awake, poses, time, softIds, softVertices } = this.at;
     const world = this.world([...this.overlays].some((name) => NEEDS_WORLD.has(name)));
     const structure = this.restructure(world, fresh);
     const count = ids.length;
@@ -123,7 +126,8 @@ export class TrackSession implements Session {
         poses: poses.slice(), // the page takes it over
         velocities: world ? world.velocities() : new Float32Array(6 * count),
         flags,
-        stats: world ? world.stats() : { ...NO_STATS, bodies: count, awake: awakeCount },
+        softVertices: softVertices.slice(),
+        stats: world ? world.stats() : { ...NO_STATS, bodies: count, awake: awakeCount, softs: softIds.length, softVertices: softVertices.length / 3 },
         measured: world !== null,
         links: world ? world.links() : new Float32Array(0),
         overlays: world ? world.overlays(this.overlays) : {},
@@ -153,7 +157,20 @@ export class TrackSession implements Session {
       this.sent.set(key, model);
       added.push({ ...this.describeBody(ids[row]!, key, model), ...(world ? world.mass(ids[row]!) : {}) });
     });
-    return { number: ++this.structure, keys, added, surfaces: this.source.takeSurfaces() };
+    return { number: ++this.structure, keys, added, surfaces: this.source.takeSurfaces(), softs: this.describeSofts() };
+  }
+
+  private describeSofts(): SoftDescription[] {
+    const { softIds, softs } = this.at;
+    return Array.from(softIds, (id, i) => {
+      const key = this.softKeys.key(id);
+      const surface = this.source.soft(softs[i]!);
+      return { ...surface, key, name: this.softName(id, surface.kind), color: this.source.softLabel(id).colors[0] ?? null };
+    });
+  }
+
+  private softName(id: number, kind: string): string {
+    return this.source.softLabel(id).name || `${kind} ${this.softKeys.key(id) + 1}`;
   }
 
   private nameOf(id: number): string {
@@ -199,6 +216,16 @@ export class TrackSession implements Session {
       kinetic: 0,
       words: '',
     };
+  }
+
+  inspectSoft(key: number): SoftReport | null {
+    const { softIds, softs } = this.at;
+    const row = Array.prototype.findIndex.call(softIds, (id: number) => this.softKeys.key(id) === key);
+    if (row < 0) return null;
+    const { kind, vertices, triangles } = this.source.soft(softs[row]!);
+    const name = this.softName(softIds[row]!, kind);
+    const report = this.world(true)?.softReport(softIds[row]!, key, name);
+    return report ?? { key, name, kind, vertices, triangles: triangles.length / 3, state: null };
   }
 
   hash(): string {

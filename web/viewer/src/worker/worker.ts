@@ -31,6 +31,7 @@ const handlers: Handlers = {
     return { scene: opened().describe(), frame: opened().frame() };
   },
   inspect: ({ key }) => opened().inspect(key),
+  inspect_soft: ({ key }) => opened().inspectSoft(key),
   hash: () => opened().hash(),
   save: ({ what }) => opened().save(what),
 };
@@ -39,7 +40,7 @@ const handlers: Handlers = {
 function handedOver(answer: unknown): Transferable[] {
   const message = (answer as { frame?: unknown } | null)?.frame;
   const frame = (message && typeof message === 'object' && 'frame' in message ? (message as FrameMessage).frame : message) as FrameMessage['frame'] | undefined;
-  return frame?.poses ? [frame.poses.buffer as ArrayBuffer, frame.velocities.buffer as ArrayBuffer, frame.flags.buffer as ArrayBuffer] : [];
+  return frame?.poses ? ([frame.poses, frame.velocities, frame.flags, frame.softVertices].map(({ buffer }) => buffer) as ArrayBuffer[]) : [];
 }
 
 let last: Promise<void> = Promise.resolve();

@@ -55,20 +55,22 @@ export function readStats(world: World, stepMs: number): Stats {
     contactPoints: counts.contactPoints,
     kinetic: energy.kinetic,
     potential: energy.potential,
-    elastic: energy.elastic,
+    elastic: energy.elastic + energy.softElastic,
     linear: momentum.linear,
     angular: momentum.angular,
     maxPenetration: world.maxPenetration(),
+    softs: counts.softs,
+    softVertices: counts.softVertices,
   };
 }
 
-// The anchors of distance joints.
+// The anchors of distance joints, and of the hand on soft matter.
 export function readLinks(world: World, origin: Vec3): Float32Array {
   if (world.stats().joints === 0) return new Float32Array(0);
   const { kinds, anchors } = world.readJoints(origin);
   const links: number[] = [];
   kinds.forEach((kind, i) => {
-    if (kind === JointKind.distance) links.push(...anchors.subarray(6 * i, 6 * i + 6));
+    if (kind === JointKind.distance || kind === JointKind.mouse) links.push(...anchors.subarray(6 * i, 6 * i + 6));
   });
   return Float32Array.from(links);
 }
