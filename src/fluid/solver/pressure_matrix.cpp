@@ -168,6 +168,28 @@ void find_transfer(PressureMatrix& matrix, int fine_index, const GasKernels& ker
   });
 }
 
+void find_cut_rows(const GridShape& shape, const GasSolids& solids, TaskSystem& tasks,
+                   PressureMatrix& matrix) {
+  matrix.cut_row.clear();
+  if (!solids.present()) return;
+  matrix.cut_row.resize(std::size_t(shape.rows()), std::uint8_t(0));
+  const auto any_below_one = [](const float* open, int count) {
+    int any = 0;
+    for (int i = 0; i < count; ++i) any |= open[i] < 1.0f ? 1 : 0;
+    return any != 0;
+  };
+  each_row(shape, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
+    bool cut = any_below_one(solids.open[0].data() + c, shape.cells[0] + 1);
+    for (int axis = 1; axis < 3; ++axis) {
+      const float* const lower = solids.open[axis].data() + c;
+      cut = cut || any_below_one(lower, shape.cells[0]) ||
+            any_below_one(lower + shape.stride(axis), shape.cells[0]);
+    }
+    for (int i = c; i < c + shape.cells[0] && !cut; ++i) cut = solids.solid[i] != 0;
+    matrix.cut_row[j + k * shape.cells[1]] = cut ? 1 : 0;
+  });
+}
+
 bool all_equal(const float* from, int begin, int end) {
   for (int i = begin + 1; i < end; ++i)
     if (from[i] != from[begin]) return false;
@@ -200,6 +222,7 @@ void build_pressure_matrix(const GasBox& box, const GridShape& shape, const GasS
     matrix.levels[0].periodic[axis] = box.periodic(axis) && !box.flat(axis);
     find_faces(box, solids, axis, tasks, matrix.levels[0]);
   }
+  find_cut_rows(shape, solids, tasks, matrix);
   matrix.active_cells = find_diagonals(tasks, matrix.levels[0]);
   matrix.count = 1;
   while (matrix.count < PressureMatrix::kMaxLevels) {

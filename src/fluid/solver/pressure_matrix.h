@@ -29,6 +29,7 @@ struct PressureMatrix {
   bool singular = false;              // no side is open: the pressure is known but for a constant
   int active_cells = 0;               // that have an equation
   std::uint64_t solids_revision = 0;  // from which it was made; 0: from none
+  Array<std::uint8_t> cut_row;        // rows of cells: 1 where a solid cuts a face; empty without solids
   // Pockets (fluid/solver/pressure_pockets.h), found only once a solve has failed for want of them.
   bool has_pockets = false;
   Array<std::int32_t> pocket;            // of each cell, -1: none

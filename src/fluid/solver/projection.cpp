@@ -39,19 +39,25 @@ void find_cut_inflow(const GasPass& pass, int c, int j, int k, float* to) {
 
 // The net inflow of cells over their volume.
 void find_inflow(const GasPass& pass, float* to) {
-  if (pass.solids.present()) {
-    each_row(pass, -1, [&](int c, int j, int k) { find_cut_inflow(pass, c, j, k, to + c); });
-    return;
-  }
   const PressureLevel level = pass.memory.matrix.level(0);
+  const Array<std::uint8_t>& cut = pass.memory.matrix.cut_row;
   const float* velocity[3];
   float scale[3];
   for (int axis = 0; axis < 3; ++axis) {
     velocity[axis] = pass.grid.velocity[axis].data();
     scale[axis] = pass.flat(axis) ? 0.0f : 1.0f / pass.edge(axis);
   }
+  const int rows_y = pass.shape().cells[1];
   for_row_blocks(rows_of(pass.shape(), -1), pass.tasks, [&](int begin, int end) {
-    pass.kernels.find_inflow(level, velocity, scale, to, begin, end);
+    if (cut.empty()) return pass.kernels.find_inflow(level, velocity, scale, to, begin, end);
+    for (int row = begin; row < end; ++row) {
+      const int k = row / rows_y, j = row - k * rows_y, c = pass.shape().row(j, k);
+      if (cut[row] != 0) {
+        find_cut_inflow(pass, c, j, k, to + c);
+      } else {
+        pass.kernels.find_inflow(level, velocity, scale, to, row, row + 1);
+      }
+    }
   });
 }
 
@@ -119,7 +125,12 @@ void set_walls(const GasPass& pass) {
     const float* const face = pass.memory.matrix.levels[0].face[axis].data();
     const std::int16_t* const label = pass.solids.label[axis].data();
     const float* const solid = pass.solids.velocity[axis].data();
-    each_row(pass, axis, [&](int c, int, int) {
+    const auto is_cut = [&](int j, int k) {
+      return j >= 0 && j < shape.cells[1] && k >= 0 && k < shape.cells[2] &&
+             pass.memory.matrix.cut_row[j + k * shape.cells[1]] != 0;
+    };
+    each_row(pass, axis, [&](int c, int j, int k) {
+      if (!is_cut(j, k) && !is_cut(axis == 1 ? j - 1 : j, axis == 2 ? k - 1 : k)) return;
       for (int i = c; i < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
         if (face[i] == 0.0f && label[i] >= 0) velocity[i] = solid[i];
       }
