@@ -128,7 +128,9 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
   if (!row.is_contact) {
     row.arm = rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
     const DVec3 point = center_now(w, row.body) + DVec3(row.arm);
-    row.bias = (kErrorShare / s.h) * difference(place, point);
+    // Each of several vertices moves a part of the body; together they would remove more than there is.
+    const float share = kErrorShare / float(s.scratch->grips[row.touched]);
+    row.bias = (share / s.h) * difference(place, point);
   } else {
     const SoftContact& contact = entry.contacts[row.source];
     row.normal = turned_now(w, contact.body, contact.normal);

@@ -288,7 +288,7 @@ TEST(SoftMatter, BadDefinitionsAreRefusedWithTheReason) {
   refused([&] { return world.add_cloth({.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, .triangles = {0, 1, 2}}); }, "no area");
   refused([&] { return world.add_cloth({.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, .triangles = {0, 1, 3}}); }, "has vertex 3");
   refused([&] { return world.add_cloth({.grid = ClothGrid{}, .area_density = 0.0f}); }, "area_density is 0");
-  refused([&] { return world.add_solid({}); }, "neither box nor vertices");
+  refused([&] { return world.add_solid({}); }, "neither box nor surface nor vertices");
   refused([&] { return world.add_solid({.box = SolidBox{}, .poisson_ratio = 0.5f}); }, "poisson_ratio is 0.5");
   refused([&] { return world.add_solid({.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, .tetrahedra = {0, 1, 2, 3}}); },
           "no volume");
