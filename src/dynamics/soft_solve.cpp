@@ -18,8 +18,8 @@ constexpr double kContactTolerance = 1.0e-3;
 constexpr float kGripShare = 1.0e3f;
 // How often a sub-step is solved because contacts open or begin to slide.
 constexpr int kGripPasses = 3;
-// The share of their impulse that attachments which share a body lose before each sub-step: below it two inextensible ropes on one plank
-// gain energy; a load of its weight hangs a tenth of a millimetre lower for it.
+// The share of their impulse that attachments which share a body lose before each sub-step. Without it planks on several inextensible ropes
+// gain energy; with it the load hangs a little lower.
 constexpr float kSharedLeak = 0.1f;
 // A contact lets go when the vertex is further away than this share of the length of an edge.
 constexpr float kReleaseShare = 0.02f;

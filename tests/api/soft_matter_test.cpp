@@ -83,6 +83,35 @@ TEST(SoftMatter, ARopeCarriesTenThousandTimesItsMass) {
   }
 }
 
+// Planks on four ropes of rods each, two on either side: more attachments than the planks have freedoms.
+TEST(SoftMatter, ABridgeOfRodsGainsNoEnergy) {
+  World world = make_world();
+  const auto height = [](double x) { return 2.0 + 0.3 * (x * x / 3.0625 - 1.0); };
+  std::vector<BodyId> planks;
+  for (int k = 0; k < 6; ++k) {
+    const double x = -1.25 + 0.5 * k;
+    planks.push_back(add_box(world, {x, height(x), 0}, {0.2f, 0.025f, 0.7f}, 14.0f));
+  }
+  for (const double z : {-0.6, -0.58, 0.58, 0.6}) {
+    RopeDef def{.linear_density = 0.5f};
+    for (int i = 0; i <= 28; ++i) def.points.push_back({-1.75 + 0.125 * i, height(-1.75 + 0.125 * i), z});
+    const SoftId rope = world.add_rope(def);
+    world.pin(rope, 0), world.pin(rope, 28);
+    for (int k = 0; k < 6; ++k) world.attach(rope, 4 + 4 * k, planks[std::size_t(k)]);
+  }
+  add_ball(world, {0.1, 2.6, 0.1}, 0.25f, 20.0f);
+  const auto total = [&] {
+    const Energy e = world.energy();
+    return e.kinetic + e.potential + e.soft_elastic;
+  };
+  const double before = total();
+  for (int i = 0; i < 240; ++i) {
+    world.step(kStep);
+    ASSERT_LT(total(), before + 1.0) << i;
+  }
+  EXPECT_GT(world.pose(planks[3]).position.y, 1.5);
+}
+
 // Balls from a gram to half a ton fall onto a sheet of 0.8 kg whose rim is held: none falls through, and no energy comes from nothing.
 TEST(SoftMatter, ATrampolineThrowsBallsOfAnyMass) {
   for (const float mass : {0.001f, 1.0f, 500.0f}) {
