@@ -179,7 +179,9 @@ struct SceneCloth : SceneSoft {
   int mesh = -1;  // none: the grid of the definition
 };
 struct SceneSoftBody : SceneSoft {
-  SolidDef def;
+  SolidDef def;         // the surface stays empty
+  int mesh = -1;        // the closed surface that is filled with tetrahedra; none: the box or tetrahedra of the definition
+  int resolution = 16;  // of a mesh: cells along the longest side of its box
   std::optional<FieldBounds> pinned_region;  // vertices in this box of the world at the start stay where they are
 };
 

@@ -33,20 +33,24 @@ SceneColor resolved_color(const Scene& scene, std::size_t body, std::size_t shap
   return automatic_color(owner.def.type, body);
 }
 
-SceneColor resolved_color(const Scene& scene, SoftKind kind, std::size_t index) {
-  const SceneSoft* soft = nullptr;
-  std::size_t before = 0;  // of other kinds
-  if (kind == SoftKind::rope) {
-    if (index < scene.ropes.size()) soft = &scene.ropes[index];
-  } else if (kind == SoftKind::cloth) {
-    before = scene.ropes.size();
-    if (index < scene.cloths.size()) soft = &scene.cloths[index];
-  } else {
-    before = scene.ropes.size() + scene.cloths.size();
-    if (index < scene.soft_bodies.size()) soft = &scene.soft_bodies[index];
+SceneColor resolved_soft_color(const Scene& scene, SoftKind kind, std::size_t index) {
+  // All of them go on in the cycle where the bodies end.
+  std::size_t place = scene.bodies.size() + index;
+  std::optional<SceneColor> given;
+  switch (kind) {
+    case SoftKind::rope:
+      given = scene.ropes[index].color;
+      break;
+    case SoftKind::cloth:
+      given = scene.cloths[index].color;
+      place += scene.ropes.size();
+      break;
+    case SoftKind::solid:
+      given = scene.soft_bodies[index].color;
+      place += scene.ropes.size() + scene.cloths.size();
+      break;
   }
-  if (soft == nullptr) return automatic_color(BodyType::fixed, 0);
-  return soft->color ? *soft->color : automatic_color(BodyType::dynamic, before + index);
+  return given.value_or(automatic_color(BodyType::dynamic, place));
 }
 
 }  // namespace gyre

@@ -19,7 +19,7 @@ constexpr SceneColor kGroundColor{214, 216, 220};
 
 // The first of these that is given: the shape's, the body's, its material's; else the automatic one.
 SceneColor resolved_color(const Scene& scene, std::size_t body, std::size_t shape);
-// Of a rope, cloth or soft body, by its number among its kind: its own, else the automatic one. Grey if there is none of that number.
-SceneColor resolved_color(const Scene& scene, SoftKind kind, std::size_t index);
+// Of rope, cloth or soft body number `index` of the scene: the colour that is given, else the automatic one.
+SceneColor resolved_soft_color(const Scene& scene, SoftKind kind, std::size_t index);
 
 }  // namespace gyre

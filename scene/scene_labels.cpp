@@ -1,8 +1,10 @@
 // What a recorder is told of a scene. See scene_labels.h.
 #include "scene/scene_labels.h"
 
+#include "scene/json_document.h"
 #include "scene/json_writer.h"
 #include "scene/scene_color.h"
+#include "scene/scene_reader.h"
 
 namespace gyre {
 
@@ -22,6 +24,20 @@ std::string scene_note(const Scene& scene) {
   return json.take();
 }
 
+// A scene of nothing but the view is read as any scene is.
+std::optional<SceneView> view_of_note(std::string_view note) {
+  std::string text;
+  try {
+    const Json members = parse_document(note, "note", {});
+    if (!members.is_object() || !members.contains("view")) return {};
+    text = Json{{"gyre_scene", 1}, {"view", members.at("view")}}.dump();
+  } catch (const SceneError&) {
+    return {};
+  }
+  const SceneResult<Scene> scene = read_scene(text);
+  return scene ? scene->view : std::nullopt;
+}
+
 void label_bodies(Recorder& recorder, const SceneRunner& runner) {
   const Scene& scene = runner.scene();
   recorder.note("scene", scene_note(scene));
@@ -36,9 +52,9 @@ void label_bodies(Recorder& recorder, const SceneRunner& runner) {
   }
   runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
     const SoftInfo info = runner.world().soft_info(id);
-    const SceneColor color = resolved_color(scene, info.kind, std::size_t(info.user_data));
-    colors.assign(1, {color.red, color.green, color.blue});
-    recorder.label_soft(id, soft.name, colors);
+    const SceneColor color = resolved_soft_color(scene, info.kind, std::size_t(info.user_data));
+    const TrackColor stored{color.red, color.green, color.blue};
+    recorder.label_soft(id, soft.name, {&stored, 1});
   });
 }
 

@@ -17,6 +17,7 @@ namespace {
 
 const std::string kMeshes =
     R"("meshes": {"sheet": {"vertices": [[0,0,0],[1,0,0],[1,0,1],[0,0,1]], "triangles": [[0,2,1],[0,3,2]]},)"
+    R"( "ball": {"vertices": [[1,0,0],[-1,0,0],[0,1,0],[0,-1,0],[0,0,1],[0,0,-1]], "triangles": [[0,2,4],[2,1,4],[1,3,4],[3,0,4],[2,0,5],[1,2,5],[3,1,5],[0,3,5]]},)"
     R"( "line": {"vertices": [[0,0,0],[1,0,0],[2,0,0],[0,0,1]], "triangles": [[0,1,2],[0,3,1]]}}, )";
 const std::string kBodies =
     R"("bodies": [{"name": "pole", "type": "static"}, {"name": "load", "position": [2, 0, 0], "shapes": [)"
@@ -164,6 +165,15 @@ TEST(SceneSoft, RefusesBadSoftBodies) {
       {tets_with("[[0, 1, 2, 3]]"), at + "/vertices/4", "vertices[4]", "no mass"},
       {solid_with(R"("vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]])"), at + "/tetrahedra", "found nothing",
        "\"tetrahedra\""},
+      {solid_with(R"("mesh": "bear")"), at + "/mesh", "\"bear\"", "the name of a mesh"},
+      {solid_with(R"("mesh": "sheet")"), at + "/mesh", "is open", "closed surfaces"},
+      {solid_with(R"("mesh": "ball", "resolution": 1)"), at + "/resolution", "found 1", "from 2 to 128"},
+      {solid_with(R"("mesh": "ball", "resolution": 129)"), at + "/resolution", "found 129", "at most 128"},
+      {solid_with(R"("mesh": "ball", "box": {})"), at + "/box", "beside \"mesh\"", "\"tetrahedra\""},
+      {solid_with(R"("mesh": "ball", "resolution": 4, "pinned": [0, 9999])"), at + "/pinned/1",
+       "found vertex 9999", "from 0 to"},
+      {solid_with(R"("mesh": "ball", "resolution": 4, "state": {"positions": [[0,0,0]]})"),
+       at + "/state/positions", "has 1 entries", "there are"},
       {box_with(R"("density": 0)"), at + "/density", "found 0", "above 0"},
       {box_with(R"("young_modulus": 0)"), at + "/young_modulus", "found 0", "above 0"},
       {box_with(R"("poisson_ratio": 0.5)"), at + "/poisson_ratio", "found 0.5", "below 0.5"},
@@ -240,7 +250,7 @@ const std::string kAll = R"({"gyre_scene": 1, "name": "all", )" + kMeshes + kBod
                          R"("ropes": [
       {"name": "a", "points": [[0, 3, 0], [0.1, 3, 0], [2, 0, 0]], "segments": 5, "radius": 0.01, "linear_density": 0.3, "links": "springs",
        "stretch_stiffness": 1234.5, "bend_stiffness": 0.02, "attach": [{"end": 0, "body": "world"}, {"end": 1, "body": "load"}],
-       "pinned_to": [{"vertex": 2, "body": "pole"}], "integrator": "verlet", "damping": 0.03, "static_friction": 0.5,
+       "pinned_to": [{"vertex": 2, "body": "pole"}], "integrator": "verlet", "damping": 0.001, "static_friction": 0.5,
        "dynamic_friction": 0.1, "color": "#102030"},
       {"name": "b", "points": [[0, 3, 1], [1, 3, 1]], "state": {"positions": [[0, 3.1, 1], [1, 3, 1.123456789012345]], "velocities": null}}],
     "cloths": [
@@ -315,7 +325,7 @@ TEST(SceneSoft, WhatIsHeldStaysWhereItIs) {
   const SoftVertices c = runner.world().vertices(runner.cloths()[0]);
   EXPECT_EQ(c.position(0), (DVec3{0, 5, 0}));
   EXPECT_EQ(c.position(5), (DVec3{2, 5, 1}));
-  EXPECT_LT(c.position(1).y, 4.99);
+  EXPECT_LT(c.position(1).y, 4.999);
   // Of the box, vertices at the top with z below the middle are in the region.
   const SoftVertices e = runner.world().vertices(runner.soft_bodies()[0]);
   for (std::size_t i = 0; i < 12; ++i) {
@@ -341,8 +351,9 @@ TEST(SceneSoft, GoesOnFromAFinalScene) {
         EXPECT_LT(length(a.position(i) - b.position(i)), within) << k << " " << i;
     }
   };
-  compare(whole.ropes(), rest.ropes(), 1e-3);
-  compare(whole.cloths(), rest.cloths(), 1e-3);
+  // One of each is attached to the load, and what the solver remembers of that is forgotten.
+  compare(whole.ropes(), rest.ropes(), 5e-3);
+  compare(whole.cloths(), rest.cloths(), 5e-3);
   compare(whole.soft_bodies(), rest.soft_bodies(), 1e-3);
   // The shape at rest stays, and what a region pinned stays pinned though more has moved into it.
   const SceneResult<Scene> scene = read_scene(text);
@@ -350,6 +361,23 @@ TEST(SceneSoft, GoesOnFromAFinalScene) {
   EXPECT_EQ(scene->ropes[0].def.points[2], (DVec3{2, 0, 0}));
   EXPECT_FALSE(scene->soft_bodies[0].pinned_region);
   EXPECT_EQ(scene->soft_bodies[0].holds, (std::vector<SceneHold>{{3, -1}, {4, -1}, {5, -1}}));
+}
+
+// Explicit schemes without contacts remember nothing: the motion is the same to the bit.
+TEST(SceneSoft, ExplicitSchemesGoOnExactly) {
+  for (const char* kind : {"explicit_euler", "semi_implicit_euler", "rk4"}) {
+    const std::string text = grid_with(std::string(R"("pinned": [0], "integrator": ")") + kind + "\"");
+    const SceneRunner whole = run(text, 20), half = run(text, 10);
+    const SceneRunner rest = run(write_scene(half.final_scene()), 10);
+    const SoftVertices a = whole.world().vertices(whole.cloths()[0]),
+                       b = rest.world().vertices(rest.cloths()[0]);
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_LT(a.y[14], -0.1) << kind;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a.position(i), b.position(i)) << kind << " " << i;
+      EXPECT_EQ(a.velocity(i), b.velocity(i)) << kind << " " << i;
+    }
+  }
 }
 
 TEST(SceneSoft, WhatIsRemovedIsLeftOutOfTheFinalScene) {
@@ -363,20 +391,34 @@ TEST(SceneSoft, WhatIsRemovedIsLeftOutOfTheFinalScene) {
   EXPECT_TRUE(read_scene(write_scene(left)));
 }
 
+TEST(SceneSoft, AMeshIsFilled) {
+  const SceneRunner runner = run(
+      solid_with(R"("mesh": "ball", "resolution": 6, "density": 300, "position": [0, 5, 0], "pinned": [0])"),
+      3);
+  const SoftInfo info = runner.world().soft_info(runner.soft_bodies()[0]);
+  EXPECT_NEAR(info.mass, 300 * 4.0 / 3, 0.1);  // of an octahedron with radius 1
+  EXPECT_GT(info.vertices, 30);
+  const std::string text = write_scene(runner.final_scene());
+  const SceneRunner rest = run(text, 1);
+  EXPECT_EQ(rest.world().soft_info(rest.soft_bodies()[0]).vertices, info.vertices);
+  EXPECT_EQ(rest.scene().soft_bodies[0].resolution, 6);
+  EXPECT_EQ(rest.scene().soft_bodies[0].holds.size(), 1u);
+}
+
 // The lesson of the course: of equal chains explicit Euler explodes, the others do not.
 TEST(SceneSoft, ExplicitEulerExplodesInTheSceneOfIntegrators) {
   SceneResult<Scene> scene = load_scene(GYRE_SOURCE_DIR "/scenes/soft/integrators.gyre.json");
   ASSERT_TRUE(scene) << scene.error().text();
   SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), "integrators");
   ASSERT_TRUE(runner) << runner.error().text();
-  for (int i = 0; i < 360; ++i) ASSERT_TRUE(runner->step()) << runner->problem();
+  for (int i = 0; i < 540; ++i) ASSERT_TRUE(runner->step()) << runner->problem();
   runner->for_each_soft([&](const SceneSoft& soft, SoftId id) {
     double farthest = 0;
     const SoftVertices vertices = runner->world().vertices(id);
     for (std::size_t i = 0; i < vertices.size(); ++i)
       farthest = std::fmax(farthest, length(vertices.position(i) - vertices.position(0)));
     if (soft.name == "explicit euler") {
-      EXPECT_GT(farthest, 20) << soft.name;
+      EXPECT_GT(farthest, 50) << soft.name;
     } else {
       EXPECT_LT(farthest, 4) << soft.name;
     }

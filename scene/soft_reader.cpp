@@ -7,6 +7,7 @@ namespace gyre {
 namespace {
 
 constexpr std::int64_t kMostVertices = 1 << 20;  // of one of them
+constexpr int kUnknown = -1;                     // how many vertices there are; the world checks then
 constexpr double kMostStiffness = 1.0e12;
 constexpr Range kNotNegative = Range::between(0, kMostStiffness);
 constexpr Range kPositive = Range::above_to(0, kMostStiffness);
@@ -37,25 +38,25 @@ void read_start(SceneReading& reading, Members& members, SceneSoft& soft) {
   members.read("color", soft.color);
 }
 
-void read_state(const Field& field, std::size_t vertices, SoftSettings& out) {
+void read_state(const Field& field, int vertices, SoftSettings& out) {
   Members members(field, "a state of positions and velocities");
-  const std::string per_vertex = ", one for each vertex";
+  const std::string count = vertices == kUnknown ? "" : std::to_string(vertices) + " ";
   if (const auto positions = members.find_value("positions")) {
-    const std::string expected = "an array of " + std::to_string(vertices) + " positions" + per_vertex;
-    positions->array(expected.c_str(), std::int64_t(vertices));
-    out.positions.reserve(vertices);
-    for (std::size_t i = 0; i < vertices; ++i) out.positions.push_back(positions->element(i).place());
+    const std::string expected = "an array of " + count + "positions, one for each vertex";
+    const std::size_t given = positions->array(expected.c_str(), vertices);
+    out.positions.reserve(given);
+    for (std::size_t i = 0; i < given; ++i) out.positions.push_back(positions->element(i).place());
   }
   if (const auto velocities = members.find_value("velocities")) {
-    const std::string expected = "an array of " + std::to_string(vertices) + " velocities" + per_vertex;
-    velocities->array(expected.c_str(), std::int64_t(vertices));
-    out.velocities.reserve(vertices);
-    for (std::size_t i = 0; i < vertices; ++i) out.velocities.push_back(velocities->element(i).vec3());
+    const std::string expected = "an array of " + count + "velocities, one for each vertex";
+    const std::size_t given = velocities->array(expected.c_str(), vertices);
+    out.velocities.reserve(given);
+    for (std::size_t i = 0; i < given; ++i) out.velocities.push_back(velocities->element(i).vec3());
   }
   members.finish();
 }
 
-void read_settings(Members& members, std::size_t vertices, SoftSettings& out) {
+void read_settings(Members& members, int vertices, SoftSettings& out) {
   if (const auto integrator = members.find("integrator")) {
     out.integrator =
         integrator->choice<SoftIntegrator>({{"implicit", SoftIntegrator::implicit},
@@ -127,6 +128,7 @@ void read_attach(SceneReading& reading, const Field& field, int vertices, std::v
 }
 
 std::vector<bool> read_holds(SceneReading& reading, Members& members, int vertices, SceneSoft& soft) {
+  if (vertices == kUnknown) vertices = int(kMostVertices);
   std::vector<bool> held(std::size_t(vertices), false);
   if (const auto pinned = members.find_value("pinned")) read_pinned(*pinned, vertices, held, soft);
   if (const auto pinned = members.find_value("pinned_to"))
@@ -221,20 +223,40 @@ void read_material_of_solid(Members& members, SolidDef& out) {
   }
 }
 
-// The box, or vertices and tetrahedra. Returns how many vertices there are.
-int read_solid(SceneReading& reading, const Field& field, Members& members, SolidDef& out) {
+// A surface to be filled; how many vertices that takes shows when it is done.
+void read_surface_mesh(SceneReading& reading, const Field& mesh, const std::optional<Field>& resolution,
+                       SceneSoftBody& out) {
+  out.mesh = find_name(reading.meshes, mesh, "a mesh");
+  if (resolution) {
+    out.resolution = read_count(*resolution, 128, "cells along the longest side");
+    if (out.resolution < 2) resolution->expected("an integer from 2 to 128");
+  }
+  const double cells = double(out.resolution) * out.resolution * out.resolution;
+  take_vertices(reading, mesh, min(cells, double(kMostVertices)));
+}
+
+// The mesh, the box, or vertices and tetrahedra. Returns how many vertices there are; kUnknown of a mesh.
+int read_solid(SceneReading& reading, const Field& field, Members& members, SceneSoftBody& body) {
+  SolidDef& out = body.def;
   const auto mesh = members.find_value("mesh");
   const auto resolution = members.find_value("resolution");
   const auto box = members.find_value("box");
   const auto vertices = members.find_value("vertices"), tetrahedra = members.find_value("tetrahedra");
   const char* const kOne =
       "a soft body is given by \"mesh\", by \"box\", or by \"vertices\" and \"tetrahedra\"";
-  if (mesh) mesh->not_supported("a soft body of a mesh");
-  if (resolution) resolution->fail("only a soft body of a \"mesh\" has a resolution");
-  if (box) {
-    for (const auto* other : {&vertices, &tetrahedra}) {
-      if (*other) (*other)->fail(std::string("found this beside \"box\"; ") + kOne);
+  if (resolution && !mesh) resolution->fail("only a soft body of a \"mesh\" has a resolution");
+  if (mesh || box) {
+    for (const auto* other : {&box, &vertices, &tetrahedra}) {
+      const bool is_itself = other == &box && !mesh;
+      if (*other && !is_itself)
+        (*other)->fail(std::string("found this beside \"") + (mesh ? "mesh" : "box") + "\"; " + kOne);
     }
+  }
+  if (mesh) {
+    read_surface_mesh(reading, *mesh, resolution, body);
+    return kUnknown;
+  }
+  if (box) {
     out.box = read_box(reading, *box);
     const std::array<int, 3>& cells = out.box->cells;
     return (cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1);
@@ -277,7 +299,7 @@ void read_rope(SceneReading& reading, const Field& field) {
   members.read("stretch_stiffness", rope.def.stretch_stiffness,
                rope.def.links == RopeLinks::springs ? kPositive : kNotNegative);
   members.read("bend_stiffness", rope.def.bend_stiffness, kNotNegative);
-  read_settings(members, std::size_t(vertices), rope.def.settings);
+  read_settings(members, vertices, rope.def.settings);
   std::vector<bool> held = read_holds(reading, members, vertices, rope);
   if (const auto attach = members.find_value("attach")) read_attach(reading, *attach, vertices, held, rope);
   members.finish();
@@ -314,7 +336,7 @@ void read_cloth(SceneReading& reading, const Field& field) {
   members.read("bend_stiffness", cloth.def.bend_stiffness, kNotNegative);
   members.read("thickness", cloth.def.thickness, kNotNegative);
   members.read("self_collision", cloth.def.self_collision);
-  read_settings(members, std::size_t(vertices), cloth.def.settings);
+  read_settings(members, vertices, cloth.def.settings);
   read_holds(reading, members, vertices, cloth);
   members.finish();
   reading.scene.cloths.push_back(std::move(cloth));
@@ -324,10 +346,10 @@ void read_soft_body(SceneReading& reading, const Field& field) {
   Members members(field, "a soft body");
   SceneSoftBody solid;
   read_start(reading, members, solid);
-  const int vertices = read_solid(reading, field, members, solid.def);
+  const int vertices = read_solid(reading, field, members, solid);
   read_pose(members, solid.def.pose);
   read_material_of_solid(members, solid.def);
-  read_settings(members, std::size_t(vertices), solid.def.settings);
+  read_settings(members, vertices, solid.def.settings);
   read_holds(reading, members, vertices, solid);
   if (const auto region = members.find_value("pinned_region")) {
     Members parts(*region, "a region, {\"box\": [low, high]}");

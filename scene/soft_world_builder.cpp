@@ -74,7 +74,15 @@ bool WorldBuilder::blame_soft(const std::string& pointer, const SceneSoft& soft)
 }
 
 bool WorldBuilder::hold(const SceneSoft& soft, SoftId id, const std::string& pointer) {
-  for (const SceneHold& one : soft.holds) {
+  const int count = world_.soft_info(id).vertices;
+  for (std::size_t i = 0; i < soft.holds.size(); ++i) {
+    const SceneHold& one = soft.holds[i];
+    // Only of a filled surface the reader cannot know.
+    if (one.vertex >= count) {
+      const std::string place = one.body < 0 ? "/pinned/" + std::to_string(i) : std::string("/pinned_to");
+      return fail(pointer + place, "found vertex " + std::to_string(one.vertex) +
+                                       ", expected one from 0 to " + std::to_string(count - 1));
+    }
     const bool done = one.body < 0 ? world_.pin(id, one.vertex)
                                    : world_.attach(id, one.vertex, bodies_[std::size_t(one.body)]);
     if (!done) return fail(pointer, last_refusal());
@@ -129,6 +137,10 @@ bool WorldBuilder::add_soft_matter() {
     const std::string pointer = soft_pointer("soft_bodies", i);
     SolidDef def = solid.def;
     def.settings.user_data = i;
+    if (solid.mesh >= 0) {
+      const SceneMesh& mesh = scene_.meshes[std::size_t(solid.mesh)];
+      def.surface = SolidSurface{mesh.vertices, mesh.indices, solid.resolution};
+    }
     soft_bodies_.push_back(world_.add_solid(def));
     if (!soft_bodies_.back()) return blame_soft(pointer, solid);
     if (!hold(solid, soft_bodies_.back(), pointer) || !pin_region(solid, soft_bodies_.back(), pointer))

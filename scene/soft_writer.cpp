@@ -113,7 +113,10 @@ void write_soft_body(JsonWriter& json, const Scene& scene, const SceneSoftBody& 
   const SolidDef& def = solid.def;
   json.begin_object();
   json.field("name", solid.name);
-  if (def.box) {
+  if (solid.mesh >= 0) {
+    json.field("mesh", scene.meshes[std::size_t(solid.mesh)].name);
+    json.field("resolution", solid.resolution);
+  } else if (def.box) {
     json.key("box").begin_object(kInline);
     json.field("half_extents", def.box->half_extents);
     write_numbers(json, "cells", def.box->cells);

@@ -83,8 +83,15 @@ ROOMS = {
         "mesh": [],
         "elements": ["body", "mesh"],
         "kernels": ["body"],
-        "store": ["elements"],
+        "store": ["elements", "contact"],
         "solver": ["store", "kernels"],
+        "contact": ["body"],
+    },
+    "fluid": {
+        "grid": [],
+        "kernels": ["grid"],
+        "solver": ["kernels"],
+        "gas": ["solver"],
     },
     "io": {
         "codec": [],

@@ -4,7 +4,10 @@
 Written from docs/recording.md alone, with nothing of the engine: a test compares what it reads with what was simulated, so it also
 shows that the page says all there is to know.
 
-  recording_to_csv.py FILE.gyrec [--every N] [--bodies]     --bodies: a table of what the bodies look like instead
+  recording_to_csv.py FILE.gyrec [--every N] [--bodies | --vertices]
+
+  --bodies: a table of what the bodies look like instead
+  --vertices: step,time,soft,vertex,px,py,pz of the vertices of ropes, cloths and solids instead
 """
 
 import math
@@ -12,6 +15,7 @@ import struct
 import sys
 
 START, GEOMETRY, MODEL, KEYFRAME, FRAME, LABEL, NOTE = range(256, 263)
+SOFT, VERTICES, SOFT_LABEL = range(264, 267)
 MASK = (1 << 64) - 1
 
 
@@ -99,6 +103,13 @@ class Body:
         self.awake, self.active = flags & 1, flags >> 1
 
 
+class Soft:
+    def __init__(self, generation, surface):
+        self.generation, self.surface = generation, surface
+        self.now = self.before = None
+        self.sizes = [None] * 3
+
+
 class Track:
     def __init__(self, data):
         if data[:8] != b"GYREPLAY":
@@ -106,19 +117,27 @@ class Track:
         if struct.unpack_from("<I", data, 8)[0] != 1:
             raise ValueError("this recording is of another version than 1")
         self.frames, self.models, self.labels, self.notes = [], [], {}, {}
+        self.vertex_counts, self.soft_labels = [], {}
         self.position_bits = None
+        vertices = None
         for kind, payload in chunks(data):
             if kind == START:
                 version, self.position_bits, self.orientation_bits = struct.unpack_from("<IbB", payload)
                 if version != 1:
                     raise ValueError("this track is of another version than 1")
             elif kind in (KEYFRAME, FRAME):
-                self.frames.append((kind == KEYFRAME, payload))
+                self.frames.append((kind == KEYFRAME, payload, vertices))
+                vertices = None
             elif kind == MODEL:
                 self.models.append(payload)
-            elif kind == LABEL:
+            elif kind == SOFT:
+                self.vertex_counts.append(struct.unpack_from("<I", payload, 5)[0])
+            elif kind == VERTICES:
+                vertices = payload
+            elif kind in (LABEL, SOFT_LABEL):
                 index, generation, size = struct.unpack_from("<IHQ", payload)
-                self.labels[index, generation] = payload[14:14 + size].decode("utf-8", "replace")
+                labels = self.labels if kind == LABEL else self.soft_labels
+                labels[index, generation] = payload[14:14 + size].decode("utf-8", "replace")
         if self.position_bits is None:
             raise ValueError("this recording holds no poses")
 
@@ -171,7 +190,7 @@ class Track:
     def play(self):
         """(step, time, bodies by index) of each frame."""
         bodies = {}
-        for is_keyframe, payload in self.frames:
+        for is_keyframe, payload, _ in self.frames:
             step, time, _ = struct.unpack_from("<QdQ", payload)
             bits = Bits(payload[24:])
             if is_keyframe:
@@ -193,11 +212,47 @@ class Track:
                     self.next_pose(bits, bodies[index])
             yield step, time, bodies
 
+    def next_vertices(self, bits, soft, how):
+        """How they are stored: 0 by themselves, 2 by inertia, 3 by inertia and the vertex before."""
+        last, error, vertices = [0, 0, 0], [0, 0, 0], []
+        for i in range(self.vertex_counts[soft.surface]):
+            inert = last if how == 0 else [2 * a - b for a, b in zip(soft.now[i], soft.before[i])]
+            expected = [a + b for a, b in zip(inert, error)] if how == 3 else inert
+            last = [part + self.difference(bits, soft.sizes, k) for k, part in enumerate(expected)]
+            error = [a - b for a, b in zip(last, inert)]
+            vertices.append(last)
+        soft.before, soft.now = vertices if how == 0 else soft.now, vertices
+
+    def play_vertices(self):
+        """(step, time, ropes, cloths and solids by index) of each frame."""
+        softs = {}
+        for is_keyframe, payload, vertices in self.frames:
+            step, time, _ = struct.unpack_from("<QdQ", payload)
+            old, softs, index = {} if is_keyframe else softs, {}, -1
+            bits = Bits(vertices) if vertices else None
+            for _ in range(bits.count(0) if bits else 0):
+                index += 1 + bits.count(0)
+                how = bits.bits(2)
+                softs[index] = soft = Soft(bits.bits(16), bits.count(2)) if how == 0 else old[index]
+                if how == 1:
+                    soft.before = soft.now
+                else:
+                    self.next_vertices(bits, soft, how)
+            yield step, time, softs
+
+    @staticmethod
+    def cell(name):
+        return '"' + name.replace('"', '""') + '"' if set(name) & set(',"') else name
+
+    def vertex_rows(self, step, time, index, soft):
+        name = self.cell(self.soft_labels.get((index, soft.generation), str(index)))
+        for number, vertex in enumerate(soft.now):
+            numbers = ",".join(f"{math.ldexp(part, -self.position_bits):.9g}" for part in vertex)
+            yield f"{step},{time:.9g},{name},{number},{numbers}"
+
     def row(self, step, time, index, body):
         position, quaternion = body.now
-        name = self.labels.get((index, body.generation), str(index))
-        if set(name) & set(',"'):
-            name = '"' + name.replace('"', '""') + '"'
+        name = self.cell(self.labels.get((index, body.generation), str(index)))
         numbers = [math.ldexp(part, -self.position_bits) for part in position]
         parts = [math.ldexp(part, -self.orientation_bits) for part in quaternion]
         largest = quaternion.index(max(quaternion))
@@ -230,6 +285,13 @@ def main(arguments):
             track = Track(file.read())
         if "--bodies" in arguments:
             print_models(track)
+            return 0
+        if "--vertices" in arguments:
+            print("step,time,soft,vertex,px,py,pz")
+            for number, (step, time, softs) in enumerate(track.play_vertices()):
+                if number % every == 0:
+                    for index, soft in softs.items():
+                        print("\n".join(track.vertex_rows(step, time, index, soft)))
             return 0
         print("step,time,body,px,py,pz,qx,qy,qz,qw,awake")
         for number, (step, time, bodies) in enumerate(track.play()):

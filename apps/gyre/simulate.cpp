@@ -129,7 +129,7 @@ bool Simulation::record_step(double step_ms) {
   if (trace_.file().is_open() && runner_.steps() % options_.trace_every == 0 && !trace_.add_rows(runner_)) {
     return fail(trace_.file()) == kExitGood;
   }
-  if (stats_.file().is_open() && runner_.steps() > 0 && !stats_.add_row(runner_, step_ms)) {
+  if (stats_.file().is_open() && runner_.steps() > 0 && !stats_.add_row(runner_, step_ms, options_.count_crossings)) {
     return fail(stats_.file()) == kExitGood;
   }
   if (recorder_ && recorder_->failed()) {

@@ -31,6 +31,7 @@ struct SimulateOptions {
   std::uint32_t record_hash_every = 128;
   std::uint64_t trace_every = 1;
   std::vector<std::string> explain;  // names of bodies
+  bool count_crossings = false;  // of cloths, in the table of figures
   bool times = false, hash = false, json = false, quiet = false;
 };
 

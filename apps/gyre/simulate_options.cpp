@@ -132,8 +132,11 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--trace-every", options.trace_every, "Trace only every Nth step")
       ->type_name("N")
       ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"));
-  command.add_option("--stats", options.stats, "Write a table of figures of each step")
+  CLI::Option* stats = command.add_option("--stats", options.stats, "Write a table of figures of each step")
       ->type_name("FILE.csv");
+  command.add_flag("--count-crossings", options.count_crossings,
+                   "In --stats, count where cloths pass through themselves and each other; exact, and slow")
+      ->needs(stats);
   command.add_option("--final", options.final, "Write the final state as a scene")->type_name("FILE.json");
   command
       .add_option("--explain", options.explain,

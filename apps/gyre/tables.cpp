@@ -76,7 +76,7 @@ bool TraceTable::add_rows(const SceneRunner& runner) {
   }
   bool written = true;
   runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
-    written = written && add_vertices(begin, soft.name, world.vertices(id), true);
+    written = written && add_vertices(begin, soft.name, world.vertices(id), world.soft_info(id).awake);
   });
   return written;
 }
@@ -89,7 +89,7 @@ bool StatsTable::open(const std::string& path) {
              "smoke_mass,max_divergence,pressure_residual\n");
 }
 
-bool StatsTable::add_row(const SceneRunner& runner, double step_ms) {
+bool StatsTable::add_row(const SceneRunner& runner, double step_ms, bool count_crossings) {
   const World& world = runner.world();
   const WorldStats counts = world.stats();
   const Energy energy = world.energy();
@@ -108,8 +108,8 @@ bool StatsTable::add_row(const SceneRunner& runner, double step_ms) {
   add_vector(row_, momentum.linear);
   add_vector(row_, momentum.angular);
   add_number(row_, energy.soft_elastic);
-  // Crossings, then what only fluids have.
-  row_ += ",0,0,0,0,0,0\n";
+  add_count(row_, count_crossings ? static_cast<long long>(world.cloth_crossings()) : 0);
+  row_ += ",0,0,0,0,0\n";  // what only fluids have
   return file_.write(row_);
 }
 

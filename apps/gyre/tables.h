@@ -28,7 +28,7 @@ class TraceTable {
 class StatsTable {
  public:
   bool open(const std::string& path);
-  bool add_row(const SceneRunner& runner, double step_ms);
+  bool add_row(const SceneRunner& runner, double step_ms, bool count_crossings);
   OutputFile& file() { return file_; }
 
  private:

@@ -138,6 +138,7 @@ struct SoftInfo {
   float radius = 0.0f;          // m: that of a rope, half the thickness of a cloth, 0 of a solid
   int contacts = 0;             // of its vertices with shapes, in the last step
   std::uint64_t user_data = 0;
+  bool awake = true;
 };
 
 }  // namespace gyre

@@ -235,6 +235,8 @@ class World {
   // its vertices, in the order of the definition; returns how many there are, 0 without such a surface.
   std::size_t soft_surface(SoftId soft, std::span<DVec3> out) const;
   std::span<const std::uint32_t> soft_surface_triangles(SoftId soft) const;  // counter-clockwise seen from outside
+  // Pairs of an edge and a triangle without a common vertex that intersect, of one or of two cloths: exact, for tests, and slow.
+  std::size_t cloth_crossings() const;
 
   // Copied at most once after a change, by the first thread that asks; both stay valid side by side until the next change or step.
   BodyColumns bodies() const;        // every body

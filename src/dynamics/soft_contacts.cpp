@@ -1,5 +1,6 @@
 #include "dynamics/soft_contacts.h"
 
+#include "dynamics/soft_groups.h"
 #include "geometry/query/point_query.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
@@ -232,17 +233,41 @@ void fall_asleep(SoftEntry& entry) {
   for (Array<double>& moved : entry.body.moved) moved.clear();
 }
 
+// What may touch something that is awake wakes too.
+void wake_groups(SoftStore& soft, float gravity, Arena& arena, float seconds) {
+  const ArenaScope scope(arena);
+  const std::span<const std::uint32_t> group = group_soft(soft, gravity, seconds, arena);
+  const std::span<std::uint8_t> awake = arena.make<std::uint8_t>(soft.entries.size());  // by group
+  for (std::uint8_t& one : awake) one = 0;
+  for (std::size_t slot = 0; slot < soft.entries.size(); ++slot) {
+    const SoftEntry& entry = soft.entries[slot];
+    if (entry.def != nullptr && entry.is_awake()) awake[group[slot]] = 1;
+  }
+  for (std::size_t slot = 0; slot < soft.entries.size(); ++slot) {
+    SoftEntry& entry = soft.entries[slot];
+    if (entry.def != nullptr && !entry.is_awake() && awake[group[slot]] != 0) wake(entry);
+  }
+}
+
 }  // namespace
 
-void rest_soft(RigidWorld& w, SoftStore& soft, float seconds) {
+void rest_soft(RigidWorld& w, SoftStore& soft, Arena& arena, float seconds) {
   if (w.settings.sleeping == 0) return;
+  const ArenaScope scope(arena);
   bool any_field = false;
   for (const FieldRecord& field : w.fields) any_field = any_field || field.is_live();
+  const std::span<const std::uint32_t> group = group_soft(soft, length(w.settings.gravity), seconds, arena);
+  const std::span<std::uint8_t> moves = arena.make<std::uint8_t>(soft.entries.size());  // by group
+  for (std::uint8_t& one : moves) one = 0;
+  const auto slot_of = [&](const SoftEntry& entry) { return std::size_t(&entry - soft.entries.data()); };
   soft.for_each([&](SoftEntry& entry) {
     if (!entry.is_awake()) return;
     SoftRest& rest = entry.rest[0];
     rest.still_time = !any_field && is_still(w, entry) ? min(rest.still_time + seconds, kMaxStillTime) : 0.0f;
-    if (rest.still_time >= kMaxStillTime && do_all_rest(w, entry)) fall_asleep(entry);
+    if (rest.still_time < kMaxStillTime || !do_all_rest(w, entry)) moves[group[slot_of(entry)]] = 1;
+  });
+  soft.for_each([&](SoftEntry& entry) {
+    if (entry.is_awake() && moves[group[slot_of(entry)]] == 0) fall_asleep(entry);
   });
 }
 
@@ -253,11 +278,15 @@ void wake_all(SoftStore& soft) {
 void find_soft_contacts(RigidWorld& w, SoftStore& soft, Array<std::uint32_t>& shapes_near, Arena& arena,
                         TaskSystem& tasks, float seconds) {
   soft.for_each([&](SoftEntry& entry) {
+    if (entry.is_awake()) return;
     const ArenaScope scope(arena);
-    ContactFinder finder(w, entry, shapes_near, arena, seconds);
-    if (!entry.is_awake() && finder.is_anything_moving()) wake(entry);
+    if (ContactFinder(w, entry, shapes_near, arena, seconds).is_anything_moving()) wake(entry);
+  });
+  wake_groups(soft, length(w.settings.gravity), arena, seconds);
+  soft.for_each([&](SoftEntry& entry) {
     if (!entry.is_awake()) return;
-    finder.run(tasks);
+    const ArenaScope scope(arena);
+    ContactFinder(w, entry, shapes_near, arena, seconds).run(tasks);
     wake_bodies(w, entry);
   });
   refresh_awake(w.bodies);

@@ -16,8 +16,8 @@ constexpr int kMaxVertexContacts = 4;
 
 // Soft matter rests like bodies: it falls asleep when all its vertices have been still for as long as bodies must be, no field acts, and all
 // bodies that it touches or hangs on are asleep or stand still. It wakes when one of these moves or another comes near. Until its vertices
-// are still it keeps the bodies that it touches awake.
-void rest_soft(RigidWorld& w, SoftStore& soft, float seconds);
+// are still it keeps the bodies that it touches awake. Cloths and solids that may touch each other sleep and wake together.
+void rest_soft(RigidWorld& w, SoftStore& soft, Arena& arena, float seconds);
 void wake_all(SoftStore& soft);
 
 void find_soft_contacts(RigidWorld& w, SoftStore& soft, Array<std::uint32_t>& shapes_near, Arena& arena,

@@ -180,18 +180,6 @@ void add_rows(SoftSolve& s, std::uint32_t member) {
                                        velocity_of_body(s, row) - row.bias};
   }
 }
-// The momentum that vertices got by what they carry.
-void find_carried_steps(SoftSolve& s, std::uint32_t member) {
-  const SoftWork& work = work_of(s, member);
-  const Particles& p = entry_of(s, member).body.particles;
-  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
-    SoftRow& row = s.scratch->rows[k];
-    row.carried_step = {};
-    if (row.carried < 0) continue;
-    const CarriedInertia& carried = s.scratch->carried[row.carried];
-    row.carried_step = carried.inertia * (carried.target - p.velocity(carried.particle));
-  }
-}
 // Contacts that pull open, those that stick beyond their cones slide. True if there are any.
 bool loosen_grips(SoftSolve& s, std::uint32_t member) {
   const SoftWork& work = work_of(s, member);
@@ -417,6 +405,19 @@ void solve_contacts_in_rounds(SoftSolve& s) {
 
 }  // namespace
 
+// The momentum that vertices got by what they carry.
+void find_carried_steps(SoftSolve& s, std::uint32_t member) {
+  const SoftWork& work = work_of(s, member);
+  const Particles& p = entry_of(s, member).body.particles;
+  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+    SoftRow& row = s.scratch->rows[k];
+    row.carried_step = {};
+    if (row.carried < 0) continue;
+    const CarriedInertia& carried = s.scratch->carried[row.carried];
+    row.carried_step = carried.inertia * (carried.target - p.velocity(carried.particle));
+  }
+}
+
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   scratch.slots.clear(), scratch.touched.clear();
   store.ids.for_each_live([&](std::uint32_t slot) {
@@ -482,6 +483,7 @@ void make_soft_rows(SoftSolve& s) {
   scratch.carried.resize(scratch.rows.size());
   for (const SoftRow& row : scratch.rows)
     if (row.touched >= 0 && row.grip != SoftGrip::open) ++scratch.grips[row.touched];
+  begin_soft_surfaces(s);
 }
 
 void begin_soft_members(SoftSolve& s, int begin, int end) {
@@ -495,6 +497,7 @@ void begin_soft_members(SoftSolve& s, int begin, int end) {
     for (int pass = 0; pass < kGripPasses; ++pass) {
       set_field_forces(*s.w, entry, s.time, s.h);
       add_rows(s, m);
+      add_forces_of_surfaces(s, m);
       work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels,
                                   work.arena, work.tasks);
       find_carried_steps(s, m);

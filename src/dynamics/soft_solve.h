@@ -23,6 +23,7 @@
 #pragma once
 
 #include "base/arena/arena.h"
+#include "dynamics/soft_surfaces.h"
 #include "rigid/store/rigid_world.h"
 #include "soft/solver/soft_step.h"
 #include "task/task_system.h"
@@ -82,6 +83,7 @@ struct SoftScratch {
   Array<std::uint32_t> grips;     // rows that grip each touched body
   // Of touched bodies: the change by the impulses that are tried; what the other half-steps of the sub-step are to bring.
   Array<VelocityChange> changes, pending;
+  SoftSurfaces surfaces;
 };
 
 // The context of the stages below.
@@ -101,6 +103,9 @@ struct SoftSolve {
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch);
 // Makes the rows of a step; holds vertices that are attached to what does not yield.
 void make_soft_rows(SoftSolve& s);
+
+// The momentum that vertices get by what they carry, at their present velocities. To be found again by whoever changes these.
+void find_carried_steps(SoftSolve& s, std::uint32_t member);
 
 // Stages. Members are independent of each other; the others have one block.
 void begin_soft_members(SoftSolve& s, int begin, int end);

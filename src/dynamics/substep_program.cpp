@@ -99,6 +99,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   p.contacts<solve_contacts>();
   // Soft matter, with bodies as joints and contacts leave them.
   if (p.begins_soft(half_step)) p.soft_members<begin_soft_members>();
+  if (p.begins_soft(half_step)) p.soft_rows<solve_soft_surfaces>();
   if (p.begins_soft(half_step)) p.soft_rows<solve_soft_rows>();
   if (first || last) p.resting_trees<solve_resting_trees>();
   if (first) p.resting_structures<solve_resting_structures_first>();
@@ -115,6 +116,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   if (!has_joints) p.bodies<add_contact_change_and_integrate>();
   p.spinning_bodies<integrate_fast_spinning>();
   if (p.begins_soft(half_step + 1)) p.soft_members<finish_soft_members>();
+  if (p.begins_soft(half_step + 1)) p.soft_rows<bound_soft_surfaces>();
   p.impacts<apply_delayed_contact_restitution>();
   // Joints are relaxed at the present poses, so that no velocity stays from the bias.
   p.stiffened_bodies<stiffen_bodies>();

@@ -216,6 +216,7 @@ SoftInfo World::soft_info(SoftId soft) const {
   info.radius = entry.radius;
   info.contacts = int(entry.contacts.size());
   info.user_data = entry.settings().user_data;
+  info.awake = entry.is_awake();
   info.elastic_energy = elastic_energy(entry.body);
   for (int i = 0; i < p.count; ++i) {
     info.mass += double(p.mass[i]);

@@ -145,7 +145,7 @@ void finish_step(WorldState& s, float seconds, float whole, bool last) {
   run_stage(s, StageName::break_joints, [&] { break_joints(w, seconds); });
   run_stage(s, StageName::put_to_sleep, [&] {
     put_to_sleep(w, s.arena, seconds);
-    if (!s.soft.empty()) rest_soft(w, s.soft, seconds);
+    if (!s.soft.empty()) rest_soft(w, s.soft, s.arena, seconds);
   });
 }
 

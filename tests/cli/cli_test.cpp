@@ -260,9 +260,10 @@ TEST_F(CommandLine, TimesListsTheStages) {
   Finished done = gyre({"simulate", "s.gyre.json", "--steps", "20", "--quiet", "--times"});
   EXPECT_EQ(done.code, 0) << done.err;
   const std::vector<std::string> lines = lines_of(done.out);
-  ASSERT_EQ(lines.size(), 10u) << done.out;
+  ASSERT_EQ(lines.size(), 11u) << done.out;
   EXPECT_EQ(lines[0], "stages of a step, mean:");
-  EXPECT_EQ(lines[3].rfind("  collide ", 0), 0u);
+  EXPECT_EQ(lines[3].rfind("  touch_soft ", 0), 0u);
+  EXPECT_EQ(lines[4].rfind("  collide ", 0), 0u);
   done = gyre({"simulate", "s.gyre.json", "--steps", "20", "--json", "--times"});
   EXPECT_NE(done.out.find(R"("stage_ms": {"refit": )"), std::string::npos) << done.out;
   done = gyre({"simulate", "s.gyre.json", "--steps", "0", "--quiet", "--times"});
@@ -387,6 +388,53 @@ TEST_F(CommandLine, ARecordingIsAsItsPageSays) {
     ASSERT_LT(std::min(same, turned), 3e-5) << read_back[i] << "\n" << traced[i];
     for (std::size_t axis = 5; axis <= 7; ++axis)
       ASSERT_NEAR(std::atof(a[axis].c_str()), std::atof(b[axis + 6].c_str()), 6.2e-5) << read_back[i];
+  }
+}
+
+TEST_F(CommandLine, VerticesOfARecordingAreAsItsPageSays) {
+  if (std::system("python3 --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no python3";
+  struct File : ByteSink {
+    std::ofstream stream;
+    bool write(std::span<const std::byte> bytes) override {
+      return bool(stream.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size())));
+    }
+  } file;
+  file.stream.open(folder_ / "r.gyrec", std::ios::binary);
+  World world = *World::create();
+  const SoftId sheet = world.add_cloth({.grid = ClothGrid{.size = {0.4f, 0.4f}, .cells = {4, 4}}});
+  world.pin(sheet, 0);
+  SoftId line = world.add_rope({.points = {{1, 0, 0}, {2, 0, 0}}, .segments = 5});
+  Recorder recorder(world, file, {.commands = false});
+  recorder.label_soft(sheet, "a, b");
+  std::vector<DVec3> places;
+  const auto look = [&] {
+    for (const SoftId soft : {sheet, line})
+      for (std::size_t i = 0; i < world.vertices(soft).size(); ++i) places.push_back(world.vertices(soft).position(i));
+  };
+  look();
+  for (int step = 0; step < 80; ++step) {
+    if (step == 40) {
+      world.remove_soft(line);
+      line = world.add_rope({.points = {{1, 1, 0}, {2, 0, 3}}, .segments = 7});
+    }
+    world.step(1.0f / 60.0f);
+    look();
+  }
+  ASSERT_TRUE(recorder.finish());
+  file.stream.close();
+  const std::string command = "python3 '" GYRE_SOURCE_DIR "/tools/recording_to_csv.py' --vertices '" +
+                              (folder_ / "r.gyrec").string() + "' > '" + (folder_ / "v.csv").string() + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const std::vector<std::string> lines = lines_of(read("v.csv"));
+  ASSERT_EQ(lines.size(), places.size() + 1);
+  EXPECT_EQ(lines[1].substr(0, 13), "0,0,\"a, b\",0,");
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    std::size_t end = lines[i + 1].size();
+    for (int axis = 2; axis >= 0; --axis) {
+      const std::size_t comma = lines[i + 1].rfind(',', end - 1);
+      ASSERT_NEAR(std::atof(lines[i + 1].c_str() + comma + 1), places[i][axis], 6.2e-5) << lines[i + 1];
+      end = comma;
+    }
   }
 }
 

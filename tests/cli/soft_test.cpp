@@ -94,12 +94,32 @@ TEST_F(SoftCommandLine, FiguresCountSoftMatter) {
   EXPECT_NEAR(std::stod(first[column("px")]), 1000, 1);
   EXPECT_NEAR(std::stod(first[column("py")]), -9.81 * 0.01 * 1000.3, 1);
   EXPECT_NEAR(std::stod(first[column("kinetic_energy")]), 500, 6);
-  EXPECT_NEAR(std::stod(first[column("potential_energy")]), 9.81 * (1000 * 0.6 + 0.1 * 2 + 0.2 * 3), 2);
+  // In a step of four sub-steps the jelly falls g h^2 5 / 8.
+  const double start = 9.81 * (1000 * 0.6 + 0.1 * 2 + 0.2 * 3), fallen = 1000 * 9.81 * 9.81 * 1e-4 * 5 / 8;
+  EXPECT_NEAR(std::stod(first[column("potential_energy")]), start - fallen, 0.1);
   EXPECT_GT(std::stod(last[column("soft_elastic_energy")]), 0);
   EXPECT_EQ(std::stod(last[column("elastic_energy")]), 0);
   for (const char* name : {"crossings", "liquid_volume", "liquid_particles", "smoke_mass", "max_divergence",
                            "pressure_residual"})
     EXPECT_EQ(last[column(name)], "0") << name;
+}
+
+TEST_F(SoftCommandLine, CrossingsAreCountedWhereTheyAreAskedFor) {
+  // Two edges of the second triangle pierce the first.
+  write("x.gyre.json", R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0]},
+    "meshes": {"one": {"vertices": [[-1,0,-1],[1,0,-1],[0,0,1]], "triangles": [[0,2,1]]},
+               "other": {"vertices": [[0,-1,-0.5],[0,1,-0.4],[0,1,-0.3]], "triangles": [[0,1,2]]}},
+    "cloths": [{"name": "a", "mesh": "one", "self_collision": false, "pinned": [0, 1, 2]},
+               {"name": "b", "mesh": "other", "self_collision": false, "pinned": [0, 1, 2]}]})");
+  for (const bool counted : {false, true}) {
+    std::vector<std::string> arguments = {"simulate", "x.gyre.json", "--steps", "1", "--stats", "u.csv"};
+    if (counted) arguments.push_back("--count-crossings");
+    ASSERT_EQ(gyre(arguments).code, 0);
+    const std::vector<std::string> rows = rows_of(read("u.csv"));
+    EXPECT_EQ(cells_of(rows[0])[18], "crossings");
+    EXPECT_EQ(cells_of(rows[1])[18], counted ? "2" : "0");
+  }
+  EXPECT_EQ(gyre({"simulate", "x.gyre.json", "--count-crossings"}).code, 2);
 }
 
 TEST_F(SoftCommandLine, TheFinalSceneGoesOn) {
@@ -116,9 +136,11 @@ TEST_F(SoftCommandLine, TheFinalSceneGoesOn) {
     const std::vector<std::string> a = cells_of(whole[i]), b = cells_of(rest[i]);
     ASSERT_EQ(a.size(), b.size());
     EXPECT_EQ(a[2], b[2]);
+    // The jelly slides on the ground, and what the solver remembers of that is forgotten.
+    const double within = a[2].rfind("jelly", 0) == 0 ? 3e-3 : 2e-4;
     const std::size_t x = a.size() - 14;
     for (std::size_t k = x; k < x + 3; ++k)
-      EXPECT_NEAR(std::stod(a[k]), std::stod(b[k]), 1e-3) << whole[i] << "\n" << rest[i];
+      EXPECT_NEAR(std::stod(a[k]), std::stod(b[k]), within) << whole[i] << "\n" << rest[i];
   }
 }
 

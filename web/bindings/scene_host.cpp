@@ -144,7 +144,7 @@ EMSCRIPTEN_KEEPALIVE int gyre_scene_softs(Host* host) {
   runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
     const SoftInfo info = runner.world().soft_info(id);
     put_text(answer, std::string_view(soft.name));
-    const SceneColor color = resolved_color(runner.scene(), info.kind, std::size_t(info.user_data));
+    const SceneColor color = resolved_soft_color(runner.scene(), info.kind, std::size_t(info.user_data));
     answer.number(double(color.red << 16 | color.green << 8 | color.blue));
     put_list(answer, std::span<const SceneHold>(holds[index]),
              [&](const SceneHold& hold) { put(answer, hold.vertex), put(answer, hold.body); });

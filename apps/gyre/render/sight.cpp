@@ -36,14 +36,20 @@ void look_at_links(const World& world, const Scene* scene, Sight& out) {
   }
 }
 
+std::size_t count_of(const Scene& scene, SoftKind kind) {
+  if (kind == SoftKind::rope) return scene.ropes.size();
+  return kind == SoftKind::cloth ? scene.cloths.size() : scene.soft_bodies.size();
+}
+
+// Ropes, cloths and soft bodies of a scene carry their number among their kind as user data.
 void look_at_softs(const World& world, const Scene* scene, Sight& out) {
   std::vector<SoftId> ids(world.softs({}));
   world.softs(ids);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const SoftInfo info = world.soft_info(ids[i]);
     const SoftVertices vertices = world.vertices(ids[i]);
-    // Ropes, cloths and soft bodies of a scene carry their number among their kind as user data.
-    const SceneColor color = scene ? resolved_color(*scene, info.kind, std::size_t(info.user_data))
+    const bool known = scene && info.user_data < count_of(*scene, info.kind);
+    const SceneColor color = known ? resolved_soft_color(*scene, info.kind, std::size_t(info.user_data))
                                    : automatic_color(BodyType::dynamic, i);
     out.softs.push_back({ids[i], info.kind, info.radius, world.soft_triangles(ids[i]), out.vertices.size(),
                          vertices.size(), color});

@@ -2,7 +2,7 @@
 #include "render/track_player.h"
 
 #include "scene/scene_color.h"
-#include "scene/scene_reader.h"
+#include "scene/scene_labels.h"
 
 namespace gyre {
 namespace {
@@ -93,17 +93,6 @@ void apply_track_colors(const PoseTrack& track, Sight& sight) {
   }
 }
 
-// The note is a JSON object of members that a scene has, too.
-std::optional<SceneView> view_of_track(const PoseTrack& track) {
-  const std::string_view note = track.note("scene");
-  const std::size_t open = note.find('{');
-  if (open == std::string_view::npos) return {};
-  const std::string_view members = note.substr(open + 1);
-  const bool empty =
-      members.substr(0, members.find_first_not_of(" \t\r\n") + 1).find('}') != std::string_view::npos;
-  const std::string text = R"({"gyre_scene": 1)" + std::string(empty ? "" : ", ") + std::string(members);
-  const SceneResult<Scene> scene = read_scene(text);
-  return scene ? scene->view : std::nullopt;
-}
+std::optional<SceneView> view_of_track(const PoseTrack& track) { return view_of_note(track.note("scene")); }
 
 }  // namespace gyre

@@ -190,6 +190,22 @@ float edge_size(const SoftEntry& entry) {
   return count > 0 ? float(sum / double(count)) : 0.0f;
 }
 
+// Solids keep this share of the length of an edge from other surfaces and from themselves.
+constexpr float kSolidRadius = 0.02f;
+
+std::shared_ptr<const SoftSurface> make_surface(const SoftEntry& entry, const SoftDef& def) {
+  if (entry.triangles.empty()) return nullptr;
+  Array<DVec3> places;
+  for (int i = 0; i < entry.body.particles.count; ++i) places.push_back(entry.body.particles.place(i));
+  const float radius = entry.kind == SoftKind::solid ? kSolidRadius * entry.size : entry.radius;
+  SoftSurface surface = make_surface(places, entry.triangles, radius);
+  const SoftSettings& settings = entry.settings();
+  surface.static_friction = settings.static_friction;
+  surface.dynamic_friction = settings.dynamic_friction;
+  if (const ClothDef* const cloth = std::get_if<ClothDef>(&def)) surface.self_collision = cloth->self_collision;
+  return std::make_shared<const SoftSurface>(std::move(surface));
+}
+
 void set_start(const SoftSettings& settings, Particles& particles) {
   for (std::size_t i = 0; i < settings.positions.size(); ++i)
     particles.set_place(int(i), settings.positions[i]);
@@ -204,6 +220,7 @@ SoftEntry build_soft(std::shared_ptr<const SoftDef> def) {
   std::visit([&](const auto& one) { build(one, entry); }, *def);
   entry.size = edge_size(entry);
   entry.def = std::move(def);
+  entry.contact_surface = make_surface(entry, *entry.def);
   set_start(entry.settings(), entry.body.particles);
   return entry;
 }

@@ -5,6 +5,7 @@
 #include "base/container/array.h"
 #include "base/container/slot_map.h"
 #include "soft/body/soft_body.h"
+#include "soft/contact/soft_surface.h"
 #include "soft/mesh/embedded_surface.h"
 
 #include <gyre/soft.h>
@@ -61,6 +62,7 @@ struct SoftEntry {
   Array<SoftContact> contacts;        // ascending by particle, then shape
   Array<std::uint32_t>
       triangles;  // of the surface, three vertices each, seen from outside counter-clockwise; none of a rope
+  std::shared_ptr<const SoftSurface> contact_surface;  // of the triangles; null: there are none
   // Of a solid that was made of a surface: what was given, carried along by its tetrahedra, for pictures.
   EmbeddedSurface surface;
   Array<SoftRest> rest{SoftRest{}};  // one

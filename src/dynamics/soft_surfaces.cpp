@@ -1,0 +1,149 @@
+#include "dynamics/soft_surfaces.h"
+
+#include "dynamics/soft_solve.h"
+#include "soft/contact/surface_crossings.h"
+
+namespace gyre {
+
+namespace {
+
+// How often impulses are found and given in a sub-step.
+constexpr int kSurfaceRounds = 2;
+
+SoftWork& work_at(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
+SoftEntry& entry_at(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
+
+// Calls fn(member, first vertex) for each surface.
+template <class Fn>
+void for_each_surface(SoftSurfaces& all, Fn&& fn) {
+  for (std::size_t i = 0; i < all.placed.size(); ++i) fn(all.member[i], all.placed[i].first);
+}
+
+SurfaceContactSettings settings_of(const SoftSolve& s) {
+  SurfaceContactSettings settings;
+  settings.step = s.h;
+  return settings;
+}
+SurfaceVertices vertices_of(SoftSurfaces& all) { return {all.positions, all.velocities, all.inverse_mass}; }
+
+void gather_velocities(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+    const Particles& p = entry_at(s, member).body.particles;
+    for (int i = 0; i < p.count; ++i) all.velocities[first + std::uint32_t(i)] = p.velocity(i);
+  });
+}
+
+// Gives all bodies what they are owed.
+void give_owed(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+    SoftEntry& entry = entry_at(s, member);
+    SoftWork& work = work_at(s, member);
+    bool any = false;
+    for (Vec3& impulse : work.impulses) impulse = {};
+    for (int i = 0; i < entry.body.particles.count; ++i) {
+      Vec3& owed = all.contacts.owed[first + std::uint32_t(i)];
+      any |= !(owed == Vec3{});
+      work.impulses[i] = owed;
+      owed = {};
+    }
+    if (!any) return;
+    respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, work.tasks);
+    add_change(entry, work.step, work.change.view(), 1.0f);
+    find_carried_steps(s, member);
+  });
+}
+
+}  // namespace
+
+void begin_soft_surfaces(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  const std::vector<std::shared_ptr<const SoftSurface>> before = std::move(all.surfaces);
+  all.surfaces.clear(), all.placed.clear(), all.member.clear();
+  all.placed_of.assign(s.members.size(), -1);
+  std::size_t vertices = 0;
+  bool any_self = false;
+  for (std::uint32_t m = 0; m < std::uint32_t(s.members.size()); ++m) {
+    const SoftEntry& entry = entry_at(s, m);
+    if (entry.contact_surface == nullptr) continue;
+    all.placed_of[m] = std::int32_t(all.placed.size());
+    all.placed.push_back({entry.contact_surface.get(), std::uint32_t(vertices)});
+    all.surfaces.push_back(entry.contact_surface);
+    all.member.push_back(m);
+    any_self |= entry.contact_surface->self_collision;
+    vertices += std::size_t(entry.contact_surface->vertices);
+  }
+  all.active = any_self || all.placed.size() > 1;
+  if (all.surfaces != before) all.contacts.candidates.surfaces.clear();
+  if (!all.active) return;
+  all.positions.resize(vertices), all.targets.resize(vertices);
+  all.velocities.resize(vertices), all.inverse_mass.resize(vertices);
+  all.contacts.clear(vertices);
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+    const Particles& p = entry_at(s, member).body.particles;
+    for (int i = 0; i < p.count; ++i) all.positions[first + std::uint32_t(i)] = p.place(i);
+  });
+}
+
+void add_forces_of_surfaces(SoftSolve& s, std::uint32_t member) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  if (!all.active || all.placed_of[member] < 0) return;
+  const std::uint32_t first = all.placed[all.placed_of[member]].first;
+  Particles& p = entry_at(s, member).body.particles;
+  const float rate = 1.0f / s.h;
+  for (int i = 0; i < p.count; ++i) {
+    const Vec3 force = rate * all.contacts.totals[first + std::uint32_t(i)];
+    p.fx[i] += force.x, p.fy[i] += force.y, p.fz[i] += force.z;
+  }
+}
+
+long count_soft_crossings(const SoftStore& store, Arena& arena) {
+  Array<PlacedSurface> placed;
+  Array<DVec3> positions;
+  store.for_each([&](const SoftEntry& entry) {
+    if (entry.contact_surface == nullptr) return;
+    placed.push_back({entry.contact_surface.get(), std::uint32_t(positions.size())});
+    for (int i = 0; i < entry.body.particles.count; ++i) positions.push_back(entry.body.particles.place(i));
+  });
+  return count_crossings(placed, positions, arena);
+}
+
+void solve_soft_surfaces(SoftSolve& s, int, int) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  if (!all.active) return;
+  all.arena.reset();
+  gather_velocities(s);
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+    const Particles& p = entry_at(s, member).body.particles;
+    for (int i = 0; i < p.count; ++i)
+      all.inverse_mass[first + std::uint32_t(i)] = p.loose[i] == 0.0f ? 0.0f : 1.0f / p.mass[i];
+  });
+  const SurfaceVertices vertices = vertices_of(all);
+  const SurfaceContactSettings settings = settings_of(s);
+  find_surface_contacts(all.placed, vertices, settings, all.arena, all.contacts);
+  for (int round = 0; round < kSurfaceRounds; ++round) {
+    solve_surface_contacts(vertices, settings, all.arena, all.contacts);
+    give_owed(s);
+    gather_velocities(s);
+  }
+  push_surfaces(vertices, settings, all.arena, all.contacts);
+}
+
+void bound_soft_surfaces(SoftSolve& s, int, int) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  if (!all.active) return;
+  all.arena.reset();
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+    const Particles& p = entry_at(s, member).body.particles;
+    for (int i = 0; i < p.count; ++i) all.targets[first + std::uint32_t(i)] = p.place(i);
+  });
+  all.report =
+      move_surfaces(all.placed, vertices_of(all), all.targets, settings_of(s), all.arena, all.contacts);
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+    Particles& p = entry_at(s, member).body.particles;
+    for (int i = 0; i < p.count; ++i) p.set_place(i, all.positions[first + std::uint32_t(i)]);
+  });
+}
+
+}  // namespace gyre

@@ -1,0 +1,50 @@
+// Contacts of cloths and solids with themselves and each other within the sub-steps: gathers their surfaces and vertices for
+// soft/contact/surface_contacts.h, gives bodies the impulses, and takes back the moves that would cross.
+//
+// In: members of a batch. Out: velocities and positions of their particles.
+#pragma once
+
+#include "base/arena/arena.h"
+#include "base/container/array.h"
+#include "soft/contact/surface_contacts.h"
+#include "soft/store/soft_store.h"
+
+#include <gyre/math.h>
+
+#include <memory>
+#include <vector>
+
+namespace gyre {
+
+struct SoftSolve;
+
+struct SoftSurfaces {
+  bool active = false;  // there are surfaces that may touch
+  Array<PlacedSurface> placed;
+  // Those of the placed surfaces, so that no other is taken for one of them by its address.
+  std::vector<std::shared_ptr<const SoftSurface>> surfaces;
+  Array<std::uint32_t> member;    // of each placed surface: its index in SoftSolve::members
+  Array<std::int32_t> placed_of;  // by member; -1: it has no surface
+  // By vertex; positions are those at the start of the sub-step.
+  Array<DVec3> positions, targets;
+  Array<Vec3> velocities;
+  Array<float> inverse_mass;
+  SurfaceContacts contacts;
+  BoundReport report;
+  Arena arena;  // used within a stage
+};
+
+// Lists the surfaces of a step.
+void begin_soft_surfaces(SoftSolve& s);
+// Adds the impulses of the last sub-step to the forces from outside.
+void add_forces_of_surfaces(SoftSolve& s, std::uint32_t member);
+
+// Pairs of an edge and a triangle that cross now, of all cloths and solids: exact, and 0 unless they began crossed or were held so. Not for
+// every step: it looks at all of them.
+long count_soft_crossings(const SoftStore& store, Arena& arena);
+
+// Stages, each of one block.
+void solve_soft_surfaces(SoftSolve& s, int begin, int end);
+void bound_soft_surfaces(SoftSolve& s, int begin, int end);
+
+}  // namespace gyre

@@ -1,0 +1,68 @@
+// Energy, mass and probes of a gas.
+#include "fluid/gas/gas_reading.h"
+
+#include "fluid/solver/gas_pass.h"
+
+namespace gyre {
+
+namespace {
+
+double cell_volume(const GasBox& box) { return double(box.cell.x) * double(box.cell.y) * double(box.cell.z); }
+
+}  // namespace
+
+double gas_kinetic_energy(const GasGrid& grid, const GasSolids& solids, float density, TaskSystem& tasks) {
+  const GridShape& shape = grid.shape;
+  const std::uint8_t* const solid = solids.present() ? solids.solid.data() : nullptr;
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* const v = grid.velocity[axis].data();
+    const int step = shape.stride(axis);
+    sum += sum_rows(shape, tasks, [&](int c, int, int) {
+      double part = 0.0;
+      for (int i = c; i < c + shape.cells[0]; ++i) {
+        if (solid != nullptr && solid[i] != 0) continue;
+        part += 0.5 * (double(v[i]) * double(v[i]) + double(v[i + step]) * double(v[i + step]));
+      }
+      return part;
+    });
+  }
+  return 0.5 * double(density) * cell_volume(grid.box) * sum;
+}
+
+double smoke_mass(const GasGrid& grid, const GasSolids& solids, TaskSystem& tasks) {
+  const GridShape& shape = grid.shape;
+  const std::uint8_t* const solid = solids.present() ? solids.solid.data() : nullptr;
+  const double sum = sum_rows(shape, tasks, [&](int c, int, int) {
+    double part = 0.0;
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      if (solid == nullptr || solid[i] == 0) part += double(grid.density[i]);
+    }
+    return part;
+  });
+  return cell_volume(grid.box) * sum;
+}
+
+GasProbe probe_gas(const GasGrid& grid, DVec3 point, float density, Vec3 gravity) {
+  const GasBox& box = grid.box;
+  const Vec3 local = difference(point, box.corner);
+  GasProbe probe;
+  probe.velocity.x = sample_field(box, grid.shape, grid.velocity[0].data(), 0, local);
+  probe.velocity.y = sample_field(box, grid.shape, grid.velocity[1].data(), 1, local);
+  probe.velocity.z = sample_field(box, grid.shape, grid.velocity[2].data(), 2, local);
+  probe.density = sample_field(box, grid.shape, grid.density.data(), -1, local);
+  probe.temperature = sample_field(box, grid.shape, grid.temperature.data(), -1, local);
+  probe.pressure = density * sample_field(box, grid.shape, grid.pressure.data(), -1, local);
+  if (!box.any_open()) {
+    const float from_middle[3] = {local.x - 0.5f * float(box.cells[0]) * box.cell.x,
+                                  local.y - 0.5f * float(box.cells[1]) * box.cell.y,
+                                  local.z - 0.5f * float(box.cells[2]) * box.cell.z};
+    const float g[3] = {gravity.x, gravity.y, gravity.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!box.periodic(axis)) probe.pressure += density * g[axis] * from_middle[axis];
+    }
+  }
+  return probe;
+}
+
+}  // namespace gyre

@@ -1,0 +1,125 @@
+// The kernels of gases, one table for each kind of processor: transport of fields, and the stencils and transfers of the pressure equation.
+// A kernel works on a range of rows of cells, numbered row = j + k * rows along y; several workers may do several ranges at once, since each
+// writes only its own rows. Every width gives the same bits.
+//
+// The pressure equation is sum of a (x_i - x_n) over the six faces of a cell = b_i; a is 0 where a face is closed. Arrays of cell centres
+// have zeros beyond the last cell of a row, and ghosts as fluid/grid/gas_grid.h says.
+#pragma once
+
+#include "fluid/grid/grid_shape.h"
+
+#include <cstdint>
+
+namespace gyre {
+
+// One level of the pressure equation.
+struct PressureLevel {
+  GridShape shape;
+  const float* face[3] = {};                // a, 1/m^2
+  const float* inverse_diagonal = nullptr;  // 0: no equation here
+  const float* transfer = nullptr;          // scales what goes to the next coarser level, and comes from it
+  // Rows in which `a` is the same along the row but at its ends.
+  const std::uint8_t* plain = nullptr;
+  bool halved[3] = {};  // axes along which the next coarser level has half the cells
+};
+
+// A field that moves with the gas: each point gets the value that was `back` cells before it.
+struct TransportPass {
+  GridShape shape;
+  int points[3] = {};  // along each axis; one more than cells across the faces' own
+  int average =
+      0;  // displacements are the mean of this point's and of that `average` before it: the stride of the faces' axis, or 0
+  float low[3] = {};  // sample points are clamped to these, in cells
+  float high[3] = {};
+  float period[3] = {};       // 0: not periodic
+  const float* back[3] = {};  // in cells; null: 0
+  const float* ahead[3] = {};
+  float* field = nullptr;  // before and after
+  float* moved = nullptr;  // by the first order scheme
+  float* lower = nullptr;  // the bounds of what may come there
+  float* upper = nullptr;
+};
+
+// The displacements of cell centres by the midpoint rule: back, and ahead.
+struct TracePass {
+  GridShape shape;
+  float low[3] = {}, high[3] = {}, period[3] = {};
+  const float* velocity[3] = {};  // at centres, in cells per step; null: 0
+  float* back[3] = {};
+  float* ahead[3] = {};
+};
+
+// Rows of points that the kernels below work on: cells, or the faces across an axis.
+struct FieldRows {
+  GridShape shape;
+  int points[3] = {};
+};
+// Velocities of centres to vorticity, and that to the force of confinement.
+struct VortexPass {
+  GridShape shape;
+  float half_inverse[3] = {};  // 1/m: half of one over the edge of a cell; 0: flat
+  float* center[3] = {};       // velocity in, force out
+  float* vorticity[3] = {};
+  float* size = nullptr;  // of the vorticity
+  float strength = 0.0f;  // m
+};
+
+struct GasKernels {
+  int width;
+  // y = A x; the sum of x times y.
+  double (*apply)(const PressureLevel& level, const float* x, float* y, int row_begin, int row_end);
+  // y = transfer (b - A x)
+  void (*residual)(const PressureLevel& level, const float* b, const float* x, float* y, int row_begin,
+                   int row_end);
+  // out = x + inertia (x - before) + gain (b - A x) / diagonal, which may be stored in place of `before`; no `before` means 0. The
+  // sum of out times b.
+  double (*smooth)(const PressureLevel& level, const float* b, const float* x, const float* before,
+                   float inertia, float gain, float* out, int row_begin, int row_end);
+  // out = gain b / diagonal
+  void (*scale)(const PressureLevel& level, const float* b, float gain, float* out, int row_begin,
+                int row_end);
+  // Rows of the coarser level: b there = what the eight or fewer cells around give, `fine` being scaled by transfer.
+  void (*restrict_rows)(const PressureLevel& fine_level, const GridShape& coarse, const float* fine, float* b,
+                        int row_begin, int row_end);
+  // x += transfer times the coarser level's x, linearly between its cells.
+  void (*prolong)(const PressureLevel& fine_level, const GridShape& coarse, const float* coarse_x, float* x,
+                  int row_begin, int row_end);
+  // x += alpha p, r -= alpha q; the largest |r|.
+  float (*advance)(const PressureLevel& level, float alpha, const float* p, const float* q, float* x,
+                   float* r, int row_begin, int row_end);
+  // p = z + beta p
+  void (*update_direction)(const PressureLevel& level, float beta, const float* z, float* p, int row_begin,
+                           int row_end);
+
+  // velocity -= scale (field - field at -stride) on faces that have a coefficient.
+  void (*subtract_gradient)(const FieldRows& rows, const float* face, const float* field, int stride,
+                            float scale, float* velocity, int row_begin, int row_end);
+  // velocity += constant + scale (field + field at -stride), likewise.
+  void (*add_mean)(const FieldRows& rows, const float* face, const float* field, int stride, float constant,
+                   float scale, float* velocity, int row_begin, int row_end);
+  // to = scale (from + from at stride)
+  void (*find_mean)(const FieldRows& rows, const float* from, int stride, float scale, float* to,
+                    int row_begin, int row_end);
+  // to = the sum over the axes of scale (velocity - velocity at stride), where a cell has an equation, else 0.
+  void (*find_inflow)(const PressureLevel& level, const float* const (&velocity)[3], const float (&scale)[3],
+                      float* to, int row_begin, int row_end);
+  // The largest magnitude.
+  float (*largest)(const FieldRows& rows, const float* field, int row_begin, int row_end);
+  void (*find_vorticity)(const VortexPass& pass, int row_begin, int row_end);
+  void (*find_confinement)(const VortexPass& pass, int row_begin, int row_end);
+
+  void (*trace)(const TracePass& pass, int row_begin, int row_end);
+  // moved, lower and upper; rows are of `points`.
+  void (*move)(const TransportPass& pass, int row_begin, int row_end);
+  // field, corrected by half of what tracing back to the start again misses, within the bounds.
+  void (*correct)(const TransportPass& pass, int row_begin, int row_end);
+  // field becomes the correction, lower the fraction of it that the bounds allow.
+  void (*find_correction)(const TransportPass& pass, int row_begin, int row_end);
+  // field = moved + the correction times the smallest fraction of a cell and its six neighbours.
+  void (*add_correction)(const TransportPass& pass, int row_begin, int row_end);
+};
+
+// The kernels for this many lanes, 0: as many as suit this machine.
+const GasKernels& select_gas_kernels(int width);
+
+}  // namespace gyre

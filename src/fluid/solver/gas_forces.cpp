@@ -1,0 +1,137 @@
+// Emitters, buoyancy and vorticity confinement.
+#include "fluid/solver/gas_forces.h"
+
+namespace gyre {
+
+namespace {
+
+float part_of(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+struct Ball {
+  double center[3];
+  double radius;
+  int low[3], high[3];  // cells and faces that may lie in it
+};
+
+Ball ball_of(const GasPass& pass, const GasEmitter& emitter) {
+  const DVec3 local = emitter.position - pass.box().corner;
+  Ball ball{{local.x, local.y, local.z}, double(emitter.radius), {}, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double edge = double(pass.edge(axis)), n = double(pass.shape().cells[axis]);
+    const auto cell = [&](double at) {
+      const double place = at / edge;
+      return int(place < 0.0 ? 0.0 : place < n ? place : n);
+    };
+    ball.low[axis] = cell(ball.center[axis] - ball.radius - edge);
+    ball.high[axis] = cell(ball.center[axis] + ball.radius + edge);
+  }
+  return ball;
+}
+
+// Calls fn(index) for the points in the ball: of centres, or of the faces across an axis. A flat axis has only its middle.
+template <class Fn>
+void for_ball(const GasPass& pass, const Ball& ball, int faces, Fn&& fn) {
+  const GridShape& shape = pass.shape();
+  const auto offset = [&](int axis, int i) {
+    if (pass.flat(axis)) return 0.0;
+    return (double(i) + (axis == faces ? 0.0 : 0.5)) * double(pass.edge(axis)) - ball.center[axis];
+  };
+  int nearest[3], last[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    last[axis] = shape.cells[axis] - (axis == faces ? 0 : 1);
+    const double place = ball.center[axis] / double(pass.edge(axis)) + (axis == faces ? 0.5 : 0.0);
+    nearest[axis] = place < 0.0 ? 0 : place > double(last[axis]) ? last[axis] : int(place);
+  }
+  for (int k = ball.low[2]; k <= ball.high[2] && k <= last[2]; ++k) {
+    for (int j = ball.low[1]; j <= ball.high[1] && j <= last[1]; ++j) {
+      for (int i = ball.low[0]; i <= ball.high[0] && i <= last[0]; ++i) {
+        const double x = offset(0, i), y = offset(1, j), z = offset(2, k);
+        const bool center = i == nearest[0] && j == nearest[1] && k == nearest[2];
+        if (center || x * x + y * y + z * z <= ball.radius * ball.radius) fn(shape.at(i, j, k));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, double time) {
+  for (const GasEmitter& emitter : emitters) {
+    if (!(time >= emitter.start && time < emitter.end)) continue;
+    const Ball ball = ball_of(pass, emitter);
+    const std::uint8_t* const solid = pass.solids.present() ? pass.solids.solid.data() : nullptr;
+    for_ball(pass, ball, -1, [&](int c) {
+      if (solid != nullptr && solid[c] != 0) return;
+      pass.grid.density[c] = emitter.density;
+      pass.grid.temperature[c] = emitter.temperature;
+    });
+    if (!emitter.has_velocity) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (pass.flat(axis)) continue;
+      const float* const face = pass.memory.matrix.levels[0].face[axis].data();
+      for_ball(pass, ball, axis, [&](int c) {
+        if (face[c] > 0.0f) pass.grid.velocity[axis][c] = part_of(emitter.velocity, axis);
+      });
+    }
+  }
+}
+
+void add_buoyancy(const GasPass& pass, Vec3 gravity, float buoyancy) {
+  const GridShape& shape = pass.shape();
+  const float ambient = pass.grid.ambient_temperature, none = 0.0f;
+  const float* const temperature = pass.grid.temperature.data();
+  float* const warmth = pass.scratch(0);
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) warmth[i] = temperature[i] - ambient;
+  });
+  fill_ghosts(pass.box(), shape, warmth, &none);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float g = part_of(gravity, axis);
+    if (pass.flat(axis) || g == 0.0f) continue;
+    const float falling = pass.box().periodic(axis) ? pass.step * g : 0.0f;
+    const float rising = -0.5f * pass.step * buoyancy * g / ambient;
+    float* const velocity = pass.grid.velocity[axis].data();
+    const float* const face = pass.memory.matrix.levels[0].face[axis].data();
+    const FieldRows rows = rows_of(shape, axis);
+    for_row_blocks(rows, pass.tasks, [&](int begin, int end) {
+      pass.kernels.add_mean(rows, face, warmth, shape.stride(axis), falling, rising, velocity, begin, end);
+    });
+  }
+}
+
+void add_confinement(const GasPass& pass, float strength) {
+  const GridShape& shape = pass.shape();
+  const FieldRows cells = rows_of(shape, -1);
+  VortexPass work;
+  work.shape = shape;
+  work.size = pass.scratch(6);
+  work.strength = strength * pass.edge(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    work.center[axis] = pass.scratch(axis);
+    work.vorticity[axis] = pass.scratch(3 + axis);
+    work.half_inverse[axis] = pass.flat(axis) ? 0.0f : 0.5f / pass.edge(axis);
+    const float* const from = pass.grid.velocity[axis].data();
+    for_row_blocks(cells, pass.tasks, [&](int begin, int end) {
+      pass.kernels.find_mean(cells, from, shape.stride(axis), 0.5f, work.center[axis], begin, end);
+    });
+    fill_ghosts(pass.box(), shape, work.center[axis]);
+  }
+  for_row_blocks(cells, pass.tasks,
+                 [&](int begin, int end) { pass.kernels.find_vorticity(work, begin, end); });
+  fill_ghosts(pass.box(), shape, work.size);
+  for_row_blocks(cells, pass.tasks,
+                 [&](int begin, int end) { pass.kernels.find_confinement(work, begin, end); });
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    fill_ghosts(pass.box(), shape, work.center[axis]);
+    float* const velocity = pass.grid.velocity[axis].data();
+    const float* const face = pass.memory.matrix.levels[0].face[axis].data();
+    const FieldRows rows = rows_of(shape, axis);
+    for_row_blocks(rows, pass.tasks, [&](int begin, int end) {
+      pass.kernels.add_mean(rows, face, work.center[axis], shape.stride(axis), 0.0f, 0.5f * pass.step,
+                            velocity, begin, end);
+    });
+  }
+}
+
+}  // namespace gyre

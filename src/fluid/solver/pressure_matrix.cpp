@@ -1,0 +1,251 @@
+// Builds the levels of the pressure equation.
+#include "fluid/solver/pressure_matrix.h"
+
+#include "task/parallel.h"
+
+namespace gyre {
+
+PressureLevel PressureMatrix::level(int index) const {
+  const PressureGrid& grid = levels[index];
+  PressureLevel level;
+  level.shape = grid.shape;
+  for (int axis = 0; axis < 3; ++axis) {
+    level.face[axis] = grid.face[axis].data();
+    level.halved[axis] = grid.halved[axis];
+  }
+  level.inverse_diagonal = grid.inverse_diagonal.data();
+  level.transfer = grid.transfer.data();
+  level.plain = grid.plain.data();
+  return level;
+}
+
+namespace {
+
+constexpr int kCoarsest = 2;  // cells along an axis that are not halved
+
+void resize_level(PressureGrid& grid, const GridShape& shape, bool finest) {
+  const std::size_t size = std::size_t(shape.size);
+  if (grid.inverse_diagonal.size() == size && grid.shape.pitch == shape.pitch &&
+      grid.shape.plane == shape.plane && grid.shape.cells[0] == shape.cells[0] &&
+      grid.shape.cells[2] == shape.cells[2]) {
+    return;
+  }
+  const auto renew = [size](Array<float>& field) { field.clear(), field.resize(size, 0.0f); };
+  grid.shape = shape;
+  for (Array<float>& faces : grid.face) renew(faces);
+  renew(grid.inverse_diagonal);
+  renew(grid.transfer);
+  grid.plain.resize(std::size_t(shape.rows()), std::uint8_t(0));
+  if (!finest) renew(grid.b), renew(grid.x), renew(grid.other);
+}
+
+template <class Fn>
+void each_row(const GridShape& shape, int rows_y, int rows_z, TaskSystem& tasks, Fn&& fn) {
+  for_blocks(tasks, rows_y * rows_z, kGridRows, [&](int begin, int end, int) {
+    for (int row = begin; row < end; ++row) {
+      const int k = row / rows_y, j = row - k * rows_y;
+      fn(shape.row(j, k), j, k);
+    }
+  });
+}
+
+// The faces across one axis of the finest level.
+void find_faces(const GasBox& box, const GasSolids& solids, int axis, TaskSystem& tasks, PressureGrid& grid) {
+  const GridShape& shape = grid.shape;
+  const float edge = axis == 0 ? box.cell.x : axis == 1 ? box.cell.y : box.cell.z;
+  const float inner = box.flat(axis) ? 0.0f : 1.0f / (edge * edge);
+  const float sides[2] = {box.periodic(axis)   ? inner
+                          : box.open(2 * axis) ? 2.0f * inner
+                                               : 0.0f,
+                          box.periodic(axis)       ? inner
+                          : box.open(2 * axis + 1) ? 2.0f * inner
+                                                   : 0.0f};
+  const int step = shape.stride(axis), last = shape.cells[axis];
+  const int extra[3] = {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0};
+  float* const to = grid.face[axis].data();
+  each_row(shape, shape.cells[1] + extra[1], shape.cells[2] + extra[2], tasks, [&](int c, int j, int k) {
+    const int count = shape.cells[0] + extra[0];
+    const int across = axis == 1 ? j : k;
+    for (int i = 0; i < count; ++i) {
+      const int at = axis == 0 ? i : across;
+      to[c + i] = at == 0 ? sides[0] : at == last ? sides[1] : inner;
+    }
+    if (!solids.present()) return;
+    const float* const open = solids.open[axis].data();
+    const std::uint8_t* const solid = solids.solid.data();
+    for (int i = 0; i < count; ++i) {
+      const int at = axis == 0 ? i : across;
+      const bool lower = at > 0 && solid[c + i - step] != 0, upper = at < last && solid[c + i] != 0;
+      const bool closed = lower || upper || !(open[c + i] >= kMinOpen);
+      to[c + i] = closed ? 0.0f : open[c + i] < 1.0f ? open[c + i] * to[c + i] : to[c + i];
+    }
+  });
+}
+
+// A face of a coarser level: half of what all finer faces within it have, if it is also twice as far across.
+void coarsen_faces(const PressureGrid& fine, int axis, TaskSystem& tasks, PressureGrid& coarse) {
+  const GridShape& shape = coarse.shape;
+  const int extra[3] = {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0};
+  const float scale = fine.halved[axis] ? 0.5f : 1.0f;
+  float* const to = coarse.face[axis].data();
+  each_row(shape, shape.cells[1] + extra[1], shape.cells[2] + extra[2], tasks, [&](int c, int j, int k) {
+    // The first finer index along each axis and how many there are.
+    const auto children = [&](int of, int place, int& begin, int& count) {
+      begin = fine.halved[of] ? 2 * place : place;
+      const int cells = fine.shape.cells[of];
+      if (of == axis) {
+        begin = begin < cells ? begin : cells;
+        count = 1;
+      } else {
+        count = fine.halved[of] && begin + 1 < cells ? 2 : 1;
+      }
+    };
+    int y, z, count_y, count_z;
+    children(1, j, y, count_y);
+    children(2, k, z, count_z);
+    for (int i = 0; i < shape.cells[0] + extra[0]; ++i) {
+      int x, count_x;
+      children(0, i, x, count_x);
+      float sum = 0.0f;
+      for (int dz = 0; dz < count_z; ++dz) {
+        for (int dy = 0; dy < count_y; ++dy) {
+          const float* const from = fine.face[axis].data() + fine.shape.at(x, y + dy, z + dz);
+          sum += count_x == 2 ? from[0] + from[1] : from[0];
+        }
+      }
+      to[c + i] = scale * sum;
+    }
+  });
+}
+
+// Diagonals. Returns the number of cells that have an equation.
+int find_diagonals(TaskSystem& tasks, PressureGrid& grid) {
+  const GridShape& shape = grid.shape;
+  const float *const ax = grid.face[0].data(), *const ay = grid.face[1].data(),
+                     *const az = grid.face[2].data();
+  float* const to = grid.inverse_diagonal.data();
+  return reduce_blocks(
+      tasks, shape.rows(), kGridRows, 0,
+      [&](int begin, int end, int) {
+        int active = 0;
+        for (int row = begin; row < end; ++row) {
+          const int c = shape.row(row % shape.cells[1], row / shape.cells[1]);
+          for (int i = c; i < c + shape.cells[0]; ++i) {
+            const float diagonal =
+                ax[i] + ax[i + 1] + (ay[i] + ay[i + shape.pitch]) + (az[i] + az[i + shape.plane]);
+            to[i] = diagonal > 0.0f ? 1.0f / diagonal : 0.0f;
+            active += diagonal > 0.0f ? 1 : 0;
+          }
+        }
+        return active;
+      },
+      [](int a, int b) { return a + b; });
+}
+
+// transfer: 1 over the sum of the weights with which a cell takes from cells of the coarser level that have an equation.
+void find_transfer(PressureMatrix& matrix, int fine_index, const GasKernels& kernels, TaskSystem& tasks) {
+  PressureGrid& fine = matrix.levels[fine_index];
+  PressureGrid& coarse = matrix.levels[fine_index + 1];
+  each_row(coarse.shape, coarse.shape.cells[1], coarse.shape.cells[2], tasks, [&](int c, int, int) {
+    for (int i = c; i < c + coarse.shape.cells[0]; ++i)
+      coarse.x[i] = coarse.inverse_diagonal[i] > 0.0f ? 1.0f : 0.0f;
+  });
+  wrap_ghosts(coarse.shape, coarse.periodic, coarse.x.data());
+  PressureLevel level = matrix.level(fine_index);
+  Array<float>& weights = fine.transfer;
+  each_row(fine.shape, fine.shape.cells[1], fine.shape.cells[2], tasks, [&](int c, int, int) {
+    for (int i = c; i < c + fine.shape.cells[0]; ++i) weights[i] = 1.0f;
+  });
+  // In place: 1 + 1 * weight.
+  for_blocks(tasks, fine.shape.rows(), kGridRows, [&](int begin, int end, int) {
+    kernels.prolong(level, coarse.shape, coarse.x.data(), weights.data(), begin, end);
+  });
+  each_row(fine.shape, fine.shape.cells[1], fine.shape.cells[2], tasks, [&](int c, int, int) {
+    for (int i = c; i < c + fine.shape.cells[0]; ++i) {
+      const float weight = weights[i] - 1.0f;
+      weights[i] = fine.inverse_diagonal[i] > 0.0f && weight > 0.0f ? 1.0f / weight : 0.0f;
+    }
+  });
+}
+
+void find_cut_rows(const GridShape& shape, const GasSolids& solids, TaskSystem& tasks,
+                   PressureMatrix& matrix) {
+  matrix.cut_row.clear();
+  if (!solids.present()) return;
+  matrix.cut_row.resize(std::size_t(shape.rows()), std::uint8_t(0));
+  const auto any_below_one = [](const float* open, int count) {
+    int any = 0;
+    for (int i = 0; i < count; ++i) any |= open[i] < 1.0f ? 1 : 0;
+    return any != 0;
+  };
+  each_row(shape, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
+    bool cut = any_below_one(solids.open[0].data() + c, shape.cells[0] + 1);
+    for (int axis = 1; axis < 3; ++axis) {
+      const float* const lower = solids.open[axis].data() + c;
+      cut = cut || any_below_one(lower, shape.cells[0]) ||
+            any_below_one(lower + shape.stride(axis), shape.cells[0]);
+    }
+    for (int i = c; i < c + shape.cells[0] && !cut; ++i) cut = solids.solid[i] != 0;
+    matrix.cut_row[j + k * shape.cells[1]] = cut ? 1 : 0;
+  });
+}
+
+bool all_equal(const float* from, int begin, int end) {
+  for (int i = begin + 1; i < end; ++i)
+    if (from[i] != from[begin]) return false;
+  return true;
+}
+
+void find_plain_rows(TaskSystem& tasks, PressureGrid& grid) {
+  const GridShape& shape = grid.shape;
+  const int n = shape.cells[0];
+  each_row(shape, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
+    const bool plain = n > 2 && all_equal(grid.face[0].data() + c, 1, n) &&
+                       all_equal(grid.face[1].data() + c, 1, n - 1) &&
+                       all_equal(grid.face[1].data() + c + shape.pitch, 1, n - 1) &&
+                       all_equal(grid.face[2].data() + c, 1, n - 1) &&
+                       all_equal(grid.face[2].data() + c + shape.plane, 1, n - 1) &&
+                       all_equal(grid.inverse_diagonal.data() + c, 1, n - 1) &&
+                       all_equal(grid.transfer.data() + c, 1, n - 1);
+    grid.plain[j + k * shape.cells[1]] = plain ? 1 : 0;
+  });
+}
+
+}  // namespace
+
+void build_pressure_matrix(const GasBox& box, const GridShape& shape, const GasSolids& solids,
+                           const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix) {
+  matrix.singular = !box.any_open();
+  matrix.solids_revision = solids.present() ? solids.revision : 0;
+  resize_level(matrix.levels[0], shape, true);
+  for (int axis = 0; axis < 3; ++axis) {
+    matrix.levels[0].periodic[axis] = box.periodic(axis) && !box.flat(axis);
+    find_faces(box, solids, axis, tasks, matrix.levels[0]);
+  }
+  find_cut_rows(shape, solids, tasks, matrix);
+  matrix.active_cells = find_diagonals(tasks, matrix.levels[0]);
+  matrix.count = 1;
+  while (matrix.count < PressureMatrix::kMaxLevels) {
+    PressureGrid& fine = matrix.levels[matrix.count - 1];
+    PressureGrid& coarse = matrix.levels[matrix.count];
+    int cells[3];
+    bool smaller = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int n = fine.shape.cells[axis];
+      // Half a cell at the end of a periodic axis would have no mirror image at its beginning.
+      fine.halved[axis] = n > kCoarsest && !(fine.periodic[axis] && n % 2 != 0);
+      cells[axis] = fine.halved[axis] ? (n + 1) / 2 : n;
+      smaller = smaller || fine.halved[axis];
+      coarse.periodic[axis] = fine.periodic[axis];
+    }
+    if (!smaller) break;
+    resize_level(coarse, make_grid_shape(cells[0], cells[1], cells[2]), false);
+    for (int axis = 0; axis < 3; ++axis) coarsen_faces(fine, axis, tasks, coarse);
+    find_diagonals(tasks, coarse);
+    find_transfer(matrix, matrix.count - 1, kernels, tasks);
+    ++matrix.count;
+  }
+  for (int index = 0; index < matrix.count; ++index) find_plain_rows(tasks, matrix.levels[index]);
+}
+
+}  // namespace gyre

@@ -1,0 +1,119 @@
+// The transport of velocity, smoke and temperature.
+#include "fluid/solver/transport.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int kBack = 0, kAhead = 3, kMoved = 6, kLower = 7, kUpper = 8;  // scratch
+constexpr int kCenters = 6;                                               // and before these three
+
+// Limits of the sample points of cell centres; `outside`: the ghosts beyond open sides are of use.
+template <class Pass>
+void limit_samples(const GasBox& box, const GridShape& shape, bool outside, int faces, Pass& pass) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float n = float(shape.cells[axis]);
+    if (box.periodic(axis) && !box.flat(axis)) {
+      pass.low[axis] = 0.0f;
+      pass.high[axis] = pass.period[axis] = n;
+    } else if (axis == faces) {
+      pass.low[axis] = 0.0f;
+      pass.high[axis] = n;
+    } else {
+      pass.low[axis] = outside && box.open(2 * axis) ? -1.0f : 0.0f;
+      pass.high[axis] = outside && box.open(2 * axis + 1) ? n : n - 1.0f;
+    }
+  }
+}
+
+void transport(const GasPass& pass, int faces, const float* outside, float* field) {
+  const GasBox& box = pass.box();
+  const GridShape& shape = pass.shape();
+  TransportPass work;
+  work.shape = shape;
+  for (int axis = 0; axis < 3; ++axis) {
+    work.points[axis] = shape.cells[axis] + (axis == faces ? 1 : 0);
+    if (pass.flat(axis)) continue;
+    work.back[axis] = pass.scratch(kBack + axis);
+    work.ahead[axis] = pass.scratch(kAhead + axis);
+  }
+  work.average = faces < 0 ? 0 : shape.stride(faces);
+  work.field = field;
+  work.moved = pass.scratch(kMoved);
+  work.lower = pass.scratch(kLower);
+  work.upper = pass.scratch(kUpper);
+  limit_samples(box, shape, outside != nullptr, faces, work);
+  const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
+  const auto fill = [&](float* of) {
+    faces < 0 ? fill_ghosts(box, shape, of, outside) : wrap_ghosts(shape, periodic, of);
+  };
+  const auto run = [&](void (*kernel)(const TransportPass&, int, int)) {
+    for_blocks(pass.tasks, work.points[1] * work.points[2], kGridRows,
+               [&](int begin, int end, int) { kernel(work, begin, end); });
+  };
+  fill(field);
+  run(pass.kernels.move);
+  fill(work.moved);
+  if (faces < 0) {
+    run(pass.kernels.find_correction);
+    fill_ghosts(box, shape, work.lower);
+    run(pass.kernels.add_correction);
+  } else {
+    run(pass.kernels.correct);
+    fill(field);
+  }
+}
+
+}  // namespace
+
+void trace_paths(const GasPass& pass) {
+  const GridShape& shape = pass.shape();
+  TracePass work;
+  work.shape = shape;
+  limit_samples(pass.box(), shape, false, -1, work);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    const float* const from = pass.grid.velocity[axis].data();
+    float* const to = pass.scratch(kCenters + axis);
+    const int step = shape.stride(axis);
+    const float scale = 0.5f * pass.step / pass.edge(axis);
+    const FieldRows rows = rows_of(shape, -1);
+    for_row_blocks(rows, pass.tasks, [&](int begin, int end) {
+      pass.kernels.find_mean(rows, from, step, scale, to, begin, end);
+    });
+    fill_ghosts(pass.box(), shape, to);
+    work.velocity[axis] = to;
+    work.back[axis] = pass.scratch(kBack + axis);
+    work.ahead[axis] = pass.scratch(kAhead + axis);
+  }
+  for_blocks(pass.tasks, shape.rows(), kGridRows,
+             [&](int begin, int end, int) { pass.kernels.trace(work, begin, end); });
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    fill_ghosts(pass.box(), shape, work.back[axis]);
+    fill_ghosts(pass.box(), shape, work.ahead[axis]);
+  }
+}
+
+void transport_fields(const GasPass& pass) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!pass.flat(axis)) transport(pass, axis, nullptr, pass.grid.velocity[axis].data());
+  }
+  const float none = 0.0f, ambient = pass.grid.ambient_temperature;
+  transport(pass, -1, &none, pass.grid.density.data());
+  transport(pass, -1, &ambient, pass.grid.temperature.data());
+}
+
+float max_displacement(const GasPass& pass) {
+  float longest = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    const float fastest =
+        largest_of(rows_of(pass.shape(), axis), pass.grid.velocity[axis].data(), pass.kernels, pass.tasks);
+    const float displacement = fastest * pass.step / pass.edge(axis);
+    longest = displacement > longest ? displacement : longest;
+  }
+  return longest;
+}
+
+}  // namespace gyre

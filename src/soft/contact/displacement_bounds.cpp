@@ -1,0 +1,141 @@
+#include "soft/contact/displacement_bounds.h"
+
+#include <cmath>
+
+namespace gyre {
+
+namespace {
+
+constexpr double kSafe = 1.0 - 0x1p-20;  // more than any rounding here takes
+
+// How far each vertex of a pair may go towards the other feature, m.
+struct PairRoom {
+  double room[4];
+};
+
+// How far vertex k is from the plane of its own feature, and the gap of the planes.
+struct PairPlanes {
+  double behind[4];
+  double gap;
+};
+
+PairPlanes planes_of(const SurfacePair& pair, std::span<const DVec3> positions) {
+  const DVec3 origin = positions[pair.vertex[0]];
+  double along[4];
+  for (int k = 0; k < 4; ++k) along[k] = dot(pair.normal, positions[pair.vertex[k]] - origin);
+  double low = along[0], high = along[pair.on_a];
+  for (int k = 1; k < pair.on_a; ++k) low = min(low, along[k]);
+  for (int k = pair.on_a + 1; k < 4; ++k) high = max(high, along[k]);
+  PairPlanes planes;
+  planes.gap = low - high;
+  for (int k = 0; k < 4; ++k) planes.behind[k] = k < pair.on_a ? along[k] - low : high - along[k];
+  return planes;
+}
+
+// How far vertex k moves towards the other feature.
+double approach_of(const SurfacePair& pair, int k, std::span<const DVec3> moves) {
+  const double along = dot(pair.normal, moves[pair.vertex[k]]);
+  return k < pair.on_a ? -along : along;
+}
+
+class MoveBounds {
+ public:
+  MoveBounds(std::span<const SurfacePair> pairs, std::span<const std::uint8_t> held, std::span<DVec3> moves,
+             Arena& arena)
+      : pairs_(pairs), held_(held), moves_(moves), rooms_(arena.make<PairRoom>(pairs.size())) {}
+
+  void give_rooms(std::span<const DVec3> positions, double least_gap, BoundReport& report) {
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+      rooms_[i] = give_room(pairs_[i], planes_of(pairs_[i], positions), least_gap, report);
+  }
+
+  // Turns moves that go too far along the plane.
+  void turn() {
+    for_each_bound([&](std::uint32_t v, DVec3 toward, double approach, double room) {
+      moves_[v] += -(approach - room) * toward;
+    });
+  }
+
+  // Shortens moves that still go too far. The share of a vertex is the least of all its bounds'.
+  void shorten(std::span<double> shares) {
+    for (double& share : shares) share = 1.0;
+    for_each_bound([&](std::uint32_t v, DVec3, double approach, double room) {
+      shares[v] = min(shares[v], kSafe * room / approach);
+    });
+    for (std::size_t v = 0; v < shares.size(); ++v) {
+      if (shares[v] < 1.0) moves_[v] = shares[v] * moves_[v];
+    }
+  }
+
+ private:
+  PairRoom give_room(const SurfacePair& pair, const PairPlanes& planes, double least_gap,
+                     BoundReport& report) const {
+    double free = planes.gap - least_gap * double(pair.thickness);
+    if (!(planes.gap > 0.0)) ++report.crossed;
+    // What each feature asks for; what those of its vertices take that are held.
+    double asked[2] = {}, taken[2] = {};
+    for (int k = 0; k < 4; ++k) {
+      const int side = k < pair.on_a ? 0 : 1;
+      const double need = approach_of(pair, k, moves_) - planes.behind[k];
+      asked[side] = max(asked[side], need);
+      if (held_[pair.vertex[k]] != 0) taken[side] = max(taken[side], need);
+    }
+    free = max(0.0, kSafe * free);
+    double room[2] = {taken[0], taken[1]};
+    free -= taken[0] + taken[1];
+    if (free < 0.0) {
+      // Held vertices may use the least gap too.
+      if (taken[0] + taken[1] >= planes.gap) ++report.forced;
+    } else {
+      const double more[2] = {asked[0] - taken[0], asked[1] - taken[1]};
+      const double sum = more[0] + more[1];
+      for (int side = 0; side < 2; ++side)
+        room[side] += sum > free ? free * (more[side] / sum) : more[side] + 0.5 * (free - sum);
+    }
+    PairRoom out;
+    for (int k = 0; k < 4; ++k) out.room[k] = room[k < pair.on_a ? 0 : 1] + planes.behind[k];
+    return out;
+  }
+
+  template <class Visit>
+  void for_each_bound(Visit&& visit) {
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const SurfacePair& pair = pairs_[i];
+      for (int k = 0; k < 4; ++k) {
+        const std::uint32_t v = pair.vertex[k];
+        if (held_[v] != 0) continue;
+        const double approach = approach_of(pair, k, moves_);
+        if (approach > rooms_[i].room[k])
+          visit(v, k < pair.on_a ? -pair.normal : pair.normal, approach, rooms_[i].room[k]);
+      }
+    }
+  }
+
+  std::span<const SurfacePair> pairs_;
+  std::span<const std::uint8_t> held_;
+  std::span<DVec3> moves_;
+  std::span<PairRoom> rooms_;
+};
+
+}  // namespace
+
+BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
+                        std::span<const float> limits, std::span<const std::uint8_t> held,
+                        const BoundSettings& settings, std::span<DVec3> moves, Arena& arena) {
+  const ArenaScope scope(arena);
+  BoundReport report;
+  const std::span<DVec3> asked = arena.make<DVec3>(moves.size());
+  for (std::size_t v = 0; v < moves.size(); ++v) {
+    asked[v] = moves[v];
+    const double far = length(moves[v]), limit = kSafe * double(limits[v]);
+    if (held[v] == 0 && far > limit) moves[v] = (limit / far) * moves[v];
+  }
+  MoveBounds bounds(pairs, held, moves, arena);
+  bounds.give_rooms(positions, settings.least_gap, report);
+  for (int pass = 0; pass < settings.passes; ++pass) bounds.turn();
+  bounds.shorten(arena.make<double>(moves.size()));
+  for (std::size_t v = 0; v < moves.size(); ++v) report.shortened += !(moves[v] == asked[v]);
+  return report;
+}
+
+}  // namespace gyre

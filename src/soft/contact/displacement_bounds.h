@@ -1,0 +1,47 @@
+// Bounds on moves: shortens the moves of vertices so that no two features of soft surfaces cross on the way, and none comes nearer than
+// a share of its thickness.
+//
+// In: pairs from find_surface_pairs() for limits, these, and the moves of the vertices. Out: moves that are bounded.
+//
+// Proof. Let n be the normal of a pair, a the least n.x over the vertices of its feature A and b the greatest over those of B; g = a - b. If g > 0, n
+// separates the features: n.p >= a for every point p of A, since p is a mean of its vertices, and n.p <= b on B. Each pair is given two numbers r, s >= 0
+// with r + s <= max(0, g - least gap). Moves m are made such that each vertex x of A has n.(x + m) >= a - r, and each of B
+// n.(x + m) <= b + s. The set of such m is convex and contains 0, so it also contains t m for every t in [0, 1]: all along the straight way from
+// x to x + m the features are apart by g - r - s, at least the smaller of g and the least gap. Vertices
+// move no further than their limits, so pairs that were not found stay apart by their least gap. Two surfaces that do not
+// cross can begin to do so only where such a pair (a vertex and a triangle, or two edges, without a common vertex) comes to distance 0. Hence no
+// crossing comes into being, but for vertices that are told where to go and leave others no room.
+//
+// Nothing here depends on the closest points being exact: a and b are taken from the vertices, whatever the normal.
+//
+// Sources: A. Chen, J. Hsu et al., "Offset Geometric Contact", 2025 (bounds from the nearest feature); D. Baraff, "Fast Contact Force Computation for
+// Nonpenetrating Rigid Bodies", 1994 (separating planes from the last step).
+#pragma once
+
+#include "base/arena/arena.h"
+#include "soft/contact/surface_pairs.h"
+
+#include <gyre/math.h>
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+struct BoundSettings {
+  double least_gap = 0.2;  // of the thickness of a pair: features come no nearer
+  int passes = 2;  // in which moves are turned along the planes; what then is still too far is shortened
+};
+
+struct BoundReport {
+  long shortened = 0;  // vertices that do not move as they would
+  long forced = 0;     // pairs in which vertices that are held take more room than there is
+  long crossed = 0;    // pairs that no plane separates: they cross or touch
+};
+
+// `limits`: by vertex, m: how far it may go. `held`: by vertex, 1 if it goes where it is told, whatever the bounds.
+BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
+                        std::span<const float> limits, std::span<const std::uint8_t> held,
+                        const BoundSettings& settings, std::span<DVec3> moves, Arena& arena);
+
+}  // namespace gyre

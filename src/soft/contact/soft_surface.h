@@ -1,0 +1,113 @@
+// SoftSurface: the triangles of a cloth, or of the boundary of a solid, and a tree of boxes over them. Made once; the boxes follow the vertices.
+//
+// Each vertex and each edge is owned by one triangle, so that a search for pairs of triangles finds each pair of features once (S. Curtis,
+// R. Tamstorf, D. Manocha, "Fast Collision Detection for Deformable Models using Representative-Triangles", 2008).
+//
+// Several surfaces share one space of vertex numbers: the vertices of a placed surface are `first`, first + 1, ... in the arrays of positions.
+#pragma once
+
+#include "base/arena/arena.h"
+#include "base/container/array.h"
+#include "geometry/tree/static_tree.h"
+
+#include <gyre/math.h>
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+struct SurfaceEdge {
+  std::uint32_t a = 0, b = 0;            // a < b
+  std::uint32_t triangle = 0, side = 0;  // of which it is the edge 01, 12 or 20, the one that owns it
+};
+
+struct SurfaceTriangle {
+  std::uint32_t corner[3] = {};
+  std::int32_t owned_edge[3] = {-1, -1, -1};  // of the edges 01, 12, 20: those that this triangle owns
+  std::uint32_t owned_corners = 0;            // bit i: this triangle owns corner i
+  std::int32_t neighbour[3] = {-1, -1, -1};   // across the edges 01, 12, 20; -1: a boundary of the surface
+};
+
+struct SoftSurface {
+  int vertices = 0;
+  Array<SurfaceTriangle> triangles;  // in the order of the leaves
+  Array<SurfaceEdge> edges;
+  // Vertices that share an edge with vertex v: around[around_begin[v]] to around[around_begin[v + 1] - 1].
+  Array<std::uint32_t> around_begin, around;
+  Array<float> radius;     // m, by vertex: surfaces keep the sum of their radii apart
+  StaticTree tree;         // its items are not used
+  float mean_edge = 0.0f;  // m, at rest
+  float static_friction = 0.4f;
+  float dynamic_friction = 0.4f;
+  bool self_collision = true;
+};
+
+// The radius of a vertex is `radius`, but at most a third of the lowest height of the triangles around it at `places`, so that a surface at rest does
+// not touch itself.
+SoftSurface make_surface(std::span<const DVec3> places, std::span<const std::uint32_t> triangles,
+                         float radius);
+
+struct PlacedSurface {
+  const SoftSurface* surface = nullptr;
+  std::uint32_t first = 0;  // its vertex 0
+};
+
+// The boxes of one surface at the present positions.
+struct SurfaceBoxes {
+  const SoftSurface* surface = nullptr;
+  std::uint32_t first = 0;
+  std::span<StaticNode> nodes;
+  std::span<Aabb> vertices, triangles;
+  Aabb box{};
+};
+
+// The boxes hold each vertex and a margin of `pads[v]` about it (none: no margin). Positions are measured from `origin`, and
+// rounding only enlarges a box. Memory is the arena's.
+SurfaceBoxes fit_boxes(const PlacedSurface& placed, std::span<const DVec3> positions,
+                       std::span<const float> pads, DVec3 origin, Arena& arena);
+
+// Calls visit(i, k) for pairs of triangles whose boxes overlap: i of `a`, k of `b`; of one surface (a and b the same) each pair once, with
+// i < k. The order follows from the trees alone.
+template <class Visit>
+void for_each_triangle_pair(const SurfaceBoxes& a, const SurfaceBoxes& b, Visit&& visit) {
+  if (a.nodes.empty() || b.nodes.empty() || !overlap(a.box, b.box)) return;
+  const bool same = &a == &b;
+  const auto visit_leaf = [&](std::uint32_t first, std::uint32_t count, const Aabb& box) {
+    std::uint32_t stack[StaticTree::kStackSize];
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+      const std::uint32_t child = stack[--depth];
+      if (!is_leaf(child)) {
+        const StaticNode& node = b.nodes[child];
+        for (unsigned mask = overlap_mask(node, box); mask != 0;) {
+          const int lane = int(std::bit_width(mask)) - 1;
+          mask ^= 1u << lane;
+          // Leaves before this one have been there already.
+          const std::uint32_t next = node.child[lane];
+          if (same && is_leaf(next) && leaf_first(next) < first) continue;
+          stack[depth++] = next;
+        }
+        continue;
+      }
+      const std::uint32_t other = leaf_first(child), others = leaf_count(child);
+      for (std::uint32_t i = first; i < first + count; ++i) {
+        for (std::uint32_t k = same && other <= i ? i + 1 : other; k < other + others; ++k) {
+          if (overlap(a.triangles[i], b.triangles[k])) visit(i, k);
+        }
+      }
+    }
+  };
+  for (const StaticNode& node : a.nodes) {
+    for (int lane = 0; lane < StaticNode::kWidth; ++lane) {
+      const std::uint32_t child = node.child[lane];
+      if (child == StaticNode::kNoChild || !is_leaf(child)) continue;
+      const Aabb box{{node.low[0][lane], node.low[1][lane], node.low[2][lane]},
+                     {node.high[0][lane], node.high[1][lane], node.high[2][lane]}};
+      if (same || overlap(box, b.box)) visit_leaf(leaf_first(child), leaf_count(child), box);
+    }
+  }
+}
+
+}  // namespace gyre

@@ -1,0 +1,270 @@
+#include "soft/contact/surface_contacts.h"
+
+#include <cmath>
+
+namespace gyre {
+
+namespace {
+
+// Vertices are looked for a little further than they move, so that impulses may change their moves.
+constexpr float kLimitOfMove = 1.25f;
+constexpr float kLimitOfRadius = 0.1f;
+constexpr float kMaxLimitOfEdge = 1.0f;
+constexpr float kNearOfThickness = 0.1f;   // pairs nearer than this have rows whatever their velocity
+constexpr float kSlopOfThickness = 0.01f;  // overlap that stays
+constexpr float kMaxPushOfThickness = 0.25f;
+
+// The mean of the moves: surfaces that fly together do not look far.
+DVec3 mean_of(std::span<const PlacedSurface> surfaces, std::span<const DVec3> moves) {
+  DVec3 sum{};
+  double count = 0.0;
+  for (const PlacedSurface& placed : surfaces) {
+    for (int v = 0; v < placed.surface->vertices; ++v) sum += moves[placed.first + std::size_t(v)];
+    count += double(placed.surface->vertices);
+  }
+  return count > 0.0 ? sum / count : DVec3{};
+}
+
+// Limits for these moves.
+void set_limits(std::span<const PlacedSurface> surfaces, std::span<const float> inverse_mass,
+                std::span<const DVec3> moves, std::span<float> limits) {
+  for (const PlacedSurface& placed : surfaces) {
+    const float most = kMaxLimitOfEdge * placed.surface->mean_edge;
+    for (int i = 0; i < placed.surface->vertices; ++i) {
+      const std::size_t v = placed.first + std::size_t(i);
+      const float radius = placed.surface->radius[i], far = float(length(moves[v]));
+      limits[v] = inverse_mass[v] > 0.0f
+                      ? min(kLimitOfMove * far + kLimitOfRadius * radius, max(most, radius))
+                      : kLimitOfMove * far;
+    }
+  }
+}
+
+// Impulses of the pairs that were there before; both lists have ascending keys.
+void keep_impulses(std::span<const SurfacePair> before, std::span<const SurfaceImpulse> impulses,
+                   std::span<const SurfacePair> now, Array<SurfaceImpulse>& out) {
+  out.assign(now.size(), SurfaceImpulse{});
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    while (k < before.size() && before[k].key < now[i].key) ++k;
+    if (k < before.size() && before[k].key == now[i].key) out[i] = impulses[k];
+  }
+}
+
+// Sums the impulses of all pairs by vertex; the change is owed.
+void sum_impulses(const SurfaceVertices& vertices, SurfaceContacts& contacts) {
+  for (std::size_t v = 0; v < contacts.totals.size(); ++v) {
+    contacts.owed[v] = -contacts.totals[v];
+    contacts.totals[v] = {};
+  }
+  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
+    const SurfacePair& pair = contacts.pairs[i];
+    SurfaceImpulse& impulse = contacts.impulses[i];
+    if (!pair.touches) impulse = {};
+    if (impulse.normal == 0.0f) continue;
+    // The plane of friction turns with the normal.
+    const Vec3 normal = to_float(pair.normal);
+    impulse.friction -= dot(impulse.friction, normal) * normal;
+    for (int k = 0; k < 4; ++k) {
+      const std::uint32_t v = pair.vertex[k];
+      if (vertices.inverse_mass[v] > 0.0f)
+        contacts.totals[v] += pair.weight[k] * (impulse.normal * normal + impulse.friction);
+    }
+  }
+  for (std::size_t v = 0; v < contacts.totals.size(); ++v) contacts.owed[v] += contacts.totals[v];
+}
+
+// One contact, with all that a sweep reads.
+struct Row {
+  std::uint32_t vertex[4];
+  float weight[4];
+  float change[4];  // 1/kg: weight times inverse mass
+  Vec3 normal;
+  float mass;    // kg: impulse for a change of the relative velocity
+  float target;  // m/s: least normal velocity
+  float static_friction, dynamic_friction;
+  SurfaceImpulse impulse;
+  std::uint32_t pair;
+};
+
+Vec3 sum_of(std::span<const Vec3> values, const std::uint32_t (&vertex)[4], const float (&weight)[4]) {
+  return weight[0] * values[vertex[0]] + weight[1] * values[vertex[1]] + weight[2] * values[vertex[2]] +
+         weight[3] * values[vertex[3]];
+}
+void add_to(std::span<Vec3> values, const Row& row, Vec3 impulse) {
+  for (int k = 0; k < 4; ++k) values[row.vertex[k]] += row.change[k] * impulse;
+}
+float gap_of(const SurfacePair& pair) { return float(pair.distance - double(pair.thickness)); }
+
+Row make_row(const SurfacePair& pair, std::uint32_t number, const SurfaceVertices& vertices,
+             const SurfaceImpulse& impulse) {
+  Row row;
+  float mobility = 0.0f;
+  for (int k = 0; k < 4; ++k) {
+    row.vertex[k] = pair.vertex[k];
+    row.weight[k] = pair.weight[k];
+    row.change[k] = pair.weight[k] * vertices.inverse_mass[pair.vertex[k]];
+    mobility += row.weight[k] * row.change[k];
+  }
+  row.normal = to_float(pair.normal);
+  row.mass = mobility > 0.0f ? 1.0f / mobility : 0.0f;
+  row.target = 0.0f;
+  row.static_friction = pair.friction[0], row.dynamic_friction = pair.friction[1];
+  row.impulse = impulse;
+  row.pair = number;
+  return row;
+}
+
+bool may_touch(const SurfacePair& pair, const SurfaceVertices& vertices, float step) {
+  const float gap = gap_of(pair), near = kNearOfThickness * pair.thickness;
+  if (gap < near) return true;
+  const Vec3 velocity = sum_of(vertices.velocities, pair.vertex, pair.weight);
+  return gap - near < -kLimitOfMove * step * dot(to_float(pair.normal), velocity);
+}
+
+void solve_row(Row& row, std::span<Vec3> velocities) {
+  const Vec3 velocity = sum_of(velocities, row.vertex, row.weight);
+  const float along = dot(row.normal, velocity);
+  const float normal = max(0.0f, row.impulse.normal - (along - row.target) * row.mass);
+  if (normal == 0.0f && row.impulse.normal == 0.0f) return;
+  // Inverse masses are scalars: normal and friction do not act on each other within a row.
+  Vec3 friction = row.impulse.friction - row.mass * (velocity - along * row.normal);
+  const float size = length(friction);
+  if (size > row.static_friction * normal) friction = (row.dynamic_friction * normal / size) * friction;
+  add_to(velocities, row, (normal - row.impulse.normal) * row.normal + (friction - row.impulse.friction));
+  row.impulse = {normal, friction};
+}
+
+void solve_push(Row& row, std::span<Vec3> pushes) {
+  const float now = dot(row.normal, sum_of(pushes, row.vertex, row.weight));
+  const float push = max(0.0f, row.impulse.normal + (row.target - now) * row.mass);
+  add_to(pushes, row, (push - row.impulse.normal) * row.normal);
+  row.impulse.normal = push;
+}
+
+}  // namespace
+
+void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
+                           const SurfaceContactSettings& settings, Arena& arena, SurfaceContacts& contacts) {
+  const ArenaScope scope(arena);
+  const std::size_t count = vertices.positions.size();
+  const std::span<DVec3> moves = arena.make<DVec3>(count);
+  for (std::size_t v = 0; v < count; ++v) moves[v] = double(settings.step) * DVec3(vertices.velocities[v]);
+  const DVec3 mean = mean_of(surfaces, moves);
+  for (std::size_t v = 0; v < count; ++v) moves[v] = moves[v] - mean;
+  contacts.limits.resize(count);
+  set_limits(surfaces, vertices.inverse_mass, moves, contacts.limits);
+  const std::span<SurfacePair> before = arena.make<SurfacePair>(contacts.pairs.size());
+  const std::span<SurfaceImpulse> impulses = arena.make<SurfaceImpulse>(contacts.impulses.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    before[i] = contacts.pairs[i];
+    impulses[i] = contacts.impulses[i];
+  }
+  find_surface_pairs(surfaces, vertices.positions, contacts.limits, float(settings.bounds.least_gap), arena,
+                     contacts.candidates, contacts.pairs);
+  keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
+  sum_impulses(vertices, contacts);
+}
+
+void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                            Arena& arena, SurfaceContacts& contacts) {
+  const ArenaScope scope(arena);
+  const std::size_t count = vertices.positions.size();
+  const std::span<Vec3> velocities = arena.make<Vec3>(count), start = arena.make<Vec3>(count);
+  for (std::size_t v = 0; v < count; ++v)
+    velocities[v] = start[v] = vertices.velocities[v] + vertices.inverse_mass[v] * contacts.owed[v];
+  std::span<Row> rows = arena.make<Row>(contacts.pairs.size());
+  std::size_t used = 0;
+  for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
+    const SurfacePair& pair = contacts.pairs[i];
+    if (!pair.touches) continue;
+    if (!(contacts.impulses[i].normal > 0.0f) && !may_touch(pair, vertices, settings.step)) continue;
+    Row& row = rows[used++];
+    row = make_row(pair, i, vertices, contacts.impulses[i]);
+    const float gap = gap_of(pair);
+    if (gap > 0.0f) row.target = -gap / settings.step;
+  }
+  rows = rows.first(used);
+  for (int n = 0; n < settings.iterations; ++n) {
+    for (std::size_t i = 0; i < used; ++i) solve_row(rows[n % 2 == 0 ? i : used - 1 - i], velocities);
+  }
+  contacts.touching = 0;
+  for (const Row& row : rows) {
+    contacts.impulses[row.pair] = row.impulse;
+    contacts.touching += row.impulse.normal > 0.0f;
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    const float w = vertices.inverse_mass[v];
+    if (!(w > 0.0f)) continue;
+    const Vec3 change = (velocities[v] - start[v]) / w;
+    contacts.owed[v] += change;
+    contacts.totals[v] += change;
+  }
+}
+
+void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
+                   SurfaceContacts& contacts) {
+  const ArenaScope scope(arena);
+  contacts.pushes.assign(vertices.positions.size(), Vec3{});
+  std::span<Row> rows = arena.make<Row>(contacts.pairs.size());
+  std::size_t used = 0;
+  for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
+    const SurfacePair& pair = contacts.pairs[i];
+    const float overlap = -gap_of(pair);
+    if (!pair.touches || overlap < kSlopOfThickness * pair.thickness) continue;
+    Row& row = rows[used++];
+    row = make_row(pair, i, vertices, {});
+    row.target = min(settings.pushout * overlap, kMaxPushOfThickness * pair.thickness);
+  }
+  for (int n = 0; n < settings.iterations; ++n) {
+    for (Row& row : rows.first(used)) solve_push(row, contacts.pushes);
+  }
+}
+
+BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
+                          std::span<const DVec3> targets, const SurfaceContactSettings& settings,
+                          Arena& arena, SurfaceContacts& contacts) {
+  const ArenaScope scope(arena);
+  const std::size_t count = vertices.positions.size();
+  const std::span<DVec3> left = arena.make<DVec3>(count), moves = arena.make<DVec3>(count),
+                         goals = arena.make<DVec3>(count);
+  const std::span<std::uint8_t> held = arena.make<std::uint8_t>(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    held[v] = !(vertices.inverse_mass[v] > 0.0f);
+    goals[v] = held[v] != 0 ? targets[v] : targets[v] + contacts.pushes[v];
+    left[v] = goals[v] - vertices.positions[v];
+  }
+  const DVec3 mean = mean_of(surfaces, left);
+  for (std::size_t v = 0; v < count; ++v) left[v] = left[v] - mean;
+  BoundReport report;
+  Array<SurfacePair> found;
+  std::span<const SurfacePair> pairs = contacts.pairs;
+  bool again = true;
+  for (contacts.rounds = 1; again; ++contacts.rounds) {
+    for (std::size_t v = 0; v < count; ++v) moves[v] = left[v];
+    const BoundReport one =
+        bound_moves(pairs, vertices.positions, contacts.limits, held, settings.bounds, moves, arena);
+    report = {one.shortened, report.forced + one.forced, contacts.rounds == 1 ? one.crossed : report.crossed};
+    // Those that would go further than they were looked for go on in another round.
+    again = false;
+    for (std::size_t v = 0; v < count; ++v) {
+      again |= held[v] == 0 && length(left[v]) > double(contacts.limits[v]);
+      vertices.positions[v] += moves[v];
+      left[v] = left[v] - moves[v];
+    }
+    again = again && contacts.rounds < settings.most_rounds;
+    if (!again) break;
+    set_limits(surfaces, vertices.inverse_mass, left, contacts.limits);
+    find_surface_pairs(surfaces, vertices.positions, contacts.limits, float(settings.bounds.least_gap), arena,
+                       contacts.candidates, found);
+    pairs = found;
+  }
+  // All have moved by the mean less than they should.
+  for (std::size_t v = 0; v < count; ++v) {
+    const bool there = held[v] != 0 || left[v] == DVec3{};
+    vertices.positions[v] = there ? goals[v] : vertices.positions[v] + mean;
+  }
+  return report;
+}
+
+}  // namespace gyre

@@ -1,0 +1,88 @@
+// Contacts of soft surfaces with themselves and each other, in one sub-step: finds the pairs that may touch, solves impulses that stop them from
+// closing, with Coulomb friction, and moves the vertices without a crossing.
+//
+// A pair with weights w (soft/contact/surface_pairs.h) is one contact: its relative velocity is u = sum w_i v_i, and an impulse p on it gives
+// particle i the change of velocity w_i W_i p, with W_i its inverse mass. Rows are solved by projected Gauss-Seidel in the order of
+// their keys, forward and backward in turn:
+//
+//   normal     u.n >= -gap / h while the gap is positive, else u.n >= 0;  impulse >= 0
+//   friction   u_t = 0 within the disc of radius mu times the normal impulse
+//   pushout    the same rows over displacements remove a share of the overlap, without momentum
+//
+// The impulse of a pair, equal and opposite on its two closest points, keeps linear momentum exactly, and angular momentum up to the friction times the
+// gap. No impulse adds kinetic energy: contacts are inelastic.
+//
+// W_i is the bare inverse mass, while the bodies answer impulses through their stiffness, with A^-1, A = M + s K (soft/solver/implicit_step.h). Since A - M
+// is positive semi-definite, the rows see vertices as more mobile than they are, so that no solve goes too far: each lowers the energy of the
+// coupled system, and it is exact where a surface moves as a whole (docs/decisions/soft-contact.md).
+#pragma once
+
+#include "base/arena/arena.h"
+#include "base/container/array.h"
+#include "soft/contact/displacement_bounds.h"
+#include "soft/contact/soft_surface.h"
+#include "soft/contact/surface_pairs.h"
+
+#include <gyre/math.h>
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+// Vertices of all surfaces, in the numbers of PlacedSurface.
+struct SurfaceVertices {
+  std::span<DVec3> positions;
+  std::span<const Vec3> velocities;
+  std::span<const float> inverse_mass;  // 1/kg, 0: held, it goes where it is told
+};
+
+struct SurfaceContactSettings {
+  float step = 0.0f;  // s: of the sub-step
+  int iterations = 4;
+  float pushout = 0.25f;  // share of the overlap removed in a sub-step
+  int most_rounds = 4;    // of finding pairs, for vertices that move further than they were looked for
+  BoundSettings bounds{};
+};
+
+struct SurfaceImpulse {
+  float normal = 0.0f;  // N s
+  Vec3 friction{};
+};
+
+// What persists between sub-steps; may be cleared between any two.
+struct SurfaceContacts {
+  Array<SurfacePair> pairs;
+  Array<SurfaceImpulse> impulses;  // by pair
+  // N s, by vertex: the impulses of all pairs together; those of the last sub-step act as forces in the next, so that the stiffness of the
+  // body spreads them exactly. And the part of them that the velocities do not have yet.
+  Array<Vec3> totals, owed;
+  SurfaceCandidates candidates;
+  Array<float> limits;  // m, by vertex: how far it may move before pairs are found again
+  Array<Vec3> pushes;   // m, by vertex
+  int rounds = 0;       // of finding pairs, in the last sub-step
+  int touching = 0;     // pairs with an impulse
+
+  void clear(std::size_t vertices) {
+    pairs.clear(), impulses.clear();
+    totals.assign(vertices, Vec3{}), owed.assign(vertices, Vec3{});
+  }
+};
+
+// Finds pairs for a sub-step at these velocities, which have the totals of the last. Pairs that were there keep their impulses; what the totals
+// change by, since pairs are gone and normals turn, is owed.
+void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
+                           const SurfaceContactSettings& settings, Arena& arena, SurfaceContacts& contacts);
+// Solves the rows at the present velocities and what is owed; then all changes are owed. The caller gives what is owed to the bodies, each
+// through its stiffness, and may call this again at the velocities that this makes.
+void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                            Arena& arena, SurfaceContacts& contacts);
+// Sets the pushes.
+void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
+                   SurfaceContacts& contacts);
+// Moves the vertices to their targets and by their pushes, as far as the bounds let them. Vertices without inverse mass get to their targets.
+BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
+                          std::span<const DVec3> targets, const SurfaceContactSettings& settings,
+                          Arena& arena, SurfaceContacts& contacts);
+
+}  // namespace gyre

@@ -1,0 +1,231 @@
+// Pairs against brute force, and bounds against exact crossings.
+#include "soft/contact/surface_pairs.h"
+#include "geometry/distance/closest.h"
+#include "random.h"
+#include "soft/contact/displacement_bounds.h"
+#include "soft/contact/surface_crossings.h"
+#include "soft/contact/surface_test_kit.h"
+
+#include <gtest/gtest.h>
+
+namespace gyre {
+namespace {
+
+using namespace surface_test;
+using testing_random::Mixed;
+
+// Numbers of pairs (vertex and triangle, edge and edge) within a distance.
+struct Counted {
+  long corners = 0, edges = 0;
+};
+Counted brute_force_pairs(const Surfaces& all, double most) {
+  Counted out;
+  const auto place = [&](std::size_t s, std::uint32_t v) { return all.placed[s].first + v; };
+  for (std::size_t s = 0; s < all.surfaces.size(); ++s) {
+    for (std::size_t t = 0; t < all.surfaces.size(); ++t) {
+      for (std::uint32_t v = 0; v < std::uint32_t(all.surfaces[s].vertices); ++v) {
+        for (const SurfaceTriangle& one : all.surfaces[t].triangles) {
+          std::uint32_t at[3];
+          bool common = false;
+          for (int k = 0; k < 3; ++k) at[k] = place(t, one.corner[k]), common |= at[k] == place(s, v);
+          if (common) continue;
+          const DVec3 p = all.positions[place(s, v)];
+          const DVec3 near =
+              closest_on_triangle(p, all.positions[at[0]], all.positions[at[1]], all.positions[at[2]]).point;
+          out.corners += length(p - near) <= most;
+        }
+      }
+      if (t < s) continue;
+      for (std::size_t i = 0; i < all.surfaces[s].edges.size(); ++i) {
+        for (std::size_t k = s == t ? i + 1 : 0; k < all.surfaces[t].edges.size(); ++k) {
+          const SurfaceEdge e = all.surfaces[s].edges[i], f = all.surfaces[t].edges[k];
+          const std::uint32_t at[4] = {place(s, e.a), place(s, e.b), place(t, f.a), place(t, f.b)};
+          if (at[0] == at[2] || at[0] == at[3] || at[1] == at[2] || at[1] == at[3]) continue;
+          const SegmentPair near = closest_of_segments(all.positions[at[0]], all.positions[at[1]],
+                                                       all.positions[at[2]], all.positions[at[3]]);
+          out.edges += length(near.on_a - near.on_b) <= most;
+        }
+      }
+    }
+  }
+  return out;
+}
+
+TEST(SurfacePairs, AreThoseOfBruteForce) {
+  Mixed random{11};
+  Arena arena;
+  for (int n = 0; n < 8; ++n) {
+    Surfaces all;
+    Array<float> limits;
+    for (int k = 0; k < 1 + n % 3; ++k) {
+      const int cells = 4 + int(random.next() % 4);
+      Array<DVec3> places = crumpled(cells, 0.1, 0.2, random);
+      for (DVec3& p : places) p.x += n == 7 ? 1.0e6 : 0.0;  // far from the origin
+      all.add(places, grid_triangles(cells, cells), 0.02f);
+    }
+    for (std::size_t v = 0; v < all.positions.size(); ++v)
+      limits.push_back(n % 2 == 0 ? 0.02f : random.single(0.0f, 0.04f));
+    SurfaceCandidates candidates;
+    Array<SurfacePair> pairs;
+    for (SoftSurface& surface : all.surfaces) surface.radius.assign(surface.radius.size(), 0.02f);
+    // All that are within their thickness, whether they touch or not.
+    find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, candidates, pairs);
+    Counted found;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const SurfacePair& pair = pairs[i];
+      (pair.on_a == 1 ? found.corners : found.edges) += 1;
+      if (i > 0) {
+        ASSERT_LT(pairs[i - 1].key, pair.key);
+      }
+      // The weights give the vector between the closest points.
+      DVec3 apart{};
+      double sum = 0.0;
+      for (int k = 0; k < 4; ++k) {
+        apart += double(pair.weight[k]) * (all.positions[pair.vertex[k]] - all.positions[pair.vertex[0]]);
+        sum += double(pair.weight[k]);
+        ASSERT_TRUE(k < pair.on_a ? pair.weight[k] >= 0.0f : pair.weight[k] <= 0.0f);
+      }
+      ASSERT_NEAR(sum, 0.0, 1e-6);
+      ASSERT_LT(length(apart - pair.distance * pair.normal), 1e-6);
+      ASSERT_NEAR(length(pair.normal), 1.0, 1e-12);
+    }
+    // With different limits all that is within the least is found, and nothing beyond the largest.
+    const Counted least = brute_force_pairs(all, n % 2 == 0 ? 0.08 : 0.04);
+    const Counted most = brute_force_pairs(all, n % 2 == 0 ? 0.08 : 0.12);
+    EXPECT_GE(found.corners, least.corners) << n;
+    EXPECT_LE(found.corners, most.corners) << n;
+    EXPECT_GE(found.edges, least.edges) << n;
+    EXPECT_LE(found.edges, most.edges) << n;
+    EXPECT_GT(least.corners, 0);
+    EXPECT_GT(least.edges, 5);
+  }
+}
+
+// Of two flat sheets, forces act between vertices and faces and between edges that cross, all straight up, and nowhere twice; and between
+// the rim of the upper sheet and vertices beyond it.
+TEST(SurfacePairs, TouchAlongTheNormalsOfFlatSheets) {
+  Arena arena;
+  Surfaces all;
+  all.add(places_of(grid_cloth({1, 1}, {6, 6}, {}, {})), grid_triangles(6, 6), 0.02f);
+  all.add(places_of(grid_cloth({0.61f, 0.53f}, {5, 5}, {{0.013, 0.03, 0.027}, {}}, {})), grid_triangles(5, 5),
+          0.02f);
+  Array<float> limits;
+  limits.resize(all.positions.size());
+  SurfaceCandidates candidates;
+  Array<SurfacePair> pairs;
+  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, candidates, pairs);
+  int corners = 0, rim = 0;
+  for (const SurfacePair& pair : pairs) {
+    if (!pair.touches) continue;
+    const bool on_rim =
+        pair.on_a == 1 && (pair.weight[1] == 0.0f || pair.weight[2] == 0.0f || pair.weight[3] == 0.0f);
+    rim += on_rim;
+    if (on_rim) continue;
+    EXPECT_NEAR(absolute(pair.normal.y), 1.0, 1e-9);
+    EXPECT_NEAR(pair.distance, 0.03, 1e-9);
+    corners += pair.on_a == 1;
+  }
+  // Each vertex of the upper sheet is over one face, and each inner one of the lower sheet under one.
+  int under = 0;
+  for (std::size_t v = 0; v < 49; ++v) {
+    under += absolute(all.positions[v].x - 0.013) < 0.305 && absolute(all.positions[v].z - 0.027) < 0.265;
+  }
+  EXPECT_EQ(corners, 36 + under);
+  EXPECT_LT(rim, 12);
+}
+
+TEST(SurfacePairs, OfASheetAtRestAreNone) {
+  Arena arena;
+  Surfaces all;
+  const Array<DVec3> places = places_of(grid_cloth({1, 1}, {30, 30}, {}, {}));
+  all.add(places, grid_triangles(30, 30), 1.0f);  // much thicker than its cells
+  SurfaceCandidates candidates;
+  Array<SurfacePair> pairs;
+  Array<float> limits;
+  limits.resize(all.positions.size());
+  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, candidates, pairs);
+  EXPECT_EQ(pairs.size(), 0u);
+}
+
+// Layers of random bumps that do not cross, moved at random by more than their distance: all that is moved is moved straight, so no
+// crossing at the end, nor at points between, is a strong sign that there is none on the way.
+TEST(DisplacementBounds, RandomMovesNeverCross) {
+  Mixed random{5};
+  Arena arena;
+  long shortened = 0, unbounded = 0;
+  for (int n = 0; n < 3; ++n) {
+    Surfaces all;
+    const int cells = 6;
+    for (int layer = 0; layer < 3; ++layer) {
+      Array<DVec3> places = crumpled(cells, 0.02, 0.008, random);
+      for (DVec3& p : places) p.y += 0.02 * layer;
+      all.add(places, grid_triangles(cells, cells), 0.005f);
+    }
+    ASSERT_EQ(count_crossings(all.placed, all.positions, arena), 0);
+    const std::size_t count = all.positions.size();
+    Array<float> limits;
+    Array<std::uint8_t> held;
+    held.resize(count);
+    limits.assign(count, 0.03f);
+    SurfaceCandidates candidates;
+    for (int move = 0; move < 30; ++move) {
+      Array<SurfacePair> pairs;
+      find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, candidates, pairs);
+      double least = 1.0;
+      for (const SurfacePair& pair : pairs) least = min(least, pair.distance / double(pair.thickness));
+      // Those that were nearer at the start come no nearer; the rest keeps the least gap.
+      EXPECT_GT(least, move == 0 ? 0.0 : 1.0e-3);
+      Array<DVec3> moves;
+      moves.resize(count);
+      for (DVec3& one : moves) {
+        one = {random.between(-0.05, 0.05), random.between(-0.05, 0.05), random.between(-0.05, 0.05)};
+      }
+      if (move % 4 == 3) {
+        for (std::size_t v = 0; v < count; ++v)
+          moves[v].y = 0.3 * (0.02 - all.positions[v].y);  // all to the middle
+      }
+      Array<DVec3> there = all.positions;
+      for (std::size_t v = 0; v < count; ++v) there[v] += moves[v];
+      unbounded += count_crossings(all.placed, there, arena);
+      const BoundReport report = bound_moves(pairs, all.positions, limits, held, {}, moves, arena);
+      shortened += report.shortened;
+      EXPECT_EQ(report.forced + report.crossed, 0);
+      for (const double part : {0.31, 0.77, 1.0}) {
+        for (std::size_t v = 0; v < count; ++v) there[v] = all.positions[v] + part * moves[v];
+        ASSERT_EQ(count_crossings(all.placed, there, arena), 0) << n << " " << move;
+      }
+      all.positions = there;
+    }
+  }
+  EXPECT_GT(shortened, 1000);
+  EXPECT_GT(unbounded, 1000);
+}
+
+// A bound takes the part of a move that goes toward the other surface, and nothing else.
+TEST(DisplacementBounds, LeaveMovesAloneThatDoNotApproach) {
+  Arena arena;
+  Surfaces all;
+  const Array<DVec3> low = places_of(grid_cloth({1, 1}, {4, 4}, {}, {}));
+  const Array<DVec3> high = places_of(grid_cloth({0.5f, 0.5f}, {4, 4}, {{0, 0.03, 0}, {}}, {}));
+  all.add(low, grid_triangles(4, 4), 0.01f);
+  all.add(high, grid_triangles(4, 4), 0.01f);
+  Array<float> limits;
+  limits.assign(all.positions.size(), 0.2f);
+  Array<std::uint8_t> held;
+  held.resize(all.positions.size());
+  SurfaceCandidates candidates;
+  Array<SurfacePair> pairs;
+  find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, candidates, pairs);
+  Array<DVec3> moves;
+  moves.resize(all.positions.size());
+  for (std::size_t v = 25; v < 50; ++v) moves[v] = {0.01, -0.1, 0.0};
+  bound_moves(pairs, all.positions, limits, held, {}, moves, arena);
+  for (std::size_t v = 0; v < 25; ++v) EXPECT_EQ(moves[v], DVec3{});
+  for (std::size_t v = 25; v < 50; ++v) {
+    EXPECT_NEAR(moves[v].x, 0.01, 1e-9);
+    EXPECT_NEAR(moves[v].y, -(0.03 - 0.2 * 0.02), 1e-5);  // up to a fifth of the thickness
+  }
+}
+
+}  // namespace
+}  // namespace gyre

@@ -1,0 +1,158 @@
+// What the tests of contacts of soft surfaces share: sheets, and soft bodies that step by themselves and touch each other alone.
+#pragma once
+
+#include "soft/contact/surface_contacts.h"
+#include "soft/contact/surface_crossings.h"
+#include "soft/elements/cloth.h"
+#include "soft/elements/solid.h"
+#include "soft/solver/soft_pass.h"
+#include "soft/solver/soft_test_kit.h"
+
+#include <cmath>
+
+namespace gyre::surface_test {
+
+using soft_test::Bench;
+
+// The triangles of a grid of cells, as grid_cloth() numbers its particles.
+inline Array<std::uint32_t> grid_triangles(int columns, int rows) {
+  Array<std::uint32_t> out;
+  const auto at = [&](int i, int j) { return std::uint32_t(i + j * (columns + 1)); };
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const std::uint32_t quad[6] = {at(i, j),     at(i, j + 1), at(i + 1, j),
+                                     at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)};
+      out.append(quad);
+    }
+  }
+  return out;
+}
+
+inline Array<DVec3> places_of(const SoftBody& body) {
+  Array<DVec3> out;
+  for (int i = 0; i < body.particles.count; ++i) out.push_back(body.particles.place(i));
+  return out;
+}
+
+struct Surfaces {
+  Array<SoftSurface> surfaces;
+  Array<PlacedSurface> placed;
+  Array<DVec3> positions;
+
+  void add(std::span<const DVec3> places, std::span<const std::uint32_t> triangles, float radius) {
+    surfaces.push_back(make_surface(places, triangles, radius));
+    const std::uint32_t first = std::uint32_t(positions.size());
+    positions.append(places);
+    placed.push_back({nullptr, first});
+    for (std::size_t i = 0; i < placed.size(); ++i) placed[i].surface = &surfaces[i];
+  }
+};
+
+// A random sheet: a grid whose vertices are moved about, far enough to cross itself.
+template <class Random>
+Array<DVec3> crumpled(int cells, double scatter, double lift, Random& random) {
+  Array<DVec3> out;
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      out.push_back({double(i) / cells + random.between(-scatter, scatter), random.between(-lift, lift),
+                     double(j) / cells + random.between(-scatter, scatter)});
+    }
+  }
+  return out;
+}
+
+// Soft bodies in half steps, with contacts of their surfaces and nothing else.
+struct SoftScene {
+  Bench bench;
+  Arena contact_arena;
+  Array<SoftBody> bodies;
+  Surfaces all;
+  SurfaceContacts contacts;
+  ImplicitSettings implicit;
+  SurfaceContactSettings settings;
+  BoundReport report;
+  int spread = 3, outer = 2;
+
+  SoftScene(float step, Vec3 gravity) {
+    implicit.step = settings.step = step;
+    implicit.gravity = gravity;
+  }
+  void add(SoftBody body, std::span<const std::uint32_t> triangles, float radius) {
+    const Array<DVec3> places = places_of(body);
+    all.add(places, triangles, radius);
+    bodies.push_back(std::move(body));
+  }
+  void add_sheet(float size, int cells, Pose pose, const ClothMaterial& material, float radius) {
+    add(grid_cloth({size, size}, {cells, cells}, pose, material), grid_triangles(cells, cells), radius);
+  }
+
+  void step() {
+    bench.arena.reset();
+    contact_arena.reset();
+    Array<ImplicitStep> steps;
+    if (contacts.totals.size() != all.positions.size()) contacts.clear(all.positions.size());
+    std::size_t at = 0;
+    for (SoftBody& body : bodies) {
+      Particles& p = body.particles;
+      for (int i = 0; i < p.count; ++i) {
+        const Vec3 force = (1.0f / implicit.step) * contacts.totals[at++];
+        p.fx[i] = force.x, p.fy[i] = force.y, p.fz[i] = force.z;
+      }
+      steps.push_back(begin_implicit(body, implicit, bench.kernels, bench.arena, bench.tasks));
+    }
+    Array<Vec3> velocities;
+    Array<float> inverse_mass;
+    Array<DVec3> targets;
+    all.positions.clear();
+    for (const SoftBody& body : bodies) {
+      const Particles& p = body.particles;
+      for (int i = 0; i < p.count; ++i) {
+        all.positions.push_back(p.place(i));
+        velocities.push_back(p.velocity(i));
+        inverse_mass.push_back(p.loose[i] / p.mass[i]);
+      }
+    }
+    const SurfaceVertices vertices{all.positions, velocities, inverse_mass};
+    find_surface_contacts(all.placed, vertices, settings, contact_arena, contacts);
+    for (int n = 0; n < outer; ++n) {
+      solve_surface_contacts(vertices, settings, contact_arena, contacts);
+      at = 0;
+      for (std::size_t k = 0; k < bodies.size(); ++k) {
+        Particles& p = bodies[k].particles;
+        const VectorRows rows = make_vectors(bench.arena, p.x.size());
+        for (std::size_t i = 0; i < p.x.size(); ++i) {
+          Vec3 one{};
+          if (int(i) < p.count) std::swap(one, contacts.owed[at + i]);
+          rows.x[i] = one.x, rows.y[i] = one.y, rows.z[i] = one.z;
+        }
+        add_impulses(bodies[k], steps[k], rows, spread, bench.kernels, bench.arena, bench.tasks);
+        for (int i = 0; i < p.count; ++i) velocities[at++] = p.velocity(i);
+      }
+    }
+    push_surfaces(vertices, settings, contact_arena, contacts);
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      Particles& p = bodies[k].particles;
+      finish_implicit(bodies[k], steps[k], bench.kernels, bench.tasks);
+      for (int i = 0; i < p.count; ++i) targets.push_back(p.place(i));
+    }
+    report = move_surfaces(all.placed, vertices, targets, settings, contact_arena, contacts);
+    at = 0;
+    for (SoftBody& body : bodies) {
+      for (int i = 0; i < body.particles.count; ++i) body.particles.set_place(i, all.positions[at++]);
+    }
+  }
+
+  long crossings() { return count_crossings(all.placed, all.positions, contact_arena); }
+  double energy() const {
+    double sum = 0.0;
+    for (const SoftBody& body : bodies) {
+      sum += elastic_energy(body) + soft_test::kinetic_energy(body);
+      for (int i = 0; i < body.particles.count; ++i) {
+        sum -= double(body.particles.mass[i]) * dot(DVec3(implicit.gravity), body.particles.place(i));
+      }
+    }
+    return sum;
+  }
+};
+
+}  // namespace gyre::surface_test
