@@ -112,6 +112,26 @@ TEST(SoftMatter, ABridgeOfRodsGainsNoEnergy) {
   EXPECT_GT(world.pose(planks[3]).position.y, 1.5);
 }
 
+// Both ends are held, and one goes further than the rope is long.
+TEST(SoftMatter, ARopeOfRodsThatIsTooShortStaysInLine) {
+  World world = make_world();
+  BodyDef def;
+  def.type = BodyType::kinematic;
+  def.pose.position = {1, 0, 0};
+  def.linear_velocity = {0.5f, 0, 0};
+  const BodyId hand = world.add_body(def);
+  const SoftId rope = world.add_rope({.points = {{0, 0, 0}, {1, 0, 0}}, .segments = 20});
+  world.pin(rope, 0), world.attach(rope, 20, hand);
+  for (int i = 0; i < 120; ++i) {
+    world.step(kStep);
+    const SoftVertices v = world.vertices(rope);
+    for (std::size_t k = 0; k < v.size(); ++k) {
+      ASSERT_NEAR(v.x[k], (1.0 + 0.5 * (i + 1) / 60.0) * double(k) / 20.0, 0.02) << i;
+      ASSERT_NEAR(v.y[k], 0.0, 0.02) << i;
+    }
+  }
+}
+
 // Balls from a gram to half a ton fall onto a sheet of 0.8 kg whose rim is held: none falls through, and no energy comes from nothing.
 TEST(SoftMatter, ATrampolineThrowsBallsOfAnyMass) {
   for (const float mass : {0.001f, 1.0f, 500.0f}) {

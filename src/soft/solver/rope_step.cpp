@@ -68,7 +68,13 @@ class RopeSolver {
         band_{step.band, kUnknowns * body.particles.count},
         right_(step.right),
         place_(step.place),
-        speed_(step.velocity) {}
+        speed_(step.velocity) {
+    if (chain_.stretch_stiffness > 0.0) {
+      stiffness_ = chain_.stretch_stiffness, damping_ = double(body.damping);
+    } else {
+      for (int i = 0; i < particles_.count; ++i) stiffness_ += kRodStiffness * double(particles_.mass[i]);
+    }
+  }
 
   RopeReport run() {
     for (int i = 0; i < particles_.count; ++i) at(speed_, i) = {};
@@ -93,6 +99,9 @@ class RopeSolver {
  private:
   // Errors of length, as shares of a segment, that are left as they are: those of the next sub-step's linearisation.
   static constexpr double kSmallError = 1.0e-4;
+  // N/kg: what segments that keep their length have for EA, by the rope's mass. Without it there is no solution where both ends are held
+  // further apart than the rope is long. Ten thousand times the rope's mass stretch it by a ten-thousandth.
+  static constexpr double kRodStiffness = 1.0e9;
 
   template <class T>
   static T& at(std::span<T> items, int i) {
@@ -152,13 +161,9 @@ class RopeSolver {
     const double error = span - rest;
     // With the part of damping: it alone can hold a load, and turns with the segment as the rest does.
     const double tension = chain_.tension[s];
-    if (chain_.stretch_stiffness > 0.0) {
-      const double k = chain_.stretch_stiffness / rest, beta = double(body_.damping);
-      band_.add(t, t, -1.0 / (k * h_ * (h_ + beta)));
-      right_[std::size_t(t)] = -(error + beta * dot(n, at(speed_, s + 1) - at(speed_, s))) / (h_ + beta);
-    } else {
-      right_[std::size_t(t)] = -error / h_;
-    }
+    const double k = stiffness_ / rest, beta = damping_;
+    band_.add(t, t, -1.0 / (k * h_ * (h_ + beta)));
+    right_[std::size_t(t)] = -(error + beta * dot(n, at(speed_, s + 1) - at(speed_, s))) / (h_ + beta);
     if (held(s) && held(s + 1)) {
       band_.column(t)[0] = 1.0;
       right_[std::size_t(t)] = 0.0;
@@ -226,12 +231,10 @@ class RopeSolver {
     double worst = 0.0;
     for (int s = 0; s < segments(); ++s) {
       const double rest = chain_.rest_length[s];
-      double error = length(place_[std::size_t(s + 1)] - place_[std::size_t(s)]) - rest;
-      if (chain_.stretch_stiffness > 0.0) {  // the length that the tension asks for
-        const DVec3 edge = place_[std::size_t(s + 1)] - place_[std::size_t(s)];
-        const double rate = dot(edge, speed_[std::size_t(s + 1)] - speed_[std::size_t(s)]) / length(edge);
-        error += double(body_.damping) * rate - chain_.tension[s] * rest / chain_.stretch_stiffness;
-      }
+      // Beside the length that the tension asks for.
+      const DVec3 edge = place_[std::size_t(s + 1)] - place_[std::size_t(s)];
+      const double rate = dot(edge, speed_[std::size_t(s + 1)] - speed_[std::size_t(s)]) / length(edge);
+      const double error = length(edge) - rest + damping_ * rate - chain_.tension[s] * rest / stiffness_;
       worst = max(worst, absolute(error) / rest);
     }
     return worst;
@@ -242,6 +245,8 @@ class RopeSolver {
   Chain& chain_;
   const RopeSettings& settings_;
   double h_;
+  double stiffness_ = 0.0;  // N: EA
+  double damping_ = 0.0;    // s
   Band<Width> band_;
   std::span<double> right_;
   std::span<DVec3> place_, speed_;
