@@ -72,7 +72,8 @@ class RopeSolver {
     if (chain_.stretch_stiffness > 0.0) {
       stiffness_ = chain_.stretch_stiffness, damping_ = double(body.damping);
     } else {
-      for (int i = 0; i < particles_.count; ++i) stiffness_ += kRodStiffness * double(particles_.mass[i]);
+      const double share = body.held.size() > 1 ? kHeldRodStiffness : kRodStiffness;
+      for (int i = 0; i < particles_.count; ++i) stiffness_ += share * double(particles_.mass[i]);
     }
   }
 
@@ -99,9 +100,10 @@ class RopeSolver {
  private:
   // Errors of length, as shares of a segment, that are left as they are: those of the next sub-step's linearisation.
   static constexpr double kSmallError = 1.0e-4;
-  // N/kg: what segments that keep their length have for EA, by the rope's mass. Without it there is no solution where both ends are held
-  // further apart than the rope is long. Ten thousand times the rope's mass stretch it by a ten-thousandth.
-  static constexpr double kRodStiffness = 1.0e9;
+  // N/kg: EA of segments that keep their length, by the rope's mass: ten thousand times the mass stretch it by a ten-thousandth. A rope
+  // that is held at several vertices has less, about that of steel: these may be further apart than it is long, and bodies between them must
+  // not be pulled by the rounding of its length.
+  static constexpr double kRodStiffness = 1.0e9, kHeldRodStiffness = 1.0e7;
 
   template <class T>
   static T& at(std::span<T> items, int i) {
