@@ -82,7 +82,12 @@ std::vector<Command> all_commands() {
           SetDrive{joint, {.position = {1, 2, 3}, .frequency = 4, .max_torque = 5}},
           SetJointEnabled{joint, false},
           SetMotion{IntegratorKind::rk4, SpringKind::explicit_force, TimeStepping::adaptive, 0.5f, 7},
-          SetSolver{SolverKind::lcp, {LcpMethod::lemke, 8, 30, 90}}};
+          SetSolver{SolverKind::lcp, {LcpMethod::lemke, 8, 30, 90}},
+          AddSoft{std::make_shared<const SoftDef>(ClothDef{.grid = ClothGrid{{2, 1}, {4, 3}}, .bend_stiffness = 0.5f})},
+          RemoveSoft{SoftId{3, 1, kWorld}},
+          AttachSoft{SoftId{3, 1, kWorld}, 7, BodyId{5, 3, kWorld}},
+          ReleaseSoft{SoftId{3, 1, kWorld}, 7},
+          SetVertices{SoftId{3, 1, kWorld}, {{1, 2, 3}}, {{4, 5, 6}}}};
 }
 
 // Fields of certain kinds of joints are restored as well.
