@@ -18,15 +18,13 @@ constexpr double kContactTolerance = 1.0e-3;
 constexpr float kGripShare = 1.0e3f;
 // How often a sub-step is solved because contacts open or begin to slide.
 constexpr int kGripPasses = 3;
-// The share of their impulse that attachments which share a body lose before each sub-step. Without it planks on several inextensible ropes
-// gain energy; with it the load hangs a little lower.
-constexpr float kSharedLeak = 0.1f;
 // A contact lets go when the vertex is further away than this share of the length of an edge.
 constexpr float kReleaseShare = 0.02f;
 // Friction below this share of its bound sticks.
 constexpr float kStickShare = 0.999f;
-// The share of an error of position that is removed in a sub-step.
-constexpr float kErrorShare = 0.2f;
+// The rate (1/s) at which errors of position are removed, and the largest share of them in a sub-step. A rate, since sub-steps up to an impact
+// may be as short as one likes.
+constexpr float kErrorRate = 48.0f, kErrorShare = 0.2f;
 // Largest speed of removal of penetration, as a share of the speed of a fall from the length of an edge: as for contacts of bodies.
 constexpr float kSoftPushShare = 0.4f;
 constexpr float kEarthGravity = 9.81f;  // m/s^2, where the world has none
@@ -124,6 +122,8 @@ void move_held(const SoftSolve& s, SoftEntry& entry) {
   }
 }
 
+float error_rate(const SoftSolve& s) { return min(kErrorRate, kErrorShare / s.h); }
+
 // Where the row acts now, and what it wants. Particles have not moved yet.
 void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
   const RigidWorld& w = *s.w;
@@ -132,8 +132,8 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     row.arm = rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
     const DVec3 point = center_now(w, row.body) + DVec3(row.arm);
     // Each of several vertices moves a part of the body; together they would remove more than there is.
-    const float share = kErrorShare / float(s.scratch->grips[row.touched]);
-    row.bias = (share / s.h) * difference(place, point);
+    const float rate = error_rate(s) / float(s.scratch->grips[row.touched]);
+    row.bias = rate * difference(place, point);
   } else {
     const SoftContact& contact = entry.contacts[row.source];
     row.normal = turned_now(w, contact.body, contact.normal);
@@ -144,7 +144,7 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     const float gravity = length(w.settings.gravity);
     const float most = kSoftPushShare * std::sqrt((gravity > 0.0f ? gravity : kEarthGravity) * entry.size);
     const float open = row.grip == SoftGrip::open ? gap / s.h : 0.0f;
-    const float wanted = gap > 0.0f ? open : max(kErrorShare * gap / s.h, -most);
+    const float wanted = gap > 0.0f ? open : max(error_rate(s) * gap, -most);
     row.bias = wanted * row.normal - contact.surface_velocity;
   }
   row.body_compliance = body_compliance(w, row);
@@ -162,18 +162,6 @@ Sym3 gripped_inertia(const SoftSolve& s, const SoftRow& row, float mass) {
   if (row.grip == SoftGrip::slides)
     return along(row.normal, 1.0f / (shares * dot(row.normal, row.body_compliance * row.normal) + give));
   return inverse(shares * row.body_compliance + Sym3{give, give, give, 0.0f, 0.0f, 0.0f});
-}
-
-// Attachments that share a body begin with less than their last impulses, so that differences between their parts die away.
-void leak_impulses(SoftSolve& s, std::uint32_t member) {
-  const SoftWork& work = work_of(s, member);
-  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
-    SoftRow& row = s.scratch->rows[k];
-    row.leak = {};
-    if (row.is_contact || s.scratch->grips[row.touched] < 2) continue;
-    row.leak = -kSharedLeak * row.impulse;
-    row.impulse += row.leak;
-  }
 }
 
 // Rows act as forces with their last impulses, and those that grip let their vertices carry inertia.
@@ -345,7 +333,7 @@ void give_to_bodies(SoftSolve& s) {
   for (VelocityChange& change : s.scratch->changes) change = {};
   for (SoftRow& row : s.scratch->rows) {
     if (row.carried < 0) continue;
-    try_on_body(s, row, row.carried_step + row.leak);
+    try_on_body(s, row, row.carried_step);
     row.impulse += row.carried_step;
   }
   change_bodies(s, 1.0f);
@@ -509,7 +497,6 @@ void begin_soft_members(SoftSolve& s, int begin, int end) {
     SoftWork& work = work_of(s, m);
     work.mark = work.arena.mark();
     move_held(s, entry);
-    leak_impulses(s, m);
     const bool is_implicit = entry.settings().integrator == SoftIntegrator::implicit;
     if (is_implicit && work.first_row != work.last_row) copy_motion(entry.body, work.before);
     for (int pass = 0; pass < kGripPasses; ++pass) {

@@ -54,7 +54,6 @@ struct SoftRow {
   Vec3 error{};             // m/s: relative velocity and bias when the round began
   Vec3 step{};              // N s: the change of impulse that is tried
   Vec3 carried_step{};      // N s: on the vertex, by what it carries
-  Vec3 leak{};              // N s: what the impulse has lost since the last sub-step
 };
 
 // Memory of one body of soft matter, which lasts; its arena is used within a half-step.

@@ -336,7 +336,7 @@ void add_soft(BatchContext& batch, SoftStore& soft, SoftScratch& scratch, const 
                 .members = scratch.slots,
                 .h = float(plan.parts) * plan.h,
                 .parts = plan.parts,
-                .warm_scale = plan.warm_scale,
+                .warm_scale = min(plan.warm_scale, kMaxWarm),
                 .time = batch.w.now};
   make_soft_rows(batch.soft);
 }

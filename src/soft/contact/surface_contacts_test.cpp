@@ -93,8 +93,7 @@ TEST(SurfaceContacts, ATwistedStripDoesNotCross) {
   int touching = 0;
   const int turning = 720;
   for (int n = 0; n < turning + 120; ++n) {
-    // Held vertices go where they are told: beyond this they would force the strip through itself.
-    const double angle = 2.0 * 2.0 * 3.14159265358979 * min(n, turning) / turning;
+    const double angle = 2.0 * 3.0 * 3.14159265358979 * min(n, turning) / turning;
     for (HeldParticle& one : strip.held) {
       const bool far = one.particle > across;
       const int i = one.particle % (across + 1);
@@ -103,6 +102,11 @@ TEST(SurfaceContacts, ATwistedStripDoesNotCross) {
     }
     scene.step();
     touching += scene.contacts.touching > 0;
+    // Held vertices go where they are told: in the last quarter turn before three turns they take room that others need.
+    if (scene.report.forced > 0) {
+      EXPECT_GT(n, 600);
+      break;
+    }
     ASSERT_EQ(scene.crossings(), 0) << n;
   }
   EXPECT_GT(touching, 200);

@@ -70,10 +70,11 @@ class RopeSolver {
         place_(step.place),
         speed_(step.velocity) {
     if (chain_.stretch_stiffness > 0.0) {
-      stiffness_ = chain_.stretch_stiffness, damping_ = double(body.damping);
-    } else {
-      const double share = body.held.size() > 1 ? kHeldRodStiffness : kRodStiffness;
-      for (int i = 0; i < particles_.count; ++i) stiffness_ += share * double(particles_.mass[i]);
+      compliance_ = 1.0 / chain_.stretch_stiffness, damping_ = double(body.damping);
+    } else if (body.held.size() > 1) {
+      double mass = 0.0;
+      for (int i = 0; i < particles_.count; ++i) mass += double(particles_.mass[i]);
+      compliance_ = 1.0 / (kHeldRodStiffness * mass);
     }
   }
 
@@ -100,10 +101,9 @@ class RopeSolver {
  private:
   // Errors of length, as shares of a segment, that are left as they are: those of the next sub-step's linearisation.
   static constexpr double kSmallError = 1.0e-4;
-  // N/kg: EA of segments that keep their length, by the rope's mass: ten thousand times the mass stretch it by a ten-thousandth. A rope
-  // that is held at several vertices has less, about that of steel: these may be further apart than it is long, and bodies between them must
-  // not be pulled by the rounding of its length.
-  static constexpr double kRodStiffness = 1.0e9, kHeldRodStiffness = 1.0e7;
+  // N/kg: EA by the mass of a rope that keeps its length but is held at several vertices, about that of steel. These may be further apart
+  // than it is long, and bodies between them must not be pulled by the rounding of its length.
+  static constexpr double kHeldRodStiffness = 1.0e7;
 
   template <class T>
   static T& at(std::span<T> items, int i) {
@@ -163,8 +163,8 @@ class RopeSolver {
     const double error = span - rest;
     // With the part of damping: it alone can hold a load, and turns with the segment as the rest does.
     const double tension = chain_.tension[s];
-    const double k = stiffness_ / rest, beta = damping_;
-    band_.add(t, t, -1.0 / (k * h_ * (h_ + beta)));
+    const double beta = damping_;
+    band_.add(t, t, -compliance_ * rest / (h_ * (h_ + beta)));
     right_[std::size_t(t)] = -(error + beta * dot(n, at(speed_, s + 1) - at(speed_, s))) / (h_ + beta);
     if (held(s) && held(s + 1)) {
       band_.column(t)[0] = 1.0;
@@ -236,7 +236,7 @@ class RopeSolver {
       // Beside the length that the tension asks for.
       const DVec3 edge = place_[std::size_t(s + 1)] - place_[std::size_t(s)];
       const double rate = dot(edge, speed_[std::size_t(s + 1)] - speed_[std::size_t(s)]) / length(edge);
-      const double error = length(edge) - rest + damping_ * rate - chain_.tension[s] * rest / stiffness_;
+      const double error = length(edge) - rest + damping_ * rate - chain_.tension[s] * rest * compliance_;
       worst = max(worst, absolute(error) / rest);
     }
     return worst;
@@ -247,8 +247,8 @@ class RopeSolver {
   Chain& chain_;
   const RopeSettings& settings_;
   double h_;
-  double stiffness_ = 0.0;  // N: EA
-  double damping_ = 0.0;    // s
+  double compliance_ = 0.0;  // 1/N: 1 / EA
+  double damping_ = 0.0;     // s
   Band<Width> band_;
   std::span<double> right_;
   std::span<DVec3> place_, speed_;
