@@ -165,7 +165,7 @@ struct SceneHold {
   bool operator==(const SceneHold&) const = default;
 };
 
-// What ropes, cloths and soft bodies have in common beside their definitions.
+// Data that ropes, cloths and soft bodies have in common beside their definitions.
 struct SceneSoft {
   std::string name;
   std::optional<SceneColor> color;

@@ -230,7 +230,7 @@ void SceneRunner::put_present_softs(Scene& out, const std::vector<int>& places) 
   const auto keep = [](const auto&, std::size_t) {};
   put(out.ropes, scene_.ropes, ropes_, keep);
   put(out.cloths, scene_.cloths, cloths_, keep);
-  // What a region pinned stays pinned by number: the region would catch what has moved into it.
+  // Vertices that a region pinned stay pinned by number: the region would catch what has moved into it.
   put(out.soft_bodies, scene_.soft_bodies, soft_bodies_, [&](SceneSoftBody& solid, std::size_t i) {
     solid.pinned_region.reset();
     for (const int vertex : region_pins_[i]) solid.holds.push_back({vertex, -1});

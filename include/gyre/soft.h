@@ -32,7 +32,7 @@ const char* to_string(SoftKind kind);
 enum class SoftIntegrator : std::uint8_t { implicit, explicit_euler, semi_implicit_euler, rk4, verlet };
 const char* to_string(SoftIntegrator integrator);
 
-// What holds neighbours together. springs: Hooke's; rods: edges that keep their length; membrane: triangles of a continuum.
+// Links hold neighbours together. springs: Hooke's; rods: edges that keep their length; membrane: triangles of a continuum.
 enum class RopeLinks : std::uint8_t { springs, rods };
 enum class ClothLinks : std::uint8_t { springs, rods, membrane };
 const char* to_string(RopeLinks links);
@@ -43,7 +43,7 @@ const char* to_string(ClothLinks links);
 enum class SolidModel : std::uint8_t { linear, corotated, neo_hookean };
 const char* to_string(SolidModel model);
 
-// What ropes, cloths and solids have in common.
+// Settings that ropes, cloths and solids have in common.
 struct SoftSettings {
   SoftIntegrator integrator = SoftIntegrator::implicit;
   float damping = 0.0f;                 // s: stress grows by damping times its rate of change; rigid motion is never damped
@@ -128,7 +128,7 @@ struct SoftVertices {
   Vec3 velocity(std::size_t i) const { return {vx[i], vy[i], vz[i]}; }
 };
 
-// What one of them is made of and how it stands.
+// The size and state of one of them.
 struct SoftInfo {
   SoftKind kind = SoftKind::rope;
   int vertices = 0;

@@ -233,7 +233,7 @@ void fall_asleep(SoftEntry& entry) {
   for (Array<double>& moved : entry.body.moved) moved.clear();
 }
 
-// What may touch something that is awake wakes too.
+// A group wakes as a whole: a surface that may touch one that is awake wakes too.
 void wake_groups(SoftStore& soft, float gravity, Arena& arena, float seconds) {
   const ArenaScope scope(arena);
   const std::span<const std::uint32_t> group = group_soft(soft, gravity, seconds, arena);

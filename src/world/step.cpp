@@ -149,7 +149,7 @@ void finish_step(WorldState& s, float seconds, float whole, bool last) {
   });
 }
 
-// What a step that is tried again begins with.
+// Saves and restores the state with which a step that is tried again begins.
 void save_before(WorldState& s) {
   s.impacts.before.save(s.rigid);
   if (!s.soft.empty()) s.soft_before = s.soft;

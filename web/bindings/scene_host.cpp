@@ -36,7 +36,7 @@ int refuse_scene(Answer& answer, const SceneError& error) {
   return answer.checked(make_error(ErrorCode::invalid_data, "%s", error.text().c_str()));
 }
 
-// What is held at the start, vertices of a region among it, which a scene as it stands names one by one.
+// Vertices held at the start, those of a region among them, which a scene as it stands names one by one.
 std::vector<std::vector<SceneHold>> holds_of(const SceneRunner& runner) {
   std::vector<std::vector<SceneHold>> holds;
   bool by_region = false;

@@ -1,4 +1,4 @@
-// What there is to draw at one moment: all shapes, links, ropes, cloths and solids as coloured triangles, placed relative to an origin near
+// Everything to draw at one moment: all shapes, links, ropes, cloths and solids as coloured triangles, placed relative to an origin near
 // the subject.
 #pragma once
 

@@ -181,7 +181,7 @@ TEST(GasEnergy, energy_without_viscosity_does_not_grow) {
   }
 }
 
-// What a disc differs from itself by after one turn, over its area.
+// The difference of a disc from itself after one turn, over its area.
 double turn_disc(const GasKernels& kernels) {
   constexpr int kCells = 64;
   GasGrid grid = make_gas_grid(box_of(kCells, kCells, 1, 1.0f / kCells, GasBoundary::closed), 293.15f);

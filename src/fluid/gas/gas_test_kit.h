@@ -1,4 +1,4 @@
-// What the tests of gases share.
+// Helpers of the tests of gases.
 #pragma once
 
 #include "fluid/gas/gas_reading.h"

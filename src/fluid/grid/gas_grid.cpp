@@ -20,7 +20,7 @@ GasGrid make_gas_grid(const GasBox& box, float ambient_temperature) {
 
 namespace {
 
-// What a ghost gets: another cell of its line, that with the opposite sign, or a value.
+// The value of a ghost: another cell of its line, that with the opposite sign, or a value.
 enum class GhostKind : std::uint8_t { copy, mirror, value };
 
 // Fills the layer `to` along an axis from the layer `from`; the other axes with their ghosts.

@@ -26,7 +26,7 @@ struct GasSolids {
 // Free space: no face is cut.
 void clear_solids(const GridShape& shape, int labels, GasSolids& solids);
 
-// What the pressure of the gas does to a solid in a step.
+// The impulse and its moment that the pressure of the gas gives to a solid in a step.
 struct GasImpulse {
   DVec3 linear{};   // N s
   DVec3 angular{};  // N m s, about the lower corner of the box

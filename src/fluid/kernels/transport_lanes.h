@@ -1,7 +1,7 @@
 // Kernels of transport, one template for every width: MacCormack's scheme with a limiter (A. Selle, R. Fedkiw, B. Kim, Y. Liu, J. Rossignac,
 // "An Unconditionally Stable MacCormack Method", 2008).
 //
-// What the bounds cut off in one cell has come from its neighbours: the correction moves matter between cells. So for fields whose sum counts,
+// Matter that the bounds cut off in one cell has come from its neighbours: the correction moves matter between cells. So for fields whose sum counts,
 // neighbours of a cell that is cut short are cut short as well (after S. Zalesak, "Fully Multidimensional Flux-Corrected Transport
 // Algorithms for Fluids", 1979). A sharp edge would otherwise move at half its speed.
 //

@@ -1,4 +1,4 @@
-// What accelerates a gas besides pressure: buoyancy, gravity along periodic axes, vorticity confinement, emitters.
+// The accelerations of a gas besides pressure: buoyancy, gravity along periodic axes, vorticity confinement, emitters.
 #pragma once
 
 #include "fluid/solver/gas_pass.h"

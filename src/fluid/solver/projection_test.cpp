@@ -78,7 +78,7 @@ TEST(GasSolid, a_ball_that_moves_through_a_closed_box_leaves_no_divergence) {
   for (int i = 0; i < 10; ++i) {
     place_sphere(grid, {0.8f + 0.02f * float(i), 0.8f, 0.81f}, 0.33f, {1.2f, 0.0f, 0.0f}, bench.solids);
     const GasReport report = bench.step(grid, 1.0f / 60.0f);
-    // What the fractions of faces do not add up to is spread over all cells: 1e-3 of what the ball pushes.
+    // The remainder of the fractions of faces is spread over all cells: 1e-3 of what the ball pushes.
     EXPECT_LT(report.divergence / 60.0f, 1.0e-3f);
     EXPECT_LT(report.iterations, 20);
   }
@@ -131,7 +131,7 @@ TEST(GasSolid, gas_enclosed_by_walls_that_close_in_does_not_disturb_the_rest) {
     }
   }
   ASSERT_TRUE(bench.memory.matrix.has_pockets);
-  // What closes in, 0.5 m/s over four cells, remains, the same in every cell of the pocket; outside there is nothing.
+  // The inflow, 0.5 m/s over four cells, remains, the same in every cell of the pocket; outside there is nothing.
   EXPECT_NEAR(double(largest_divergence(
                   {grid, bench.solids, bench.memory, *bench.kernels, bench.tasks, 1.0f / 60.0f})),
               0.5 / 0.4, 0.02);

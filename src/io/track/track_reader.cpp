@@ -65,7 +65,7 @@ struct PoseTrack::Reader {
   bool started = false;
   bool closed = false;
 
-  // What frame `decoded` holds, or nothing.
+  // The frame that `decoded` holds, or nothing.
   static constexpr std::size_t kNone = SIZE_MAX;
   std::vector<TrackedBody> bodies;
   std::vector<TrackedSoft> softs;

@@ -72,7 +72,7 @@ class MoveBounds {
                      BoundReport& report) const {
     double free = planes.gap - least_gap * double(pair.thickness);
     if (!(planes.gap > 0.0)) ++report.crossed;
-    // What each feature asks for; what those of its vertices take that are held.
+    // The room that each feature asks for, and the room that its held vertices take.
     double asked[2] = {}, taken[2] = {};
     for (int k = 0; k < 4; ++k) {
       const int side = k < pair.on_a ? 0 : 1;

@@ -41,7 +41,7 @@ void update_candidates(std::span<const PlacedSurface> surfaces, std::span<const 
                        std::span<const float> reach, std::span<const float> ahead, Arena& arena,
                        SurfaceCandidates& candidates);
 
-// What the filter of pairs reads.
+// Input of the filter of pairs.
 void fill_filter(std::span<const DVec3> positions, std::span<const float> reach, DVec3 origin,
                  std::span<FilterVertex> out);
 

@@ -50,7 +50,7 @@ struct SurfaceImpulse {
   Vec3 friction{};
 };
 
-// What persists between sub-steps; may be cleared between any two.
+// State between sub-steps; it may be cleared between any two.
 struct SurfaceContacts {
   Array<SurfacePair> pairs;
   Array<SurfaceImpulse> impulses;  // by pair

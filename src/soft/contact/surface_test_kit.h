@@ -1,4 +1,4 @@
-// What the tests of contacts of soft surfaces share: sheets, and soft bodies that step by themselves and touch each other alone.
+// Helpers of the tests of contacts of soft surfaces: sheets, and soft bodies that step by themselves and touch each other alone.
 #pragma once
 
 #include "soft/contact/surface_contacts.h"

@@ -117,7 +117,7 @@ Error check_surface(std::span<const Vec3> vertices, std::span<const std::uint32_
   return {};
 }
 
-// What a resolution gave, before anything is said about it.
+// The outcome of a resolution, before it is judged.
 struct Filling {
   TetrahedralMesh mesh;
   Array<bool> filled;  // by component

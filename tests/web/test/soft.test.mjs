@@ -113,7 +113,7 @@ test('the mouse drags ropes, cloths and solids, and lets them go', async (t) => 
     await page.evaluate(() => window.gyre.advance(1));
     assert.deepEqual(await page.evaluate(() => window.gyre.names()), ['ground', 'weight']);
   }
-  // What the scene pins is never taken hold of, so it is still there.
+  // The hand never takes hold of vertices that the scene pins, so they are still there.
   assert.deepEqual(await page.evaluate(() => window.gyre.vertices('flag').slice(0, 3)), pinned);
   const last = await page.evaluate(() => window.gyre.step);
   const hash = await page.evaluate(() => window.gyre.hash());

@@ -148,7 +148,7 @@ export class Softs {
     return [...this.items.values()].find(({ soft }) => soft.name === name);
   }
 
-  // What can be picked.
+  // Everything that can be picked.
   get toPick(): DrawnSoft[] {
     for (const item of this.items.values()) {
       if (item.sphereIsOld) item.mesh.geometry.computeBoundingSphere();

@@ -266,7 +266,7 @@ export class LiveSession implements Session {
     return worldPart(this.scene.bodies().ids[0] ?? this.scene.softs()[0] ?? 0);
   }
 
-  // What the scene holds stays held; the hand is strong enough for the bodies that hang there.
+  // Vertices that the scene holds stay held; the hand is strong enough for the bodies that hang there.
   private grabSoft(id: SoftId, { key, at }: Extract<Command, { do: 'grab_soft' }>): void {
     const { scene } = this;
     if (!id || !scene.softExists(id)) return;

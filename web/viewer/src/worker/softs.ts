@@ -6,7 +6,7 @@ export function softKindName(kind: number): SoftKindName {
   return kind === SoftKind.rope ? 'rope' : kind === SoftKind.cloth ? 'cloth' : 'solid';
 }
 
-// What is drawn of one: three numbers a vertex, or its coordinates one by one. Of a solid that was made of a surface that surface, which its
+// The drawn points of one: three numbers a vertex, or its coordinates one by one. Of a solid that was made of a surface that surface, which its
 // tetrahedra carry along.
 function drawn(world: World, id: SoftId): { rows: Float64Array } | { columns: [Float64Array, Float64Array, Float64Array] } {
   const rows = world.softSurface(id);
