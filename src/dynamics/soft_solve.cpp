@@ -18,8 +18,6 @@ constexpr double kContactTolerance = 1.0e-3;
 constexpr float kGripShare = 1.0e3f;
 // How often a sub-step is solved because contacts open or begin to slide.
 constexpr int kGripPasses = 3;
-// A contact lets go when the vertex is further away than this share of the length of an edge.
-constexpr float kReleaseShare = 0.02f;
 // Friction below this share of its bound sticks.
 constexpr float kStickShare = 0.999f;
 // The rate (1/s) at which errors of position are removed, and the largest share of them in a sub-step. A rate, since sub-steps up to an impact
@@ -140,11 +138,11 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     row.arm = turned_now(w, contact.body, contact.from_body);
     const DVec3 point = center_now(w, contact.body) + DVec3(row.arm);
     const float gap = dot(row.normal, difference(place, point)) - entry.radius;
-    if (gap > kReleaseShare * entry.size) row.grip = SoftGrip::open;
     const float gravity = length(w.settings.gravity);
     const float most = kSoftPushShare * std::sqrt((gravity > 0.0f ? gravity : kEarthGravity) * entry.size);
-    const float open = row.grip == SoftGrip::open ? gap / s.h : 0.0f;
-    const float wanted = gap > 0.0f ? open : max(error_rate(s) * gap, -most);
+    // A vertex that is free may come as near as it likes; one that is held goes to the surface from either side.
+    const bool is_free = row.grip == SoftGrip::open && gap > 0.0f;
+    const float wanted = is_free ? gap / s.h : clamp(error_rate(s) * gap, -most, most);
     row.bias = wanted * row.normal - contact.surface_velocity;
   }
   row.body_compliance = body_compliance(w, row);

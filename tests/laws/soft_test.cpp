@@ -141,6 +141,31 @@ TEST(Cloth, AStripHangsLongerByItsWeight) {
   }
 }
 
+// A sheet on a slope slides with g (sin a - mu cos a), and stops and stays where mu is above tan a.
+TEST(Cloth, SlidesAndStopsByCoulombsLaw) {
+  const auto slide = [](double slope, float speed, double seconds, double after) {
+    World world = make_world({.sleeping = false});
+    const double angle = std::atan(slope);
+    BodyDef ground;
+    ground.type = BodyType::fixed;
+    ground.pose.orientation = {0, 0, float(-std::sin(0.5 * angle)), float(std::cos(0.5 * angle))};
+    world.add_body(ground, {.geometry = Plane{}, .material = surface(0.4f)});
+    ClothDef def{.grid = ClothGrid{{0.4f, 0.4f}, {6, 6}}, .links = ClothLinks::membrane, .thickness = 0.01f};
+    def.pose.orientation = ground.pose.orientation;
+    def.pose.position = {0.005 * std::sin(angle), 0.005 * std::cos(angle), 0};
+    const Vec3 down{float(std::cos(angle)), float(-std::sin(angle)), 0};
+    def.settings.velocities.assign(49, speed * down);
+    const SoftId cloth = world.add_cloth(def);
+    run(world, seconds);
+    const DVec3 before = world.vertices(cloth).position(24);
+    run(world, after);
+    return dot(world.vertices(cloth).position(24) - before, wide(down));
+  };
+  const double slope = 0.6, angle = std::atan(slope), a = kG * (std::sin(angle) - 0.4 * std::cos(angle));
+  EXPECT_TRUE(relative_row("S-8 sheet slides down a slope of 0.6", slide(slope, 0.0f, 0.5, 0.5), 0.5 * a * (1.0 - 0.25), 3e-2, 1e-2));
+  EXPECT_TRUE(limit_row("S-8 sheet that has stopped on a slope of 0.3, m", std::fabs(slide(0.3, 1.0f, 1.5, 2.0)), 1e-5, 1e-9));
+}
+
 TEST(Solid, ABarHangsLongerByItsWeight) {
   for (const SolidModel model : {SolidModel::linear, SolidModel::corotated, SolidModel::neo_hookean}) {
     World world = make_world();
