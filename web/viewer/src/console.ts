@@ -83,6 +83,11 @@ export class Console {
     return [...(this.viewer.playback.frame?.poses ?? [])];
   }
 
+  // Of all ropes, cloths and solids: their vertices in the frame that is shown, 3 numbers each, m.
+  allVertices(): number[] {
+    return [...(this.viewer.playback.frame?.softVertices ?? [])];
+  }
+
   // Of a rope, cloth or solid by name: its vertices in the frame that is shown, 3 numbers each, m.
   vertices(name: string): number[] | null {
     const drawn = this.viewer.softs.named(name);
