@@ -92,6 +92,7 @@ ROOMS = {
         "kernels": ["grid"],
         "solver": ["kernels"],
         "gas": ["solver"],
+        "liquid": ["solver"],
     },
     "io": {
         "codec": [],
