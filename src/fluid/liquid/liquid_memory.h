@@ -1,21 +1,31 @@
-// LiquidMemory: arrays that the stages of a step of a liquid share. Nothing in it is state: a new one gives the same bits.
+// LiquidMemory: arrays that the stages of a step of a liquid share. Nothing in it is state: with a new one the results have the same bits.
 #pragma once
 
+#include "fluid/solver/body_coupling.h"
 #include "fluid/solver/pressure_matrix.h"
 
 namespace gyre {
 
+// Cells of a liquid's grid.
+enum class LiquidCell : std::uint8_t { air, liquid, solid };
+
 struct LiquidMemory {
-  static constexpr int kFields = 12;
+  static constexpr int kFields = 8;
   Array<float> field[kFields];
-  Array<float> open[3];          // of faces: the fraction through which pressure acts
-  Array<float> before[3];        // velocities of faces before forces
-  Array<std::uint8_t> cell;      // kind of each cell
-  Array<std::uint8_t> known[3];  // of faces: layers from those whose velocity is given
+  Array<float> sums[3];   // of faces: pairs of the volume of particles and of its momentum
+  Array<float> filled;    // at centres: the fraction of the room around that is full
+  Array<float> drift[3];  // m/s, on faces: what moves particles, besides the velocity, to where there is room
+  Array<float> before[3];  // velocities on faces, as particles give them
+  Array<float> open[3];    // of faces: the fraction through which the liquid passes
+  Array<float>
+      inverse_theta[3];  // of faces at the surface: an edge over the distance from the liquid's centre to it
+  Array<LiquidCell> cell;
+  Array<std::uint8_t> layer[3];  // of faces: how many from those beside liquid, which are 0
   Array<std::int32_t> start;     // of the particles of each cell
-  Array<std::int32_t> place;     // of each particle in the order of cells
+  Array<std::int32_t> place;     // of each particle in the order of cells, -1: it has left
   Array<float> spare;            // a column of particles while they are sorted
   PressureMatrix matrix;
+  BodyCoupling coupling;
 };
 
 }  // namespace gyre
