@@ -17,13 +17,15 @@ struct LiquidMemory {
   Array<float> drift[3];  // m/s, on faces: what moves particles, besides the velocity, to where there is room
   Array<float> before[3];  // velocities on faces, as particles give them
   Array<float> open[3];    // of faces: the fraction through which the liquid passes
-  Array<float>
-      inverse_theta[3];  // of faces at the surface: an edge over the distance from the liquid's centre to it
+  // Of faces: what the gradient of pressure is multiplied by. 1 between cells of liquid, at the surface an edge over the distance from the
+  // liquid's centre to it, 0 where pressure does not act.
+  Array<float> steepness[3];
   Array<LiquidCell> cell;
   Array<std::uint8_t> layer[3];  // of faces: how many from those beside liquid, which are 0
-  Array<std::int32_t> start;     // of the particles of each cell
-  Array<std::int32_t> place;     // of each particle in the order of cells, -1: it has left
-  Array<float> spare;            // a column of particles while they are sorted
+  Array<std::uint8_t> next_layer;
+  Array<std::int32_t> start;  // of the particles of each cell
+  Array<std::int32_t> place;  // of each particle in the order of cells, -1: it has left
+  Array<float> spare;         // a column of particles while they are sorted
   PressureMatrix matrix;
   BodyCoupling coupling;
 };

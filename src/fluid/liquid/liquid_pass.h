@@ -44,6 +44,23 @@ void each_row(const LiquidPass& pass, int faces, Fn&& fn) {
   });
 }
 
+// Ghosts of periodic axes: of cells the cells of the opposite side, of faces across the axis likewise, and its upper faces are its lower ones.
+template <class T>
+void wrap_points(const LiquidPass& pass, T* field) {
+  const GridShape& shape = pass.shape();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!pass.wraps(axis)) continue;
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3, n = shape.cells[axis], stride = shape.stride(axis);
+    for (int j = -1; j <= shape.cells[b]; ++j) {
+      for (int i = -1; i <= shape.cells[a]; ++i) {
+        T* const line = field + shape.first + i * shape.stride(a) + j * shape.stride(b);
+        line[-stride] = line[(n - 1) * stride];
+        line[n * stride] = line[0];
+      }
+    }
+  }
+}
+
 // Where a coordinate lies between two points of the grid.
 struct AxisPlace {
   int base;

@@ -7,10 +7,10 @@ namespace gyre {
 
 namespace {
 
-float along(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+float component_of(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
 // A symmetric positive matrix of six rows in place to its inverse. Rows without a positive pivot become zero.
-void invert(double (&m)[6][6]) {
+void invert_masses(double (&m)[6][6]) {
   double work[6][12] = {};
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) work[i][j] = m[i][j];
@@ -50,7 +50,7 @@ struct FaceRow {
 };
 FaceRow row_of(const CutFace& face) { return {face.axis, face.moment}; }
 
-void multiply(const double (&m)[6][6], const double (&v)[6], double (&out)[6]) {
+void multiply_motion(const double (&m)[6][6], const double (&v)[6], double (&out)[6]) {
   for (int i = 0; i < 6; ++i) {
     double sum = 0.0;
     for (int j = 0; j < 6; ++j) sum += m[i][j] * v[j];
@@ -59,7 +59,7 @@ void multiply(const double (&m)[6][6], const double (&v)[6], double (&out)[6]) {
 }
 
 // J^T x of one solid.
-void gather(const BodyCoupling& coupling, const SolidMotion& solid, const float* x, double (&sum)[6]) {
+void gather_pushes(const BodyCoupling& coupling, const SolidMotion& solid, const float* x, double (&sum)[6]) {
   for (double& one : sum) one = 0.0;
   for (int i = solid.begin; i < solid.end; ++i) {
     const CutFace& face = coupling.faces[i];
@@ -99,8 +99,8 @@ double BodyCoupling::add_product(const float* p, float* q) const {
   for (const SolidMotion& solid : solids) {
     if (!solid.moves) continue;
     double sum[6], moved[6];
-    gather(*this, solid, p, sum);
-    multiply(solid.inverse, sum, moved);
+    gather_pushes(*this, solid, p, sum);
+    multiply_motion(solid.inverse, sum, moved);
     for (int i = 0; i < 6; ++i) {
       moved[i] *= scale;
       product += sum[i] * moved[i];
@@ -132,8 +132,8 @@ void begin_motions(const GasBox& box, std::span<const FluidBody> bodies, int lab
       const DVec3 center = body.center - box.corner;
       solid.center[0] = center.x, solid.center[1] = center.y, solid.center[2] = center.z;
       for (int axis = 0; axis < 3; ++axis) {
-        solid.motion[axis] = double(along(body.velocity, axis));
-        solid.motion[3 + axis] = double(along(body.angular_velocity, axis));
+        solid.motion[axis] = double(component_of(body.velocity, axis));
+        solid.motion[3 + axis] = double(component_of(body.angular_velocity, axis));
       }
       if (solid.moves) {
         solid.mass = 1.0 / double(body.inverse_mass);
@@ -224,8 +224,8 @@ void predict_motions(std::span<const FluidBody> bodies, float step, const float*
     if (!solid.has_body) continue;
     const FluidBody& body = bodies[label];
     for (int axis = 0; axis < 3; ++axis) {
-      solid.motion[axis] += double(step) * double(along(body.acceleration, axis));
-      solid.motion[3 + axis] += double(step) * double(along(body.angular_acceleration, axis));
+      solid.motion[axis] += double(step) * double(component_of(body.acceleration, axis));
+      solid.motion[3 + axis] += double(step) * double(component_of(body.angular_acceleration, axis));
     }
     for (int i = 0; i < 6; ++i) solid.before[i] = solid.motion[i];
     if (!solid.moves) continue;
@@ -246,18 +246,18 @@ void predict_motions(std::span<const FluidBody> bodies, float step, const float*
       for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j) mass[i][j] += layer * row[i] * row[j];
     }
-    invert(solid.inverse);
-    multiply(solid.inverse, momentum, solid.motion);
+    invert_masses(solid.inverse);
+    multiply_motion(solid.inverse, momentum, solid.motion);
   }
 }
 
 void push_bodies(const float* x, BodyCoupling& coupling) {
   for (SolidMotion& solid : coupling.solids) {
     double sum[6], moved[6];
-    gather(coupling, solid, x, sum);
+    gather_pushes(coupling, solid, x, sum);
     for (double& one : sum) one *= -coupling.scale;
     if (solid.moves) {
-      multiply(solid.inverse, sum, moved);
+      multiply_motion(solid.inverse, sum, moved);
       for (int i = 0; i < 6; ++i) solid.motion[i] += moved[i];
     } else {
       for (int i = 0; i < 6; ++i) solid.push[i] += sum[i];
