@@ -113,7 +113,16 @@ TEST(LiquidBody, neutral_and_heavy) {
         [&](Vec3) { return Vec3{}; });
     fill_liquid_box(grid, {0, 0, 0}, {2, 1.75, 1}, {}, bench.solids);
     for (int i = 0; i < (ratio == 1.0f ? 600 : 40); ++i) {
+      const Vec3 before = block.velocity;
       step_with(block, grid, bench);
+      if (ratio == 1.0f && i % 3 == 0 && i < 60) {
+        const SolidMotion& m = bench.memory.coupling.solids[0];
+        std::printf("   %d dv/g %.5f v %.5f k %.4f %.4f particles vy", i,
+                    double(block.velocity.y - before.y) * 60 / 9.81, double(block.velocity.y),
+                    m.displaced[0] / m.volume, m.displaced[1] / m.volume);
+        std::printf(" %.5f\n",
+                    liquid_totals(grid, 1000.0f, {}).momentum.y / liquid_totals(grid, 1000.0f, {}).mass);
+      }
       if (i % 60 == 0 || (ratio > 1 && i % 5 == 0))
         std::printf("%g: %d y %.4f v %.4f x %.4f angle %.3f\n", double(ratio), i, double(block.center.y),
                     double(block.velocity.y), double(block.center.x), double(block.angle));
