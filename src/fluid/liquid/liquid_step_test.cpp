@@ -134,5 +134,41 @@ TEST(LiquidCubes, speed) {
   }
 }
 
+
+TEST(LiquidViscosity, thick) {
+  // Plane flow between plates.
+  GasBox box = box_of(4, 16, 1, 1.0f / 16.0f, GasBoundary::no_slip);
+  box.side[0] = box.side[1] = GasBoundary::periodic;
+  LiquidGrid grid = make_liquid_grid(box);
+  Bench bench;
+  bench.settings.density = 1.0f;
+  bench.settings.viscosity = 1.0f;
+  bench.settings.gravity = {2.0f, 0.0f, 0.0f};
+  fill_liquid_box(grid, {0, 0, 0}, {1, 1, 1}, {}, bench.solids);
+  LiquidReport r;
+  for (int i = 0; i < 90; ++i) r = bench.step(grid);
+  for (int j = 0; j < 16; ++j) {
+    const double y = (j + 0.5) / 16.0;
+    std::printf("%.3f %.5f %.5f\n", y, double(grid.velocity[0][grid.shape.at(1, j, 0)]), y * (1.0 - y));
+  }
+  std::printf("its %d div %g n %d vol %g\n", r.iterations, double(r.divergence), grid.particles(), r.volume);
+}
+
+TEST(LiquidTension, drop) {
+  for (int n : {24, 32}) {
+    const float h = 0.02f / float(n);
+    LiquidGrid grid = make_liquid_grid(box_of(n, n, n, h, GasBoundary::closed));
+    Bench bench;
+    bench.settings.gravity = {};
+    bench.settings.surface_tension = 0.072f;
+    fill_liquid_ball(grid, {0.01, 0.01, 0.01}, 0.005f, {}, bench.solids);
+    LiquidReport r;
+    for (int i = 0; i < 30; ++i) {
+      r = bench.step(grid);
+      if (i % 5 == 0) std::printf("%d sub %d its %d p %g (%g) fastest %g vol %g div %g\n", i, r.substeps, r.iterations, double(probe_liquid(grid, {0.01, 0.01, 0.01}, 1000.0f).pressure), 2 * 0.072 / 0.005, double(fastest_particle(grid)), r.volume / (4.0 / 3.0 * 3.14159265 * 0.005 * 0.005 * 0.005), double(r.divergence));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gyre
