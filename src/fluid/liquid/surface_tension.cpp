@@ -7,7 +7,8 @@ namespace gyre {
 
 namespace {
 
-constexpr int kSmoothings = 3;  // of the fraction: the curvature of one particle does not count
+// Of the fraction. More of them make curvatures of one cell invisible, which then grow: drops burst.
+constexpr int kSmoothings = 1;
 
 // 1/4, 1/2, 1/4 along each axis.
 void smooth_fraction(const LiquidPass& pass, float* field, float* spare) {
