@@ -25,7 +25,7 @@ void find_room(const LiquidPass& pass, float* room) {
     for (int i = c; i < c + shape.cells[0]; ++i) {
       float share = 0.0f;
       if (distance != nullptr) {
-        share = 0.5f + distance[i] * inverse;
+        share = 0.5f - kParticleSkin + distance[i] * inverse;
       } else if (solids.solid[i] == 0) {
         for (int axis = 0; axis < 3; ++axis)
           share += solids.open[axis][i] + solids.open[axis][i + shape.stride(axis)];
@@ -63,30 +63,102 @@ void fill_cell_ghosts(const LiquidPass& pass, LiquidCell* cell) {
   wrap_points(pass, cell);
 }
 
+// Cells that solids leave no face of, and cells in a solid with open faces on opposite sides: liquid on either side of a thin wall must not
+// share a pressure within it. Their faces are closed. Without distances, all cells in solids.
+void block_cells(const LiquidPass& pass) {
+  const GridShape& shape = pass.shape();
+  const GasSolids& solids = pass.solids;
+  std::uint8_t* const blocked = pass.memory.blocked.data();
+  const bool has_distance = !solids.distance.empty();
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      bool block = solids.solid[i] != 0;
+      if (has_distance) {
+        bool any = false, both = false;
+        for (int axis = 0; axis < 3; ++axis) {
+          const float* const open = pass.memory.open[axis].data();
+          const bool lower = open[i] > 0.0f, upper = open[i + shape.stride(axis)] > 0.0f;
+          any = any || lower || upper;
+          both = both || (lower && upper);
+        }
+        block = solids.distance[i] < 0.0f && (!any || both);
+      }
+      blocked[i] = block ? 1 : 0;
+    }
+  });
+  for (int axis = 0; axis < 3; ++axis) {
+    float* const open = pass.memory.open[axis].data();
+    const int step = shape.stride(axis), last = shape.cells[axis];
+    each_row(pass, axis, [&](int c, int j, int k) {
+      const int across = axis == 1 ? j : k;
+      for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+        const int at = axis == 0 ? i : across, f = c + i;
+        if ((at > 0 && blocked[f - step] != 0) || (at < last && blocked[f] != 0)) open[f] = 0.0f;
+      }
+    });
+  }
+}
+
+// A cell whose centre lies in a solid has too little room for particles to tell whether it is liquid. It is as far from the surface as the cells
+// beside it whose centres do not.
+void find_surface_in_solids(const LiquidPass& pass) {
+  const GridShape& shape = pass.shape();
+  const float* const distance = pass.solids.distance.empty() ? nullptr : pass.solids.distance.data();
+  if (distance == nullptr) return;
+  float* const surface = pass.grid.surface.data();
+  LiquidCell* const cell = pass.memory.cell.data();
+  const std::uint8_t* const blocked = pass.memory.blocked.data();
+  each_row(pass, -1, [&](int c, int j, int k) {
+    for (int i = 0; i < shape.cells[0]; ++i) {
+      const int at = c + i;
+      if (distance[at] >= 0.0f || blocked[at] != 0) continue;
+      const int index[3] = {i, j, k};
+      float sum = 0.0f, weights = 0.0f;
+      for (int axis = 0; axis < 3; ++axis) {
+        const float* const open = pass.memory.open[axis].data();
+        const int step = shape.stride(axis);
+        if (index[axis] > 0 && distance[at - step] >= 0.0f)
+          sum += open[at] * surface[at - step], weights += open[at];
+        if (index[axis] < shape.cells[axis] - 1 && distance[at + step] >= 0.0f)
+          sum += open[at + step] * surface[at + step], weights += open[at + step];
+      }
+      surface[at] = weights > 0.0f ? sum / weights : pass.edge(0);
+      pass.memory.filled[at] = 1.0f;
+      cell[at] = surface[at] <= 0.0f ? LiquidCell::liquid : LiquidCell::air;
+    }
+  });
+}
+
 }  // namespace
 
 void find_open_faces(const LiquidPass& pass) {
   const GridShape& shape = pass.shape();
+  const GasSolids& solids = pass.solids;
+  const bool has_distance = solids.present() && !solids.distance.empty();
   for (int axis = 0; axis < 3; ++axis) {
     float* const to = pass.memory.open[axis].data();
     const int step = shape.stride(axis), last = shape.cells[axis];
     const bool wraps = pass.wraps(axis), flat = pass.flat(axis);
     const float low = wraps || pass.box().open(2 * axis) ? 1.0f : 0.0f;
     const float high = wraps || pass.box().open(2 * axis + 1) ? 1.0f : 0.0f;
+    const float half_inverse = 0.5f / pass.edge(axis);
     each_row(pass, axis, [&](int c, int j, int k) {
       const int across = axis == 1 ? j : k;
       for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
         const int at = axis == 0 ? i : across, f = c + i;
         to[f] = flat ? 0.0f : at == 0 ? low : at == last ? high : 1.0f;
-        if (!pass.solids.present()) continue;
-        const std::uint8_t* const solid = pass.solids.solid.data();
-        const float open = pass.solids.open[axis][f];
-        const bool closed =
-            (at > 0 && solid[f - step] != 0) || (at < last && solid[f] != 0) || !(open >= kMinOpen);
-        to[f] = closed ? 0.0f : open < 1.0f ? open * to[f] : to[f];
+        if (!solids.present()) continue;
+        float open = solids.open[axis][f];
+        if (has_distance) {
+          const float below = solids.distance[at > 0 ? f - step : f],
+                      above = solids.distance[at < last ? f : f - step];
+          open = 0.5f + half_inverse * (below + above);
+        }
+        to[f] = !(open >= kMinOpen) ? 0.0f : open < 1.0f ? open * to[f] : to[f];
       }
     });
   }
+  if (solids.present()) block_cells(pass);
 }
 
 void find_surface(const LiquidPass& pass) {
@@ -103,7 +175,7 @@ void find_surface(const LiquidPass& pass) {
     blur(pass, 2, pass.scratch(0), pass.scratch(1));
     room = pass.scratch(1);
   }
-  const std::uint8_t* const solid = pass.solids.present() ? pass.solids.solid.data() : nullptr;
+  const std::uint8_t* const blocked = pass.solids.present() ? pass.memory.blocked.data() : nullptr;
   const float edge = pass.edge(0);
   each_row(pass, -1, [&](int c, int, int) {
     for (int i = c; i < c + shape.cells[0]; ++i) {
@@ -114,11 +186,12 @@ void find_surface(const LiquidPass& pass) {
       const float depth =
           part >= 0.5f ? 1.0f - std::sqrt(2.0f * (1.0f - part)) : std::sqrt(2.0f * part) - 1.0f;
       surface[i] = -edge * depth;
-      cell[i] = solid != nullptr && solid[i] != 0 ? LiquidCell::solid
-                : full >= 0.5f                    ? LiquidCell::liquid
-                                                  : LiquidCell::air;
+      cell[i] = blocked != nullptr && blocked[i] != 0 ? LiquidCell::solid
+                : full >= 0.5f                        ? LiquidCell::liquid
+                                                      : LiquidCell::air;
     }
   });
+  if (pass.solids.present()) find_surface_in_solids(pass);
   fill_ghosts(pass.box(), shape, surface);
   fill_cell_ghosts(pass, cell);
 }

@@ -53,7 +53,8 @@ bool is_solid(const LiquidGrid& grid, const GasSolids& solids, Vec3 at) {
   }
   if (!solids.distance.empty()) {
     // Particles that touch the surface would be pushed out at once.
-    return sample_field(grid.box, grid.shape, solids.distance.data(), -1, at) < 0.1f * grid.box.cell.x;
+    return sample_field(grid.box, grid.shape, solids.distance.data(), -1, at) <
+           kParticleSkin * grid.box.cell.x;
   }
   return solids.solid[grid.shape.at(index[0], index[1], index[2])] != 0;
 }

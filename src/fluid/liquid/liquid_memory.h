@@ -20,6 +20,7 @@ struct LiquidMemory {
   // Of faces: what the gradient of pressure is multiplied by. 1 between cells of liquid, at the surface an edge over the distance from the
   // liquid's centre to it, 0 where pressure does not act.
   Array<float> steepness[3];
+  Array<std::uint8_t> blocked;  // cells without room for liquid
   Array<LiquidCell> cell;
   Array<std::uint8_t> layer[3];  // of faces: how many from those beside liquid, which are 0
   Array<std::uint8_t> next_layer;

@@ -13,6 +13,9 @@ namespace gyre {
 
 inline float part_along(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
+// Particles stay this many edges away from solids.
+inline constexpr float kParticleSkin = 0.1f;
+
 struct LiquidPass {
   LiquidGrid& grid;
   const GasSolids& solids;

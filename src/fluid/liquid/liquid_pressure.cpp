@@ -110,7 +110,7 @@ PressureReport project_liquid(const LiquidPass& pass, const ProjectionSettings& 
         pass.box(),  shape,
         pass.solids, {memory.open[0].data(), memory.open[1].data(), memory.open[2].data()},
         active,      density};
-    find_cut_faces(coupling, pass.bodies, true, memory.coupling);
+    find_cut_faces(coupling, true, memory.coupling);
     predict_motions(pass.bodies, pass.step, velocity, memory.coupling);
   }
   find_open_inflow(pass, vectors.r);

@@ -12,11 +12,18 @@ double liquid_volume(const LiquidGrid& grid, const GasSolids& solids) {
   const float* const distance =
       solids.present() && !solids.distance.empty() ? solids.distance.data() : nullptr;
   const std::uint8_t* const solid = solids.present() ? solids.solid.data() : nullptr;
+  const float* const surface = grid.surface.data();
   double sum = 0.0;
   for (int row = 0; row < shape.rows(); ++row) {
     const int c = shape.row(row % shape.cells[1], row / shape.cells[1]);
     for (int i = c; i < c + shape.cells[0]; ++i) {
-      float full = clamp(0.5f - grid.surface[i] * inverse, 0.0f, 1.0f);
+      const float depth = -surface[i] * inverse;
+      float full = depth >= 0.0f ? 1.0f - 0.5f * (1.0f - depth) * (1.0f - depth)
+                                 : 0.5f * (1.0f + depth) * (1.0f + depth);
+      bool deep = depth >= 0.0f;
+      for (const int step : {1, shape.pitch, shape.plane})
+        deep = deep && surface[i - step] <= 0.0f && surface[i + step] <= 0.0f;
+      if (deep) full = 1.0f;
       if (distance != nullptr) {
         full *= clamp(0.5f + distance[i] * inverse, 0.0f, 1.0f);
       } else if (solid != nullptr && solid[i] != 0) {
@@ -25,28 +32,7 @@ double liquid_volume(const LiquidGrid& grid, const GasSolids& solids) {
       sum += double(full);
     }
   }
-  // Drops, where nothing within a cell is liquid.
-  double drops = 0.0;
-  const AxisPlaces axes[3] = {{grid.box, 0}, {grid.box, 1}, {grid.box, 2}};
-  for (int p = 0; p < grid.particles(); ++p) {
-    int base[3];
-    bool inside = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float at = grid.position[axis][p];
-      inside = inside && at >= 0.0f && at <= float(shape.cells[axis]) * axes[axis].edge;
-      base[axis] = inside ? axes[axis].center(at).base : 0;
-    }
-    if (!inside) continue;
-    bool outside = true;
-    for (int corner = 0; corner < 8 && outside; ++corner) {
-      const int place[3] = {base[0] + (corner & 1), base[1] + (corner >> 1 & 1), base[2] + (corner >> 2)};
-      const bool exists = place[0] < shape.cells[0] && place[1] < shape.cells[1] &&
-                          place[2] < shape.cells[2] && place[0] >= 0 && place[1] >= 0 && place[2] >= 0;
-      outside = !exists || !(grid.surface[shape.at(place[0], place[1], place[2])] < 0.5f * grid.box.cell.x);
-    }
-    if (outside) drops += double(grid.volume[p]);
-  }
-  return cell * sum + drops;
+  return cell * sum;
 }
 
 LiquidTotals liquid_totals(const LiquidGrid& grid, float density, Vec3 gravity) {

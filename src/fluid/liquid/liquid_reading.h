@@ -5,7 +5,8 @@
 
 namespace gyre {
 
-// m^3: within the surface, and of the drops outside it.
+// m^3: cells within the surface are full, however many particles they have; those at it, and those of drops and films too thin to be
+// liquid cells, count as full as the distance from the surface says.
 double liquid_volume(const LiquidGrid& grid, const GasSolids& solids);
 
 struct LiquidTotals {

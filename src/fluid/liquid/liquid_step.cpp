@@ -24,6 +24,8 @@ void prepare_memory(const LiquidPass& pass) {
     renew(memory.open[axis]);
     renew(memory.steepness[axis]);
   }
+  memory.blocked.clear();
+  memory.blocked.resize(size, std::uint8_t(0));
   memory.cell.clear();
   memory.cell.resize(size, LiquidCell::solid);
   memory.matrix = PressureMatrix{};
@@ -147,6 +149,7 @@ void find_liquid_fields(LiquidGrid& grid, const GasSolids& solids) {
   LiquidMemory memory;
   LiquidPass pass{grid, solids, {}, memory, select_gas_kernels(0), tasks, 0.0f, 0.0f};
   prepare_memory(pass);
+  find_open_faces(pass);
   sort_particles(pass);
   find_filled(pass);
   find_surface(pass);

@@ -5,7 +5,6 @@ namespace gyre {
 
 namespace {
 
-constexpr float kSkin = 0.1f;       // edges: how far particles stay from solids
 constexpr float kStride = 0.2f;     // edges: between the points of a path that are looked at
 constexpr float kMargin = 1.0e-3f;  // edges: how far they stay from walls
 
@@ -117,7 +116,7 @@ void ParticleCollision::avoid_solids(int particle, const float (&from)[3], float
   }
   begin -= shift_begin;
   end -= shift_end;
-  const float skin = kSkin * edge_;
+  const float skin = kParticleSkin * edge_;
   const Vec3 way = end - begin;
   const float span = length(way);
   // Farther from every solid than the way is long.

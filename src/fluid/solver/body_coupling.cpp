@@ -129,6 +129,7 @@ void begin_motions(const GasBox& box, std::span<const FluidBody> bodies, int lab
       const FluidBody& body = bodies[std::size_t(label)];
       solid.has_body = true;
       solid.moves = body.inverse_mass > 0.0f;
+      solid.volume = double(body.volume);
       const DVec3 center = body.center - box.corner;
       solid.center[0] = center.x, solid.center[1] = center.y, solid.center[2] = center.z;
       for (int axis = 0; axis < 3; ++axis) {
@@ -148,8 +149,7 @@ void begin_motions(const GasBox& box, std::span<const FluidBody> bodies, int lab
   }
 }
 
-void find_cut_faces(const CouplingGrid& grid, std::span<const FluidBody> bodies, bool layers,
-                    BodyCoupling& coupling) {
+void find_cut_faces(const CouplingGrid& grid, bool layers, BodyCoupling& coupling) {
   const GridShape& shape = grid.shape;
   const GasSolids& solids = grid.solids;
   const float edges[3] = {grid.box.cell.x, grid.box.cell.y, grid.box.cell.z};
@@ -159,6 +159,8 @@ void find_cut_faces(const CouplingGrid& grid, std::span<const FluidBody> bodies,
   const bool has_distance = layers && !solids.distance.empty();
   const int labels = int(coupling.solids.size());
   Array<CutFace> found;
+  for (SolidMotion& solid : coupling.solids)
+    for (double& one : solid.displaced) one = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     if (grid.box.flat(axis)) continue;
     const int step = shape.stride(axis);
@@ -168,8 +170,13 @@ void find_cut_faces(const CouplingGrid& grid, std::span<const FluidBody> bodies,
         for (int i = 0; i < shape.cells[0]; ++i) {
           const int at = axis == 0 ? i : axis == 1 ? j : k;
           const int f = c + i;
-          const int label = solids.label[axis][f];
+          int label = solids.label[axis][f];
+          if (!solids.nearest.empty())
+            label =
+                solids.distance[f] < solids.distance[f - step] ? solids.nearest[f] : solids.nearest[f - step];
           if (at == 0 || label < 0 || label >= labels || !(grid.open[axis][f] < 1.0f)) continue;
+          const float closed = 1.0f - grid.open[axis][f];
+          coupling.solids[label].displaced[axis] += double(closed) * volume;
           CutFace face;
           face.face = f;
           face.lower = grid.active[f - step] > 0.0f ? f - step : -1;
@@ -177,7 +184,7 @@ void find_cut_faces(const CouplingGrid& grid, std::span<const FluidBody> bodies,
           if (face.lower < 0 && face.upper < 0) continue;
           face.axis = std::int16_t(axis);
           face.label = std::int16_t(label);
-          face.share = (1.0f - grid.open[axis][f]) / edges[axis];
+          face.share = closed / edges[axis];
           face.told = solids.velocity[axis][f];
           if (layers && !(grid.open[axis][f] > 0.0f)) {
             float depth = 0.0f;
@@ -213,7 +220,13 @@ void find_cut_faces(const CouplingGrid& grid, std::span<const FluidBody> bodies,
   }
   coupling.faces.resize(found.size());
   for (const CutFace& face : found) coupling.faces[coupling.solids[face.label].end++] = face;
-  (void)bodies;
+  // Corners count for too much: without this a body as heavy as the fluid would rise.
+  for (CutFace& face : coupling.faces) {
+    const SolidMotion& solid = coupling.solids[face.label];
+    const double displaced = solid.displaced[face.axis];
+    if (displaced > 0.9 * solid.volume && displaced < 1.1 * solid.volume)
+      face.share *= float(solid.volume / displaced);
+  }
 }
 
 void predict_motions(std::span<const FluidBody> bodies, float step, const float* const (&velocity)[3],

@@ -35,6 +35,8 @@ struct SolidMotion {
   double center[3] = {};      // m, from the corner of the box
   double inertia[3][3] = {};  // of the body, kg m^2
   double mass = 0.0;
+  double volume = 0.0;        // m^3; 0: not known
+  double displaced[3] = {};   // m^3: its volume as the faces across each axis have it
   double inverse[6][6] = {};  // of the masses of body and layers
   double before[6] = {};      // the motion at the end of the sub-step without the fluid
   double motion[6] = {};      // and with it
@@ -61,8 +63,7 @@ struct CouplingGrid {
   const float* active;
   float density;
 };
-void find_cut_faces(const CouplingGrid& grid, std::span<const FluidBody> bodies, bool layers,
-                    BodyCoupling& coupling);
+void find_cut_faces(const CouplingGrid& grid, bool layers, BodyCoupling& coupling);
 // The motions of bodies at the beginning of a step.
 void begin_motions(const GasBox& box, std::span<const FluidBody> bodies, int labels, BodyCoupling& coupling);
 // The motions after `step` without pressure, layers counted; `velocity`: of the fluid on faces.
