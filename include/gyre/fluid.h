@@ -57,7 +57,7 @@ struct TaylorGreen {
 // The fields of a gas with which it goes on, in the order of cells: x fastest, then y, then z; velocities on the lower faces of cells, with
 // the upper faces of the last ones, so cells + 1 along their own axis.
 struct GasFields {
-  std::array<std::vector<float>, 3> velocity{};  // m/s
+  std::vector<float> velocity_x{}, velocity_y{}, velocity_z{};  // m/s
   std::vector<float> density{};                  // kg/m^3, of smoke
   std::vector<float> temperature{};              // K
   std::vector<float> pressure{};                 // m^2/s^2, over the density of the gas
@@ -91,6 +91,7 @@ struct FluidRegion {
 struct LiquidParticles {
   std::vector<DVec3> positions{};  // m
   std::vector<Vec3> velocities{};  // m/s
+  std::vector<float> volumes{};    // m^3; empty: an eighth of a cell each, a quarter in a plane flow
   std::vector<float>
       affine{};  // 1/s, 9 numbers each, rows first: how the velocity changes around the particle; empty: not at all
 };

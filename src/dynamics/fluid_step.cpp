@@ -1,0 +1,238 @@
+#include "dynamics/fluid_step.h"
+
+#include "fluid/gas/gas_reading.h"
+#include "fluid/liquid/liquid_reading.h"
+#include "fluid/store/fluid_builder.h"
+#include "math/rotation.h"
+#include "rigid/sleep/island.h"
+
+#include <cmath>
+
+namespace gyre {
+
+namespace {
+
+// A body that sleeps wakes if the force of a fluid changes by more than this share of its weight.
+constexpr float kWakeShare = 0.01f;
+
+DVec3 upper_corner(const GasBox& box) {
+  return box.corner + DVec3{box.cells[0] * double(box.cell.x), box.cells[1] * double(box.cell.y),
+                            box.cells[2] * double(box.cell.z)};
+}
+
+// The weight of the gas whose place the bodies take: the part of its pressure that the solver leaves out, since it rests on it
+// (gas_forces.h). Faces that a body closes carry it, within the body too.
+void add_lift(const GasGrid& gas, const GasSolids& solids, const GasSettings& settings, float seconds,
+              std::span<GasImpulse> impulses) {
+  const GridShape& shape = gas.shape;
+  const Vec3 h = gas.box.cell;
+  const double volume = double(h.x) * double(h.y) * double(h.z);
+  const float gravity[3] = {settings.gravity.x, settings.gravity.y, settings.gravity.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (gravity[axis] == 0.0f || gas.box.flat(axis) || gas.box.periodic(axis)) continue;
+    const double scale = -double(seconds) * double(settings.density) * double(gravity[axis]) * volume;
+    const Array<float>& open = solids.open[axis];
+    const Array<std::int16_t>& label = solids.label[axis];
+    for (int k = 0; k < shape.cells[2]; ++k) {
+      for (int j = 0; j < shape.cells[1]; ++j) {
+        const int row = shape.row(j, k);
+        for (int i = 0; i < shape.cells[0]; ++i) {
+          const std::size_t c = std::size_t(row + i);
+          if (label[c] < 0 || (axis == 0 ? i : axis == 1 ? j : k) == 0) continue;
+          const double push = scale * (1.0 - double(open[c]));
+          const DVec3 at{(i + (axis == 0 ? 0.0 : 0.5)) * double(h.x),
+                         (j + (axis == 1 ? 0.0 : 0.5)) * double(h.y),
+                         (k + (axis == 2 ? 0.0 : 0.5)) * double(h.z)};
+          const DVec3 force{axis == 0 ? push : 0.0, axis == 1 ? push : 0.0, axis == 2 ? push : 0.0};
+          GasImpulse& impulse = impulses[std::size_t(label[c])];
+          impulse.linear += force;
+          impulse.angular += cross(at, force);
+        }
+      }
+    }
+  }
+}
+
+const FluidPush* find_push(const Array<FluidPush>& pushes, std::uint32_t body) {
+  for (const FluidPush& one : pushes)
+    if (one.body == body) return &one;
+  return nullptr;
+}
+
+// Gives the impulses of the step to the bodies as forces. A sleeping body stays as it is as long as its force does.
+void push_bodies(RigidWorld& w, FluidEntry& entry, const FluidScratch& scratch, float seconds) {
+  Array<FluidPush> pushes;
+  for (std::size_t label = 0; label < scratch.solids.bodies.size(); ++label) {
+    const std::uint32_t body = scratch.solids.bodies[label];
+    if (w.bodies.flags[body].type != BodyType::dynamic || w.bodies.flags[body].frozen != 0) continue;
+    const GasImpulse& impulse = scratch.impulses[label];
+    FluidPush push;
+    push.body = body;
+    push.force = to_float((1.0 / double(seconds)) * impulse.linear);
+    const DVec3 arm = entry.box().corner - w.bodies.poses[body].center;
+    push.torque = to_float((1.0 / double(seconds)) * (impulse.angular + cross(arm, impulse.linear)));
+    if (!is_finite(push.force) || !is_finite(push.torque)) continue;
+    if (is_asleep(w, body)) {
+      const FluidPush* const before = find_push(entry.pushes, body);
+      const float weight = w.bodies.masses[body].mass * length(w.settings.gravity);
+      const Vec3 old = before != nullptr ? before->force : Vec3{};
+      if (!(length(push.force - old) > kWakeShare * weight)) {
+        push.force = old, push.torque = before != nullptr ? before->torque : Vec3{};
+        pushes.push_back(push);
+        continue;
+      }
+      wake(w, body);
+    }
+    BodyForces& forces = w.bodies.forces[body];
+    forces.force += push.force;
+    forces.torque += push.torque;
+    pushes.push_back(push);
+  }
+  entry.pushes = std::move(pushes);
+}
+
+bool is_finite_field(const Array<float>& field) {
+  float sum = 0.0f;
+  for (const float one : field) sum += 0.0f * one;  // 0, or not a number if one is not finite
+  return sum == 0.0f;
+}
+bool is_finite_fluid(const FluidEntry& entry) {
+  const auto all = [](const auto& fields) {
+    bool good = true;
+    for (const Array<float>& field : fields) good = good && is_finite_field(field);
+    return good;
+  };
+  if (entry.is_liquid())
+    return all(entry.liquid.position) && all(entry.liquid.motion) && all(entry.liquid.affine);
+  return all(entry.gas.velocity) && is_finite_field(entry.gas.density) &&
+         is_finite_field(entry.gas.temperature) && is_finite_field(entry.gas.pressure);
+}
+
+// A fluid that is no longer finite goes on at rest: a gas as air, a liquid with those particles whose places are finite.
+void still(FluidEntry& entry) {
+  if (!entry.is_liquid()) {
+    entry.gas = make_gas_grid(entry.gas.box, entry.gas.ambient_temperature);
+    return;
+  }
+  LiquidGrid calm = make_liquid_grid(entry.liquid.box);
+  const LiquidGrid& old = entry.liquid;
+  for (std::size_t i = 0; i < std::size_t(old.particles()); ++i) {
+    const Vec3 at{old.position[0][i], old.position[1][i], old.position[2][i]};
+    if (is_finite(at)) add_particle(calm, at, {}, old.volume[i]);
+  }
+  entry.liquid = std::move(calm);
+}
+
+// Bodies as the pressure of a liquid sees them: those that are awake and free to move yield to it.
+void list_bodies(const RigidWorld& w, FluidScratch& scratch) {
+  scratch.bodies.clear();
+  for (const std::uint32_t body : scratch.solids.bodies) {
+    FluidBody out;
+    const BodyFlags& flags = w.bodies.flags[body];
+    const BodyMotion& motion = w.bodies.motion[body];
+    out.center = w.bodies.poses[body].center;
+    if (flags.type != BodyType::fixed)
+      out.velocity = motion.linear_velocity, out.angular_velocity = motion.angular_velocity;
+    if (flags.type == BodyType::dynamic && flags.frozen == 0 && flags.awake != 0) {
+      const BodyMass& mass = w.bodies.masses[body];
+      const BodyForces& forces = w.bodies.forces[body];
+      const Sym3 inverse_inertia = rotate_inertia(w.bodies.poses[body].orientation, mass.inverse_inertia);
+      out.inverse_mass = mass.inverse_mass;
+      out.inverse_inertia = inverse_inertia;
+      out.acceleration = forces.gravity_scale * w.settings.gravity + mass.inverse_mass * forces.force;
+      out.angular_acceleration = inverse_inertia * forces.torque;
+    }
+    scratch.bodies.push_back(out);
+  }
+}
+
+void step_gas_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const GasKernels& kernels,
+                    TaskSystem& tasks, double time, float seconds) {
+  const GasDef& def = entry.gas_def();
+  GasSettings settings;
+  settings.density = def.density, settings.buoyancy = def.buoyancy;
+  settings.vorticity = def.vorticity, settings.viscosity = def.viscosity;
+  settings.advection = def.advection;
+  settings.gravity = w.settings.gravity;
+  const GasReport report = step_gas(entry.gas, own.solids.solids, entry.emitters.view(), settings, time,
+                                    seconds, own.gas, kernels, tasks, own.impulses.view());
+  own.report.substeps = report.substeps, own.report.iterations = report.iterations;
+  own.report.divergence = report.divergence, own.report.residual = report.residual;
+  if (own.solids.solids.present())
+    add_lift(entry.gas, own.solids.solids, settings, seconds, own.impulses.view());
+}
+
+void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const GasKernels& kernels,
+                       TaskSystem& tasks, double time, float seconds) {
+  const LiquidDef& def = entry.liquid_def();
+  LiquidSettings settings;
+  settings.density = def.density, settings.viscosity = def.viscosity;
+  settings.surface_tension = def.surface_tension;
+  settings.gravity = w.settings.gravity;
+  own.sources.clear();
+  own.report.full = entry.liquid.particles() >= kMaxLiquidParticles && !entry.emitters.empty();
+  if (!own.report.full) {
+    for (const GasEmitter& one : entry.emitters)
+      own.sources.push_back(
+          {one.position, one.radius, one.has_velocity ? one.velocity : Vec3{}, one.start, one.end});
+  }
+  list_bodies(w, own);
+  const LiquidReport report =
+      step_liquid(entry.liquid, own.solids.solids, own.bodies.view(), own.sources.view(), settings, time,
+                  seconds, own.liquid, kernels, tasks, own.impulses.view());
+  own.report.substeps = report.substeps, own.report.iterations = report.iterations;
+  own.report.divergence = report.divergence, own.report.residual = report.residual;
+}
+
+bool is_within(const GasBox& box, DVec3 point) {
+  const DVec3 upper = upper_corner(box);
+  return point.x >= box.corner.x && point.y >= box.corner.y && point.z >= box.corner.z &&
+         point.x <= upper.x && point.y <= upper.y && point.z <= upper.z;
+}
+
+}  // namespace
+
+void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& scratch,
+                 const GasKernels& kernels, TaskSystem& tasks, double time, float seconds) {
+  if (scratch.size() < fluids.entries.size()) scratch.resize(fluids.entries.size());
+  for (std::size_t slot = 0; slot < fluids.entries.size(); ++slot) {
+    FluidEntry& entry = fluids.entries[slot];
+    if (entry.def == nullptr) continue;
+    FluidScratch& own = scratch[slot];
+    cut_fluid_cells(w, entry.box(), entry.shape(), entry.is_liquid(), tasks, own.solids);
+    own.impulses.clear();
+    own.impulses.resize(own.solids.bodies.size(), GasImpulse{});
+    own.report = {};
+    if (entry.is_liquid())
+      step_liquid_entry(w, entry, own, kernels, tasks, time, seconds);
+    else
+      step_gas_entry(w, entry, own, kernels, tasks, time, seconds);
+    if (!is_finite_fluid(entry)) {
+      still(entry);
+      own.gas = {}, own.liquid = {};
+      own.report = {};
+      own.report.failed = true;
+      continue;
+    }
+    push_bodies(w, entry, own, seconds);
+  }
+}
+
+bool find_stream(const FluidStore& fluids, DVec3 point, FluidStream& out) {
+  bool found = false;
+  for (const FluidEntry& entry : fluids.entries) {
+    if (entry.def == nullptr || !is_within(entry.box(), point)) continue;
+    if (entry.is_liquid()) {
+      const LiquidProbe probe = probe_liquid(entry.liquid, point, entry.liquid_def().density);
+      if (!probe.inside) continue;
+      out = {probe.velocity, entry.liquid_def().density, true};
+      return true;
+    }
+    if (found) continue;
+    out = {gas_velocity(entry.gas, point), entry.gas_def().density, false};
+    found = true;
+  }
+  return found;
+}
+
+}  // namespace gyre
