@@ -193,8 +193,9 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
   report.divergence = largest_liquid_divergence(pass);
   const int layers = 2 + int(settings.max_cells + 0.999f);
   report.iterations += find_carrier(pass).iterations;
-  find_layers(pass, layers, pass.grid.velocity);
-  find_layers(pass, layers, pass.memory.drift);
+  find_layers(pass, layers);
+  extrapolate(pass, pass.grid.velocity);
+  extrapolate(pass, pass.memory.drift);
   hold_sources(pass, emitters, time);
   move_particles(pass, settings.blend, settings.gravity);
 }
