@@ -33,6 +33,7 @@ void prepare_memory(const LiquidPass& pass) {
   memory.cell.clear();
   memory.cell.resize(size, LiquidCell::solid);
   memory.matrix = PressureMatrix{};
+  memory.has_open = false;
 }
 
 // The largest number of cells that a particle or a solid may pass along an axis within the step.
