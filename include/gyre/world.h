@@ -87,6 +87,7 @@ struct WorldStats {
   int contact_points = 0;
   int colors = 0;          // of the constraint graph
   int softs = 0, soft_vertices = 0;  // ropes, cloths and solids
+  int fluids = 0, liquid_particles = 0;  // gases and liquids
 };
 
 // How well the solvers sequential_impulses and lcp solved the last step; all zero with soft_step.

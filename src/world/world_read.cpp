@@ -6,6 +6,7 @@
 #include "rigid/batch/surface_rules.h"
 #include "world/field_commands.h"
 #include "world/joint_reading.h"
+#include "world/fluid_commands.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
 
@@ -217,6 +218,8 @@ WorldStats World::stats() const {
   counts.joints = int(w.joints.ids.size());
   counts.colors = state_->solve.colors;
   counts.pairs = int(w.contacts.live);
+  counts.fluids = int(state_->fluids.ids.size());
+  state_->fluids.for_each([&](const FluidEntry& entry) { counts.liquid_particles += entry.liquid.particles(); });
   counts.softs = int(state_->soft.ids.size());
   state_->soft.for_each([&](const SoftEntry& entry) { counts.soft_vertices += entry.body.particles.count; });
   // Free slots have the flags of static bodies; their contacts touch nothing and have no manifolds.
@@ -296,6 +299,7 @@ Energy World::energy() const {
   });
   w.joints.ids.for_each_live([&](std::uint32_t slot) { energy.elastic += spring_energy(w, slot); });
   add_soft_energy(state_->soft, gravity, energy);
+  add_fluid_energy(*state_, energy);
   return energy;
 }
 
@@ -310,6 +314,7 @@ Momentum World::momentum() const {
     momentum.angular += cross(w.bodies.poses[i].center, p) + spin_momentum(w.bodies, i);
   });
   add_soft_momentum(state_->soft, momentum);
+  add_fluid_momentum(*state_, momentum);
   return momentum;
 }
 
