@@ -9,6 +9,7 @@
 #include "rigid/rigid_step.h"
 #include "world/field_commands.h"
 #include "world/joint_commands.h"
+#include "world/fluid_commands.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
 

@@ -97,7 +97,7 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
   trace_paths(pass);
   if (settings.viscosity > 0.0f) save_velocity(pass);
   add_pressure(pass, 0.5f, true);
-  transport_fields(pass);
+  transport_fields(pass, settings.advection);
   if (conserves_smoke) conserve_smoke(pass, mass);
   apply_emitters(pass, emitters, time);
   set_walls(pass);

@@ -8,15 +8,14 @@
 #include "base/container/array.h"
 #include "fluid/grid/grid_shape.h"
 
+#include <gyre/fluid.h>
 #include <gyre/math.h>
 
 #include <cstdint>
 
 namespace gyre {
 
-// A side of the box. periodic: what leaves there enters on the opposite side, for both sides of an axis; open: air at rest pressure stands
-// outside, and gas passes freely; closed: a wall along which gas slips; no_slip: a wall that holds the gas next to it by viscosity.
-enum class GasBoundary : std::uint8_t { periodic, open, closed, no_slip };
+using GasBoundary = FluidBoundary;
 
 struct GasBox {
   int cells[3] = {0, 0, 0};

@@ -208,7 +208,8 @@ void fields(C& c, T& v) {
 }
 template <class C, class T>
 requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>> || Is<T, std::vector<DVec3>> ||
-         Is<T, std::vector<std::uint32_t>>) void fields(C& c, T& list) {
+         Is<T, std::vector<std::uint32_t>> || Is<T, std::vector<float>> ||
+         Is<T, std::vector<FluidEmitter>>) void fields(C& c, T& list) {
   c.count(list);
   for (auto& item : list) all(c, item);
 }
@@ -285,6 +286,49 @@ void fields(FieldReader& c, std::shared_ptr<const SoftDef>& def) {
   def = std::make_shared<const SoftDef>(std::move(read));
 }
 
+// ------------------------------------------------------------------------------------------------------------- fluids
+
+template <class C, class T>
+requires(Is<T, std::array<FluidBoundary, 6>> || Is<T, std::array<Vec3, 6>> ||
+         Is<T, std::array<std::vector<float>, 3>>) void fields(C& c, T& values) {
+  for (auto& value : values) all(c, value);
+}
+template <class C, Is<FluidEmitter> T>
+void fields(C& c, T& v) {
+  auto& [position, radius, density, temperature, velocity, start, end] = v;
+  all(c, position, radius, density, temperature, velocity, start, end);
+}
+template <class C, Is<TaylorGreen> T>
+void fields(C& c, T& v) {
+  auto& [amplitude, wave_number] = v;
+  all(c, amplitude, wave_number);
+}
+template <class C, Is<GasFields> T>
+void fields(C& c, T& v) {
+  auto& [velocity, density, temperature, pressure] = v;
+  all(c, velocity, density, temperature, pressure);
+}
+template <class C, Is<GasDef> T>
+void fields(C& c, T& v) {
+  auto& [lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls, initial, vortices, emitters,
+         state, user_data] = v;
+  all(c, lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls, initial, vortices, emitters,
+      state, user_data);
+}
+// The kind, then the definition.
+void fields(FieldWriter& c, const std::shared_ptr<const FluidDef>& def) {
+  c.number(std::uint8_t(def->index()));
+  std::visit([&](const auto& one) { fields(c, one); }, *def);
+}
+void fields(FieldReader& c, std::shared_ptr<const FluidDef>& def) {
+  std::uint8_t kind = 0;
+  c.number(kind);
+  FluidDef read;
+  if (kind >= std::variant_size_v<FluidDef>) c.fail();
+  std::visit([&](auto& one) { fields(c, one); }, read);
+  def = std::make_shared<const FluidDef>(std::move(read));
+}
+
 // ----------------------------------------------------------------------------------------------------------- commands
 
 template <class T, class... Of>
@@ -292,14 +336,14 @@ concept IsOneOf = (Is<T, Of> || ...);
 
 template <class C, class T>
 requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSurfaceRule, SetSleeping,
-                 SetSubsteps, AddField, RemoveField, Explode, AddSoft, RemoveSoft, Step>
+                 SetSubsteps, AddField, RemoveField, Explode, AddSoft, RemoveSoft, AddFluid, RemoveFluid, Step>
 void fields(C& c, T& v) {
   auto& [only] = v;
   all(c, only);
 }
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
-                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft>
+                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft, SetEmitters>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
@@ -359,6 +403,19 @@ std::shared_ptr<const SoftDef> read_soft_def(ByteReader& in) {
   const GeometryTable none;
   FieldReader reader(in, none, 0);
   std::shared_ptr<const SoftDef> def;
+  fields(reader, def);
+  return def;
+}
+
+void write_fluid_def(ByteWriter& out, const FluidDef& def) {
+  FieldWriter writer(out);
+  fields(writer, std::make_shared<const FluidDef>(def));
+}
+
+std::shared_ptr<const FluidDef> read_fluid_def(ByteReader& in) {
+  const GeometryTable none;
+  FieldReader reader(in, none, 0);
+  std::shared_ptr<const FluidDef> def;
   fields(reader, def);
   return def;
 }

@@ -21,10 +21,6 @@ bool is_on_spring(const RigidWorld& w, std::uint32_t body) {
   return false;
 }
 
-bool is_asleep(const RigidWorld& w, std::uint32_t body) {
-  return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
-}
-
 // Disjoint sets of bodies; the root of an island is its lowest body.
 class Islands {
  public:
