@@ -12,8 +12,8 @@ namespace {
 constexpr std::int64_t kMostCells = std::int64_t(1) << 24;      // of one of them
 constexpr std::int64_t kMostParticles = std::int64_t(1) << 22;  // of one liquid
 constexpr double kMostAmount = 1.0e12;
-constexpr Range kNotNegative = Range::between(0, kMostAmount);
-constexpr Range kPositive = Range::above_to(0, kMostAmount);
+constexpr Range kZeroOrMore = Range::between(0, kMostAmount);
+constexpr Range kAboveZero = Range::above_to(0, kMostAmount);
 constexpr double kMostSpeed = 1.0e6;  // m/s
 constexpr Range kSpeed = Range::between(-kMostSpeed, kMostSpeed);
 
@@ -36,7 +36,7 @@ void take_cells(SceneReading& reading, const Field& field, double count) {
 // ------------------------------------------------------------------------------------------------- what both have
 
 template <class Def>
-void read_box(Members& members, Def& def) {
+void read_fluid_bounds(Members& members, Def& def) {
   const Field field = members.need("bounds");
   const FieldBounds bounds = read_bounds(field);
   const DVec3 extent = bounds.high - bounds.low;
@@ -169,10 +169,10 @@ void read_emitters(const Field& field, Def& def) {
     FluidEmitter emitter;
     emitter.position = read_inside(def, members.need("position"));
     emitter.radius = 0.3f;
-    members.read("radius", emitter.radius, kPositive);
+    members.read("radius", emitter.radius, kAboveZero);
     if (is_gas) {
       members.read("density", emitter.density, Range::between(0, kMaxDensity));
-      members.read("temperature", emitter.temperature, kPositive);
+      members.read("temperature", emitter.temperature, kAboveZero);
     } else {
       members.refuse("density",
                      "only a gas has smoke; what a liquid's emitter fills has the density of the liquid");
@@ -190,9 +190,9 @@ template <class Def>
 void read_common(SceneReading& reading, Members& members, SceneFluid& fluid, Def& def) {
   fluid.name = read_unique_name(reading, members.need("name"));
   members.read("color", fluid.color);
-  read_box(members, def);
+  read_fluid_bounds(members, def);
   members.read("density", def.density, Range::above_to(0, kMaxDensity));
-  members.read("viscosity", def.viscosity, kNotNegative);
+  members.read("viscosity", def.viscosity, kZeroOrMore);
   if (const auto boundary = members.find_value("boundary")) read_boundary(*boundary, def.sides);
   if (const auto walls = members.find_value("walls")) read_walls(*walls, def.sides, def.wall_velocities);
   if (const auto velocity = members.find_value("initial_velocity")) read_initial_velocity(*velocity, def);
@@ -312,7 +312,7 @@ void read_gas(SceneReading& reading, const Field& field) {
   if (const auto buoyancy = members.find("buoyancy"))
     gas.def.buoyancy = buoyancy->real(Range::between(-kMaxSurface, kMaxSurface));
   members.read("vorticity", gas.def.vorticity, Range::between(0, kMaxSurface));
-  members.read("ambient_temperature", gas.def.ambient_temperature, kPositive);
+  members.read("ambient_temperature", gas.def.ambient_temperature, kAboveZero);
   if (const auto advection = members.find("advection"))
     gas.def.advection = advection->choice<Advection>(
         {{"maccormack", Advection::maccormack}, {"semi_lagrangian", Advection::semi_lagrangian}});
@@ -327,12 +327,12 @@ void read_liquid(SceneReading& reading, const Field& field) {
   LiquidDef& def = liquid.def;
   read_common(reading, members, liquid, def);
   const Field cell = members.need("cell_size");
-  def.cell_size = cell.real(kPositive);
+  def.cell_size = cell.real(kAboveZero);
   const DVec3 extent = def.upper - def.lower;
   const double size = double(def.cell_size);
   take_cells(reading, cell,
              cells_along(extent.x, size) * cells_along(extent.y, size) * cells_along(extent.z, size));
-  members.read("surface_tension", def.surface_tension, kNotNegative);
+  members.read("surface_tension", def.surface_tension, kZeroOrMore);
   if (const auto fill = members.find_value("fill")) read_fill(*fill, def.fill);
   if (const auto state = members.find_value("state")) def.particles = read_liquid_state(*state);
   members.finish();

@@ -31,9 +31,9 @@ def fan(position, speed, radius=0.6, blades=4, pitch=math.radians(40)):
     for k in range(blades):
         angle = 2 * math.pi * k / blades
         middle = 0.1 + half
-        shapes.append({"type": "box", "half_extents": [0.035, half, 0.15],
+        shapes.append({"type": "box", "half_extents": [0.045, half, 0.15],
                        "position": [0, middle * math.cos(angle), middle * math.sin(angle)],
-                       "orientation": product(turned(0, angle), turned(1, pitch))})
+                       "orientation": product(turned(0, angle), turned(1, -pitch))})
     return {"name": "fan", "type": "kinematic", "position": position, "angular_velocity": [speed, 0, 0], "color": STEEL, "shapes": shapes}
 
 
@@ -49,13 +49,15 @@ def smoke_fan():
 def candle():
     wax = {"name": "candle", "type": "static", "position": [0, 0.1, 0], "color": "#efe6d2",
            "shapes": [{"type": "cylinder", "radius": 0.05, "half_height": 0.1}]}
-    leaf = {"name": "paper", "position": [0.02, 0.75, 0], "color": "#b9674c", "can_sleep": False,
-            "shapes": [{"type": "box", "half_extents": [0.06, 0.012, 0.06], "density": 3}]}
+    vane = {"name": "vane", "position": [0.02, 0.83, 0], "color": "#b9674c", "can_sleep": False,
+            "shapes": [{"type": "box", "half_extents": [0.015, 0.12, 0.08], "density": 10}]}
+    hinge = {"type": "hinge", "a": "world", "b": "vane", "anchor": [0.02, 0.95, 0], "axis": [0, 0, 1]}
     gas = {"name": "air", "bounds": [[-0.3, 0, -0.3], [0.3, 1.2, 0.3]], "cells": [24, 48, 24], "vorticity": 0.2, "color": SMOKE,
            "boundary": {"y": ["closed", "open"]},
            "emitters": [{"position": [0, 0.24, 0], "radius": 0.045, "density": 0.6, "temperature": 480}],
            "probes": [{"name": "plume", "position": [0, 0.6, 0]}]}
-    return scene("the warm plume of a candle", [0.7, 0.9, 1.9], [0, 0.55, 0], [GROUND, wax, leaf], gases=[gas])
+    return scene("the warm plume of a candle", [0.7, 0.9, 1.9], [0, 0.55, 0], [GROUND, wax, vane],
+                 joints=[hinge], gases=[gas])
 
 
 def flag_in_fan_wind():
