@@ -57,7 +57,7 @@ struct TaylorGreen {
 // The fields of a gas with which it goes on, in the order of cells: x fastest, then y, then z; velocities on the lower faces of cells, with
 // the upper faces of the last ones, so cells + 1 along their own axis.
 struct GasFields {
-  std::array<std::vector<float>, 3> velocity{};  // m/s
+  std::vector<float> velocity_x{}, velocity_y{}, velocity_z{};  // m/s
   std::vector<float> density{};                  // kg/m^3, of smoke
   std::vector<float> temperature{};              // K
   std::vector<float> pressure{};                 // m^2/s^2, over the density of the gas

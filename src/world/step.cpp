@@ -183,7 +183,7 @@ void solve_to_tolerance(WorldState& s, float seconds) {
   save_before(s);
   const auto solve = [&] {
     w.settings.substeps = substeps;
-    solve_step(w, s.soft, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
+    solve_step(w, s.soft, s.fluids, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
     w.settings.substeps = min_substeps;
   };
   solve();
@@ -213,7 +213,7 @@ void step_undivided(WorldState& s, float seconds) {
   run_stage(s, StageName::solve, [&] {
     if (motion_settings(s.rigid).time == TimeStepping::error_controlled)
       return solve_to_tolerance(s, seconds);
-    solve_step(s.rigid, s.soft, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
+    solve_step(s.rigid, s.soft, s.fluids, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
   });
   finish_step(s, seconds, seconds, true);
 }
@@ -236,7 +236,7 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
   for (int n = 0;; ++n) {
     w.settings.substeps =
         clamp(std::int32_t(std::ceil(double(substeps) * length / double(seconds))), 1, substeps);
-    solve_step(w, s.soft, s.solve, s.arena, *s.tasks, *s.kernels, float(length));
+    solve_step(w, s.soft, s.fluids, s.solve, s.arena, *s.tasks, *s.kernels, float(length));
     if (bounded || n + 1 == kMaxTries) break;
     const FirstImpact first = find_first_impact(w, s.impacts.before, length);
     if (!(first.time < length)) break;

@@ -84,6 +84,9 @@ void center_pressure(const GasPass& pass) {
 // For readings between the last cell of a periodic axis and the first.
 void fill_periodic_ghosts(const GasPass& pass) {
   const bool periodic[3] = {pass.box().periodic(0), pass.box().periodic(1), pass.box().periodic(2)};
+  for (int axis = 0; axis < 3; ++axis) clear_outside(pass.shape(), axis, pass.grid.velocity[axis]);
+  for (Array<float>* field : {&pass.grid.density, &pass.grid.temperature, &pass.grid.pressure})
+    clear_outside(pass.shape(), -1, *field);
   for (Array<float>* field : {&pass.grid.density, &pass.grid.temperature, &pass.grid.pressure})
     wrap_ghosts(pass.shape(), periodic, field->data());
   for (Array<float>& field : pass.grid.velocity) wrap_ghosts(pass.shape(), periodic, field.data());

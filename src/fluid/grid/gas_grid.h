@@ -55,6 +55,8 @@ void fill_ghosts(const GasBox& box, const GridShape& shape, float* field, const 
 // The same of a pressure, which is zero in the middle between the last cell and its ghost at an open side.
 void fill_pressure_ghosts(const GasBox& box, const GridShape& shape, float* field);
 void clear_ghosts(const GridShape& shape, float* field);
+// All numbers of the array that are no cell (faces = -1) or face across the axis: kernels leave there what depends on their width.
+void clear_outside(const GridShape& shape, int faces, Array<float>& field);
 // Copies where ghosts are of use on periodic axes only and are zero elsewhere.
 void wrap_ghosts(const GridShape& shape, const bool periodic[3], float* field);
 // Faces that stand twice in the array: those of the upper side of a periodic axis are those of the lower side. Ghosts beyond the faces, likewise.

@@ -77,16 +77,14 @@ Error check_field(const char* name, const std::vector<float>& field, std::size_t
   return {};
 }
 Error check_fields(const GasDef& def) {
-  constexpr const char* kNames[3] = {"velocity[0]", "velocity[1]", "velocity[2]"};
-  for (int axis = 0; axis < 3; ++axis) {
-    const Error e =
-        check_field(kNames[axis], def.fields->velocity[std::size_t(axis)], count_places(def.cells, axis));
-    if (e) return e;
-  }
+  const GasFields& fields = *def.fields;
+  if (const Error e = check_field("velocity_x", fields.velocity_x, count_places(def.cells, 0))) return e;
+  if (const Error e = check_field("velocity_y", fields.velocity_y, count_places(def.cells, 1))) return e;
+  if (const Error e = check_field("velocity_z", fields.velocity_z, count_places(def.cells, 2))) return e;
   const std::size_t cells = count_places(def.cells, -1);
-  if (const Error e = check_field("density", def.fields->density, cells)) return e;
-  if (const Error e = check_field("temperature", def.fields->temperature, cells)) return e;
-  return check_field("pressure", def.fields->pressure, cells);
+  if (const Error e = check_field("density", fields.density, cells)) return e;
+  if (const Error e = check_field("temperature", fields.temperature, cells)) return e;
+  return check_field("pressure", fields.pressure, cells);
 }
 
 void paste(const GridShape& shape, int faces, const std::vector<float>& from, Array<float>& to) {
@@ -205,8 +203,9 @@ FluidEntry build_fluid(std::shared_ptr<const FluidDef> shared) {
   entry.gas = make_gas_grid(box, def.ambient_temperature);
   const GridShape& shape = entry.gas.shape;
   if (def.fields) {
-    for (int axis = 0; axis < 3; ++axis)
-      paste(shape, axis, def.fields->velocity[std::size_t(axis)], entry.gas.velocity[axis]);
+    paste(shape, 0, def.fields->velocity_x, entry.gas.velocity[0]);
+    paste(shape, 1, def.fields->velocity_y, entry.gas.velocity[1]);
+    paste(shape, 2, def.fields->velocity_z, entry.gas.velocity[2]);
     paste(shape, -1, def.fields->density, entry.gas.density);
     paste(shape, -1, def.fields->temperature, entry.gas.temperature);
     paste(shape, -1, def.fields->pressure, entry.gas.pressure);
@@ -231,8 +230,9 @@ FluidEntry build_fluid(std::shared_ptr<const FluidDef> shared) {
 
 GasFields copy_fields(const GasGrid& grid) {
   GasFields out;
-  for (int axis = 0; axis < 3; ++axis)
-    out.velocity[std::size_t(axis)] = cut_out(grid.shape, axis, grid.velocity[axis]);
+  out.velocity_x = cut_out(grid.shape, 0, grid.velocity[0]);
+  out.velocity_y = cut_out(grid.shape, 1, grid.velocity[1]);
+  out.velocity_z = cut_out(grid.shape, 2, grid.velocity[2]);
   out.density = cut_out(grid.shape, -1, grid.density);
   out.temperature = cut_out(grid.shape, -1, grid.temperature);
   out.pressure = cut_out(grid.shape, -1, grid.pressure);

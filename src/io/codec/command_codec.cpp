@@ -53,8 +53,10 @@ class FieldReader {
   void shape(AnyShape& value) { value = read_shape(in_, geometry_); }
   template <class T>
   void count(std::vector<T>& list) {
-    constexpr std::size_t kMinBytes =
-        std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
+    // A shape takes more, an emitter without a velocity this.
+    constexpr std::size_t kMinBytes = std::is_same_v<T, ShapeDef>       ? 64
+                                      : std::is_same_v<T, FluidEmitter> ? 53
+                                                                        : sizeof(T);
     list.resize(in_.get_count(kMinBytes));
   }
   template <class T>
@@ -154,10 +156,10 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<FieldDef> T>
 void fields(C& c, T& v) {
-  auto& [kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence, turbulence_length, center,
-         strength, radius, falloff, core, axis, normal, offset] = v;
-  all(c, kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence, turbulence_length, center,
-      strength, radius, falloff, core, axis, normal, offset);
+  auto& [kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence,
+         turbulence_length, center, strength, radius, falloff, core, axis, normal, offset] = v;
+  all(c, kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence,
+      turbulence_length, center, strength, radius, falloff, core, axis, normal, offset);
 }
 template <class C, Is<ExplosionDef> T>
 void fields(C& c, T& v) {
@@ -218,26 +220,28 @@ constexpr bool has_extra_fields(JointKind kind) { return kind > JointKind::dista
 template <class C, Is<FlatJoint> T>
 void fields(C& c, T& v) {
   auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
-         damping, frequency, damping_ratio, break_force, break_torque, collide_connected, axis_b, friction, limit_frequency, limit_damping,
-         swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y, angular_z,
-         drive, path, path_closed, path_orientation] = v;
+         damping, frequency, damping_ratio, break_force, break_torque, collide_connected, axis_b, friction,
+         limit_frequency, limit_damping, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y,
+         linear_z, angular_x, angular_y, angular_z, drive, path, path_closed, path_orientation] = v;
   all(c, kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
       damping, frequency, damping_ratio, break_force, break_torque, collide_connected);
   all(c, friction, limit_frequency, limit_damping);
   if (!has_extra_fields(kind)) return;
-  all(c, axis_b, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y,
-      angular_z, drive, path, path_closed, path_orientation);
+  all(c, axis_b, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x,
+      angular_y, angular_z, drive, path, path_closed, path_orientation);
 }
 
 // -------------------------------------------------------------------------------------------------------- soft matter
 
 template <class C, class T>
-requires(Is<T, std::array<float, 2>> || Is<T, std::array<int, 2>> || Is<T, std::array<int, 3>>) void fields(C& c, T& values) {
+requires(Is<T, std::array<float, 2>> || Is<T, std::array<int, 2>> ||
+         Is<T, std::array<int, 3>>) void fields(C& c, T& values) {
   for (auto& value : values) all(c, value);
 }
 template <class C, Is<SoftSettings> T>
 void fields(C& c, T& v) {
-  auto& [integrator, damping, static_friction, dynamic_friction, filter, user_data, positions, velocities] = v;
+  auto& [integrator, damping, static_friction, dynamic_friction, filter, user_data, positions, velocities] =
+      v;
   all(c, integrator, damping, static_friction, dynamic_friction, filter, user_data, positions, velocities);
 }
 template <class C, Is<RopeDef> T>
@@ -252,8 +256,10 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<ClothDef> T>
 void fields(C& c, T& v) {
-  auto& [grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision, settings] = v;
-  all(c, grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision, settings);
+  auto& [grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision,
+         settings] = v;
+  all(c, grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision,
+      settings);
 }
 template <class C, Is<SolidBox> T>
 void fields(C& c, T& v) {
@@ -289,8 +295,7 @@ void fields(FieldReader& c, std::shared_ptr<const SoftDef>& def) {
 // ------------------------------------------------------------------------------------------------------------- fluids
 
 template <class C, class T>
-requires(Is<T, std::array<FluidBoundary, 6>> || Is<T, std::array<Vec3, 6>> ||
-         Is<T, std::array<std::vector<float>, 3>>) void fields(C& c, T& values) {
+requires(Is<T, std::array<FluidBoundary, 6>> || Is<T, std::array<Vec3, 6>>) void fields(C& c, T& values) {
   for (auto& value : values) all(c, value);
 }
 template <class C, Is<FluidEmitter> T>
@@ -305,15 +310,15 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<GasFields> T>
 void fields(C& c, T& v) {
-  auto& [velocity, density, temperature, pressure] = v;
-  all(c, velocity, density, temperature, pressure);
+  auto& [x, y, z, density, temperature, pressure] = v;
+  all(c, x, y, z, density, temperature, pressure);
 }
 template <class C, Is<GasDef> T>
 void fields(C& c, T& v) {
-  auto& [lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls, initial, vortices, emitters,
-         state, user_data] = v;
-  all(c, lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls, initial, vortices, emitters,
-      state, user_data);
+  auto& [lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
+         initial, vortices, emitters, state, user_data] = v;
+  all(c, lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
+      initial, vortices, emitters, state, user_data);
 }
 // The kind, then the definition.
 void fields(FieldWriter& c, const std::shared_ptr<const FluidDef>& def) {
@@ -335,15 +340,17 @@ template <class T, class... Of>
 concept IsOneOf = (Is<T, Of> || ...);
 
 template <class C, class T>
-requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSurfaceRule, SetSleeping,
-                 SetSubsteps, AddField, RemoveField, Explode, AddSoft, RemoveSoft, AddFluid, RemoveFluid, Step>
+requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair,
+                 SetSurfaceRule, SetSleeping, SetSubsteps, AddField, RemoveField, Explode, AddSoft,
+                 RemoveSoft, AddFluid, RemoveFluid, Step>
 void fields(C& c, T& v) {
   auto& [only] = v;
   all(c, only);
 }
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
-                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft, SetEmitters>
+                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft,
+                 SetEmitters>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
@@ -354,7 +361,8 @@ void fields(C& c, T& v) {
   all(c, integrator, springs, time, tolerance, max_impacts);
 }
 template <class C, class T>
-requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis, AttachSoft, SetVertices>
+requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis, AttachSoft,
+                 SetVertices>
 void fields(C& c, T& v) {
   auto& [first, second, third] = v;
   all(c, first, second, third);
