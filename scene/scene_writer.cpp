@@ -487,6 +487,7 @@ std::string write_scene(const Scene& scene, const WriteOptions& options) {
     json.end_array();
   }
   write_soft_matter(json, scene);
+  write_fluids(json, scene);
   if (!scene.fields.empty() || !scene.explosions.empty()) {
     json.key("force_fields").begin_array();
     for (const FieldDef& field : scene.fields) write_field(json, field);

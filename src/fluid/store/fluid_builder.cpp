@@ -219,6 +219,11 @@ FluidEntry build_fluid(std::shared_ptr<const FluidDef> shared) {
                    [&](int c, int, int, int) { entry.gas.velocity[axis][std::size_t(c)] = velocity[axis]; });
     }
   }
+  // As at the end of a step, so that a reading before the first one is right at periodic sides too.
+  const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
+  for (Array<float>* const field : {&entry.gas.density, &entry.gas.temperature, &entry.gas.pressure})
+    wrap_ghosts(shape, periodic, field->data());
+  for (Array<float>& field : entry.gas.velocity) wrap_ghosts(shape, periodic, field.data());
   for (const FluidEmitter& emitter : def.emitters) entry.emitters.push_back(make_emitter(emitter));
   return entry;
 }
