@@ -50,13 +50,11 @@ export class Smoke {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly places: BufferAttribute;
   private readonly corners: Vector3[];
-  private readonly center: Vector3;
   private slices: number;
 
   constructor(box: Box, voxels: Data3DTexture, color: Color, extinction: number, quality: Quality) {
     const low = new Vector3(...box.low);
     const high = new Vector3(...box.high);
-    this.center = low.clone().lerp(high, 0.5);
     this.corners = Array.from({ length: 8 }, (_, i) => new Vector3(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z));
     this.slices = SLICES[quality];
     const geometry = new BufferGeometry();
