@@ -92,7 +92,8 @@ ROOMS = {
         "kernels": ["grid"],
         "solver": ["kernels"],
         "gas": ["solver"],
-        "store": ["gas"],
+        "liquid": ["solver"],
+        "store": ["gas", "liquid"],
     },
     "io": {
         "codec": [],
