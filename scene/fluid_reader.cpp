@@ -229,14 +229,14 @@ void read_numbers(Members& members, const char* key, std::size_t count, const ch
   for (std::size_t i = 0; i < count; ++i) out.push_back(field->element(i).real());
 }
 
-void read_velocity_of_faces(const Field& field, const std::array<int, 3>& cells,
-                            std::array<std::vector<float>, 3>& out) {
+void read_velocity_of_faces(const Field& field, const std::array<int, 3>& cells, GasFields& out) {
   Members members(field, "velocities of faces, x, y and z");
+  std::vector<float>* const fields[] = {&out.velocity_x, &out.velocity_y, &out.velocity_z};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::size_t count = 1;
     for (std::size_t other = 0; other < 3; ++other)
       count *= std::size_t(cells[other]) + (other == axis ? 1 : 0);
-    read_numbers(members, kAxisKeys[axis], count, "face", 0.0f, out[axis]);
+    read_numbers(members, kAxisKeys[axis], count, "face", 0.0f, *fields[axis]);
   }
   members.finish();
 }
@@ -245,7 +245,7 @@ GasFields read_gas_state(const Field& field, const GasDef& def) {
   Members members(field, "a state of a gas");
   GasFields out;
   const std::size_t count = std::size_t(def.cells[0]) * std::size_t(def.cells[1]) * std::size_t(def.cells[2]);
-  read_velocity_of_faces(members.need("velocity"), def.cells, out.velocity);
+  read_velocity_of_faces(members.need("velocity"), def.cells, out);
   read_numbers(members, "density", count, "cell", 0.0f, out.density);
   read_numbers(members, "temperature", count, "cell", def.ambient_temperature, out.temperature);
   read_numbers(members, "pressure", count, "cell", 0.0f, out.pressure);

@@ -118,7 +118,9 @@ void write_floats(JsonWriter& json, const char* key, const std::vector<float>& n
 void write_gas_state(JsonWriter& json, const GasFields& fields) {
   json.key("state").begin_object();
   json.key("velocity").begin_object();
-  for (std::size_t axis = 0; axis < 3; ++axis) write_floats(json, kAxisKeys[axis], fields.velocity[axis]);
+  write_floats(json, kAxisKeys[0], fields.velocity_x);
+  write_floats(json, kAxisKeys[1], fields.velocity_y);
+  write_floats(json, kAxisKeys[2], fields.velocity_z);
   json.end_object();
   write_floats(json, "density", fields.density);
   write_floats(json, "temperature", fields.temperature);
