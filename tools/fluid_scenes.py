@@ -43,7 +43,7 @@ def smoke_fan():
            "emitters": [{"position": [-0.75, 0.9 + y, z], "radius": 0.12, "density": 1, "temperature": AMBIENT}
                         for y, z in ((0.35, 0), (-0.35, 0), (0, 0.35), (0, -0.35))],
            "probes": [{"name": "behind", "position": [-0.8, 0.9, 0]}, {"name": "before", "position": [0.6, 1.25, 0]}]}
-    return scene("smoke through a turning fan", [2.2, 1.9, 4.2], [0.3, 0.8, 0], [GROUND, fan([-0.3, 0.9, 0], 9)], gases=[gas])
+    return scene("smoke through a turning fan", [2.2, 1.9, 4.2], [0.3, 0.8, 0], [GROUND, fan([-0.3, 0.9, 0], 14)], gases=[gas])
 
 
 def candle():
