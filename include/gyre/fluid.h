@@ -91,6 +91,7 @@ struct FluidRegion {
 struct LiquidParticles {
   std::vector<DVec3> positions{};  // m
   std::vector<Vec3> velocities{};  // m/s
+  std::vector<float> volumes{};    // m^3; empty: an eighth of a cell each, a quarter in a plane flow
   std::vector<float>
       affine{};  // 1/s, 9 numbers each, rows first: how the velocity changes around the particle; empty: not at all
 };

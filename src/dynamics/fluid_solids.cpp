@@ -1,7 +1,6 @@
 #include "dynamics/fluid_solids.h"
 
 #include "base/hash.h"
-#include "collision/broadphase/broadphase.h"
 #include "geometry/query/point_query.h"
 #include "math/rotation.h"
 #include "task/parallel.h"
@@ -14,32 +13,40 @@ namespace gyre {
 
 namespace {
 
-constexpr int kCornerRows = 8;    // of corners in a block of work
+constexpr int kPointRows = 8;     // of points in a block of work
 constexpr float kClosed = 0.01f;  // a face that is open by less is closed, as for the pressure
 constexpr std::size_t kMaxLabels = 32767;
 
-// Where corners of cells are, in the world and in the arrays. Along a flat axis they stand in the middle of the cell, so that a plane flow
-// sees the section there.
-struct CornerGrid {
+// Where points of the grid are, in the world and in the arrays: corners of cells or their centres. Along a flat axis they stand in the middle
+// of the cell, so that a plane flow sees the section there.
+struct PointGrid {
   int count[3];
   Vec3 cell;
   DVec3 corner;
   bool flat[3];
 
-  CornerGrid(const GasBox& box) : cell(box.cell), corner(box.corner) {
-    for (int axis = 0; axis < 3; ++axis) count[axis] = box.cells[axis] + 1, flat[axis] = box.flat(axis);
-  }
+  double offset;      // of the first point from the lower corner, in cells
+  float reach_cells;  // distances are found up to so many edges
+
+  static PointGrid of_corners(const GasBox& box) { return PointGrid(box, 1, 0.0, 2.0f); }
+  static PointGrid of_centers(const GasBox& box) { return PointGrid(box, 0, 0.5, 4.0f); }
   std::size_t size() const { return std::size_t(count[0]) * std::size_t(count[1]) * std::size_t(count[2]); }
   std::size_t at(int i, int j, int k) const {
     return std::size_t(i) + std::size_t(count[0]) * (std::size_t(j) + std::size_t(count[1]) * std::size_t(k));
   }
-  double along(int axis, int n) const { return flat[axis] ? 0.5 : double(n); }
+  double along(int axis, int n) const { return flat[axis] ? 0.5 : double(n) + offset; }
   DVec3 place(int i, int j, int k) const {
     return corner +
            DVec3{along(0, i) * double(cell.x), along(1, j) * double(cell.y), along(2, k) * double(cell.z)};
   }
   float edge(int axis) const { return axis == 0 ? cell.x : axis == 1 ? cell.y : cell.z; }
-  float reach() const { return 2.0f * max(cell.x, max(cell.y, cell.z)); }
+  float reach() const { return reach_cells * max(cell.x, max(cell.y, cell.z)); }
+
+ private:
+  PointGrid(const GasBox& box, int more, double first, float cells)
+      : cell(box.cell), corner(box.corner), offset(first), reach_cells(cells) {
+    for (int axis = 0; axis < 3; ++axis) count[axis] = box.cells[axis] + more, flat[axis] = box.flat(axis);
+  }
 };
 
 // A shape whose box meets that of the fluid.
@@ -67,8 +74,8 @@ std::uint64_t add_shape_key(std::uint64_t key, const RigidWorld& w, std::uint32_
   return key;
 }
 
-// The corners of an axis within a box that is grown by the reach.
-void corners_within(const CornerGrid& grid, int axis, double low, double high, int& begin, int& end) {
+// The points of an axis within a box that is grown by the reach.
+void points_within(const PointGrid& grid, int axis, double low, double high, int& begin, int& end) {
   const double origin = axis == 0 ? grid.corner.x : axis == 1 ? grid.corner.y : grid.corner.z;
   const double edge = double(grid.edge(axis)), reach = double(grid.reach());
   begin = 0, end = grid.count[axis];
@@ -79,12 +86,12 @@ void corners_within(const CornerGrid& grid, int axis, double low, double high, i
   if (last < double(end - 1)) end = last < double(begin) ? begin : int(last) + 1;
 }
 
-void add_shape(const CornerGrid& grid, const NearShape& near, TaskSystem& tasks, CornerDistances& out) {
+void add_shape(const PointGrid& grid, const NearShape& near, TaskSystem& tasks, GridDistances& out) {
   int begin[3], end[3];
   const double low[3] = {double(near.box.low.x), double(near.box.low.y), double(near.box.low.z)};
   const double high[3] = {double(near.box.high.x), double(near.box.high.y), double(near.box.high.z)};
   for (int axis = 0; axis < 3; ++axis)
-    corners_within(grid, axis, low[axis], high[axis], begin[axis], end[axis]);
+    points_within(grid, axis, low[axis], high[axis], begin[axis], end[axis]);
   const int rows_y = end[1] - begin[1], rows_z = end[2] - begin[2];
   if (rows_y <= 0 || rows_z <= 0 || end[0] <= begin[0]) return;
   const DQuat turn = to_double(near.pose.orientation);
@@ -92,7 +99,7 @@ void add_shape(const CornerGrid& grid, const NearShape& near, TaskSystem& tasks,
   // Of a mesh or height field also what is deep inside is asked for: the whole of the box is within this distance.
   const double far = double(reach) + length(DVec3(near.box.high) - DVec3(near.box.low)) +
                      length(grid.place(grid.count[0], grid.count[1], grid.count[2]) - grid.corner);
-  for_blocks(tasks, rows_y * rows_z, kCornerRows, [&](int first, int last, int) {
+  for_blocks(tasks, rows_y * rows_z, kPointRows, [&](int first, int last, int) {
     for (int row = first; row < last; ++row) {
       const int k = begin[2] + row / rows_y, j = begin[1] + row % rows_y;
       if ((grid.flat[1] && j > 0) || (grid.flat[2] && k > 0)) continue;
@@ -112,8 +119,8 @@ void add_shape(const CornerGrid& grid, const NearShape& near, TaskSystem& tasks,
   });
 }
 
-// The second corner along a flat axis is as the first.
-void copy_flat_corners(const CornerGrid& grid, CornerDistances& out) {
+// The second point along a flat axis is as the first.
+void copy_flat_points(const PointGrid& grid, GridDistances& out) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!grid.flat[axis]) continue;
     for (int k = 0; k < grid.count[2]; ++k) {
@@ -129,7 +136,7 @@ void copy_flat_corners(const CornerGrid& grid, CornerDistances& out) {
   }
 }
 
-void clear_corners(const CornerGrid& grid, CornerDistances& out) {
+void clear_distances(const PointGrid& grid, GridDistances& out) {
   out.distance.clear(), out.body.clear();
   out.distance.resize(grid.size(), grid.reach());
   out.body.resize(grid.size(), kNoIndex);
@@ -158,14 +165,14 @@ float negative_part(float a, float b, float c, float d) {
 class FaceCutter {
  public:
   FaceCutter(const RigidWorld& w, const GasBox& box, const GridShape& shape, FluidSolids& out)
-      : w_(w), grid_(box), shape_(shape), out_(out) {}
+      : w_(w), grid_(PointGrid::of_corners(box)), shape_(shape), out_(out) {}
 
   // Faces across an axis: the open part, the label and the velocity of the solid there.
   void cut(int axis, TaskSystem& tasks) {
     const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
     int count[3];
     for (int n = 0; n < 3; ++n) count[n] = shape_.cells[n] + (n == axis ? 1 : 0);
-    for_blocks(tasks, count[1] * count[2], kCornerRows, [&](int first, int last, int) {
+    for_blocks(tasks, count[1] * count[2], kPointRows, [&](int first, int last, int) {
       for (int row = first; row < last; ++row) {
         const int k = row / count[1], j = row % count[1];
         for (int i = 0; i < count[0]; ++i) {
@@ -186,14 +193,14 @@ class FaceCutter {
 
  private:
   void set_face(int axis, int i, int j, int k, const std::size_t (&corner)[4]) {
-    const Array<float>& d = out_.all.distance;
+    const Array<float>& d = out_.corners.all.distance;
     const std::size_t c = std::size_t(shape_.at(i, j, k));
     std::size_t nearest = corner[0];
     for (const std::size_t one : corner)
       if (d[one] < d[nearest]) nearest = one;
     if (!(d[nearest] < 0.0f)) return;
     out_.solids.open[axis][c] = 1.0f - negative_part(d[corner[0]], d[corner[1]], d[corner[2]], d[corner[3]]);
-    const std::uint32_t body = out_.all.body[nearest];
+    const std::uint32_t body = out_.corners.all.body[nearest];
     const std::int16_t label = out_.label_of[body];
     out_.solids.label[axis][c] = label;
     const DVec3 half{axis == 0 ? 0.0 : 0.5, axis == 1 ? 0.0 : 0.5, axis == 2 ? 0.0 : 0.5};
@@ -208,14 +215,14 @@ class FaceCutter {
   }
 
   const RigidWorld& w_;
-  CornerGrid grid_;
+  PointGrid grid_;
   const GridShape& shape_;
   FluidSolids& out_;
 };
 
 // A cell all of whose faces are closed lies within a solid.
 void mark_solid_cells(const GridShape& shape, TaskSystem& tasks, GasSolids& solids) {
-  for_blocks(tasks, shape.rows(), kCornerRows, [&](int first, int last, int) {
+  for_blocks(tasks, shape.rows(), kPointRows, [&](int first, int last, int) {
     for (int row = first; row < last; ++row) {
       const int begin = shape.row(row % shape.cells[1], row / shape.cells[1]);
       for (int c = begin; c < begin + shape.cells[0]; ++c) {
@@ -245,59 +252,92 @@ void number_bodies(const RigidWorld& w, std::span<const NearShape> shapes, Fluid
   }
 }
 
+// The distances of all shapes. Returns true if they are not those of the last step.
+bool find_distances(const PointGrid& grid, std::span<const NearShape> fixed, std::uint64_t fixed_key,
+                    std::span<const NearShape> moving, std::uint64_t all_key, TaskSystem& tasks,
+                    SolidDistances& out) {
+  if (out.all.key == all_key) return false;
+  if (out.fixed.key != fixed_key) {
+    clear_distances(grid, out.fixed);
+    for (const NearShape& near : fixed) add_shape(grid, near, tasks, out.fixed);
+    copy_flat_points(grid, out.fixed);
+    out.fixed.key = fixed_key;
+  }
+  out.all.distance = out.fixed.distance, out.all.body = out.fixed.body;
+  for (const NearShape& near : moving) add_shape(grid, near, tasks, out.all);
+  copy_flat_points(grid, out.all);
+  out.all.key = all_key;
+  return true;
+}
+
+// What a liquid asks of solids beside their faces.
+void set_center_distances(const PointGrid& grid, const GridShape& shape, FluidSolids& out) {
+  const std::size_t size = std::size_t(shape.size);
+  GasSolids& solids = out.solids;
+  solids.distance.clear(), solids.distance.resize(size, grid.reach());
+  solids.nearest.clear(), solids.nearest.resize(size, std::int16_t(-1));
+  for (int k = 0; k < shape.cells[2]; ++k) {
+    for (int j = 0; j < shape.cells[1]; ++j) {
+      for (int i = 0; i < shape.cells[0]; ++i) {
+        const std::size_t from = grid.at(i, j, k), c = std::size_t(shape.at(i, j, k));
+        const std::uint32_t body = out.centers.all.body[from];
+        if (body == kNoIndex) continue;
+        solids.distance[c] = out.centers.all.distance[from];
+        solids.nearest[c] = out.label_of[body];
+        if (solids.distance[c] < 0.0f) solids.solid[c] = 1;
+      }
+    }
+  }
+}
+
+bool do_boxes_meet(const Aabb& a, const Aabb& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
+
 }  // namespace
 
-void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& shape, TaskSystem& tasks,
-                     FluidSolids& out) {
-  const CornerGrid grid(box);
-  const DVec3 reach{double(grid.reach()), double(grid.reach()), double(grid.reach())};
-  const DVec3 upper =
-      grid.corner + DVec3{box.cells[0] * double(box.cell.x), box.cells[1] * double(box.cell.y),
-                          box.cells[2] * double(box.cell.z)};
-  const Aabb near_box{to_float(grid.corner - reach), to_float(upper + reach)};
-  out.shapes_near.clear();
-  w.broadphase->query(w.shapes.proxies, near_box, out.shapes_near);
-  Array<NearShape> fixed, moving;
+void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& shape, bool is_liquid,
+                     TaskSystem& tasks, FluidSolids& out) {
+  const PointGrid corners = PointGrid::of_corners(box), centers = PointGrid::of_centers(box);
+  const double reach = double(is_liquid ? centers.reach() : corners.reach());
+  const DVec3 margin{reach, reach, reach};
+  const DVec3 upper = box.corner + DVec3{box.cells[0] * double(box.cell.x), box.cells[1] * double(box.cell.y),
+                                         box.cells[2] * double(box.cell.z)};
+  const Aabb whole{to_float(box.corner - margin), to_float(upper + margin)};
+  Array<NearShape> shapes, moving;
   std::uint64_t fixed_key = 1, all_key = 1;
-  for (const std::uint32_t one : out.shapes_near) {
+  w.shapes.ids.for_each_live([&](std::uint32_t one) {
     const Proxy& proxy = w.shapes.proxies[one];
-    if (proxy.sensor) continue;
+    if (proxy.sensor || !do_boxes_meet(proxy.fat_box, whole)) return;
     const std::uint32_t body = w.shapes.bodies[one];
     const NearShape near{&w.shapes.colliders[one].shape, body,
                          origin_pose(w.bodies, body) * w.shapes.body_from_shape[one], proxy.fat_box};
+    const bool moves = has_solid_motion(w, body);
     all_key = add_shape_key(all_key, w, one, near);
-    if (!has_solid_motion(w, body)) fixed_key = add_shape_key(fixed_key, w, one, near);
-    (has_solid_motion(w, body) ? moving : fixed).push_back(near);
-  }
-  const bool any = !fixed.empty() || !moving.empty();
-  if (!any) {
+    if (!moves) fixed_key = add_shape_key(fixed_key, w, one, near);
+    (moves ? moving : shapes).push_back(near);
+  });
+  if (shapes.empty() && moving.empty()) {
     if (out.solids.labels != 0) clear_solids(shape, 0, out.solids), ++out.solids.revision;
+    out.solids.distance.clear(), out.solids.nearest.clear();
     out.bodies.clear();
-    out.all.key = 0;
+    out.corners.all.key = out.centers.all.key = 0;
     return;
   }
-  if (out.fixed.key != fixed_key) {
-    clear_corners(grid, out.fixed);
-    for (const NearShape& near : fixed) add_shape(grid, near, tasks, out.fixed);
-    copy_flat_corners(grid, out.fixed);
-    out.fixed.key = fixed_key;
-  }
-  const bool moved = out.all.key != all_key;
-  if (moved) {
-    out.all.distance = out.fixed.distance, out.all.body = out.fixed.body;
-    for (const NearShape& near : moving) add_shape(grid, near, tasks, out.all);
-    copy_flat_corners(grid, out.all);
-    out.all.key = all_key;
-  }
-  Array<NearShape>& every = fixed;
-  for (const NearShape& near : moving) every.push_back(near);
-  number_bodies(w, every.view(), out);
+  const bool changed =
+      find_distances(corners, shapes.view(), fixed_key, moving.view(), all_key, tasks, out.corners);
+  if (is_liquid)
+    find_distances(centers, shapes.view(), fixed_key, moving.view(), all_key, tasks, out.centers);
+  for (const NearShape& near : moving) shapes.push_back(near);
+  number_bodies(w, shapes.view(), out);
   const std::uint64_t revision = out.solids.revision;
   clear_solids(shape, int(out.bodies.size()), out.solids);
-  out.solids.revision = revision + (moved ? 1 : 0);
+  out.solids.revision = revision + (changed ? 1 : 0);
   FaceCutter cutter(w, box, shape, out);
   for (int axis = 0; axis < 3; ++axis) cutter.cut(axis, tasks);
   mark_solid_cells(shape, tasks, out.solids);
+  if (is_liquid) set_center_distances(centers, shape, out);
 }
 
 }  // namespace gyre

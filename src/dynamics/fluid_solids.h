@@ -12,23 +12,27 @@
 
 namespace gyre {
 
-// Signed distances at the corners of cells, x fastest, and the body whose shape is nearest there.
-struct CornerDistances {
-  Array<float> distance;      // m, at most two cells
-  Array<std::uint32_t> body;  // kNoIndex: no shape within two cells
+// Signed distances at points of a grid, x fastest, and the body whose shape is nearest there.
+struct GridDistances {
+  Array<float> distance;      // m, at most the reach
+  Array<std::uint32_t> body;  // kNoIndex: no shape within the reach
   std::uint64_t key = 0;      // of the shapes that it was found from
+};
+// Those of shapes of fixed bodies, which stay, and of all shapes.
+struct SolidDistances {
+  GridDistances fixed, all;
 };
 
 // Belongs to one fluid from step to step; with another box it must be new.
 struct FluidSolids {
   GasSolids solids;
-  Array<std::uint32_t> bodies;  // by label, ascending
-  CornerDistances fixed, all;   // of shapes of fixed bodies, of all shapes
-  Array<std::uint32_t> shapes_near;
-  Array<std::int16_t> label_of;  // by body, while labels are given
+  Array<std::uint32_t> bodies;      // by label, ascending
+  SolidDistances corners, centers;  // of cells; centers for liquids alone
+  Array<std::int16_t> label_of;     // by body, while labels are given
 };
 
-void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& shape, TaskSystem& tasks,
-                     FluidSolids& out);
+// `is_liquid`: with the distances of centres.
+void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& shape, bool is_liquid,
+                     TaskSystem& tasks, FluidSolids& out);
 
 }  // namespace gyre

@@ -1,6 +1,9 @@
 #include "dynamics/fluid_step.h"
 
 #include "fluid/gas/gas_reading.h"
+#include "fluid/liquid/liquid_reading.h"
+#include "fluid/store/fluid_builder.h"
+#include "math/rotation.h"
 #include "rigid/sleep/island.h"
 
 #include <cmath>
@@ -66,7 +69,7 @@ void push_bodies(RigidWorld& w, FluidEntry& entry, const FluidScratch& scratch, 
     FluidPush push;
     push.body = body;
     push.force = to_float((1.0 / double(seconds)) * impulse.linear);
-    const DVec3 arm = entry.gas.box.corner - w.bodies.poses[body].center;
+    const DVec3 arm = entry.box().corner - w.bodies.poses[body].center;
     push.torque = to_float((1.0 / double(seconds)) * (impulse.angular + cross(arm, impulse.linear)));
     if (!is_finite(push.force) || !is_finite(push.torque)) continue;
     if (is_asleep(w, body)) {
@@ -88,31 +91,106 @@ void push_bodies(RigidWorld& w, FluidEntry& entry, const FluidScratch& scratch, 
   entry.pushes = std::move(pushes);
 }
 
-// A fluid that is no longer finite is stilled: it goes on as air at rest.
-void still(GasGrid& gas) { gas = make_gas_grid(gas.box, gas.ambient_temperature); }
-
-bool is_finite_grid(const GasGrid& gas) {
-  const auto good = [](const Array<float>& field) {
-    float sum = 0.0f;
-    for (const float one : field) sum += 0.0f * one;
-    return sum == 0.0f;
+bool is_finite_field(const Array<float>& field) {
+  float sum = 0.0f;
+  for (const float one : field) sum += 0.0f * one;  // 0, or not a number if one is not finite
+  return sum == 0.0f;
+}
+bool is_finite_fluid(const FluidEntry& entry) {
+  const auto all = [](const auto& fields) {
+    bool good = true;
+    for (const Array<float>& field : fields) good = good && is_finite_field(field);
+    return good;
   };
-  return good(gas.velocity[0]) && good(gas.velocity[1]) && good(gas.velocity[2]) && good(gas.density) &&
-         good(gas.temperature) && good(gas.pressure);
+  if (entry.is_liquid())
+    return all(entry.liquid.position) && all(entry.liquid.motion) && all(entry.liquid.affine);
+  return all(entry.gas.velocity) && is_finite_field(entry.gas.density) &&
+         is_finite_field(entry.gas.temperature) && is_finite_field(entry.gas.pressure);
+}
+
+// A fluid that is no longer finite goes on at rest: a gas as air, a liquid with those particles whose places are finite.
+void still(FluidEntry& entry) {
+  if (!entry.is_liquid()) {
+    entry.gas = make_gas_grid(entry.gas.box, entry.gas.ambient_temperature);
+    return;
+  }
+  LiquidGrid calm = make_liquid_grid(entry.liquid.box);
+  const LiquidGrid& old = entry.liquid;
+  for (std::size_t i = 0; i < std::size_t(old.particles()); ++i) {
+    const Vec3 at{old.position[0][i], old.position[1][i], old.position[2][i]};
+    if (is_finite(at)) add_particle(calm, at, {}, old.volume[i]);
+  }
+  entry.liquid = std::move(calm);
+}
+
+// Bodies as the pressure of a liquid sees them: those that are awake and free to move yield to it.
+void list_bodies(const RigidWorld& w, FluidScratch& scratch) {
+  scratch.bodies.clear();
+  for (const std::uint32_t body : scratch.solids.bodies) {
+    FluidBody out;
+    const BodyFlags& flags = w.bodies.flags[body];
+    const BodyMotion& motion = w.bodies.motion[body];
+    out.center = w.bodies.poses[body].center;
+    if (flags.type != BodyType::fixed)
+      out.velocity = motion.linear_velocity, out.angular_velocity = motion.angular_velocity;
+    if (flags.type == BodyType::dynamic && flags.frozen == 0 && flags.awake != 0) {
+      const BodyMass& mass = w.bodies.masses[body];
+      const BodyForces& forces = w.bodies.forces[body];
+      const Sym3 inverse_inertia = rotate_inertia(w.bodies.poses[body].orientation, mass.inverse_inertia);
+      out.inverse_mass = mass.inverse_mass;
+      out.inverse_inertia = inverse_inertia;
+      out.acceleration = forces.gravity_scale * w.settings.gravity + mass.inverse_mass * forces.force;
+      out.angular_acceleration = inverse_inertia * forces.torque;
+    }
+    scratch.bodies.push_back(out);
+  }
+}
+
+void step_gas_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const GasKernels& kernels,
+                    TaskSystem& tasks, double time, float seconds) {
+  const GasDef& def = entry.gas_def();
+  GasSettings settings;
+  settings.density = def.density, settings.buoyancy = def.buoyancy;
+  settings.vorticity = def.vorticity, settings.viscosity = def.viscosity;
+  settings.advection = def.advection;
+  settings.gravity = w.settings.gravity;
+  const GasReport report = step_gas(entry.gas, own.solids.solids, entry.emitters.view(), settings, time,
+                                    seconds, own.gas, kernels, tasks, own.impulses.view());
+  own.report.substeps = report.substeps, own.report.iterations = report.iterations;
+  own.report.divergence = report.divergence, own.report.residual = report.residual;
+  if (own.solids.solids.present())
+    add_lift(entry.gas, own.solids.solids, settings, seconds, own.impulses.view());
+}
+
+void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const GasKernels& kernels,
+                       TaskSystem& tasks, double time, float seconds) {
+  const LiquidDef& def = entry.liquid_def();
+  LiquidSettings settings;
+  settings.density = def.density, settings.viscosity = def.viscosity;
+  settings.surface_tension = def.surface_tension;
+  settings.gravity = w.settings.gravity;
+  own.sources.clear();
+  own.report.full = entry.liquid.particles() >= kMaxLiquidParticles && !entry.emitters.empty();
+  if (!own.report.full) {
+    for (const GasEmitter& one : entry.emitters)
+      own.sources.push_back(
+          {one.position, one.radius, one.has_velocity ? one.velocity : Vec3{}, one.start, one.end});
+  }
+  list_bodies(w, own);
+  const LiquidReport report =
+      step_liquid(entry.liquid, own.solids.solids, own.bodies.view(), own.sources.view(), settings, time,
+                  seconds, own.liquid, kernels, tasks, own.impulses.view());
+  own.report.substeps = report.substeps, own.report.iterations = report.iterations;
+  own.report.divergence = report.divergence, own.report.residual = report.residual;
+}
+
+bool is_within(const GasBox& box, DVec3 point) {
+  const DVec3 upper = upper_corner(box);
+  return point.x >= box.corner.x && point.y >= box.corner.y && point.z >= box.corner.z &&
+         point.x <= upper.x && point.y <= upper.y && point.z <= upper.z;
 }
 
 }  // namespace
-
-GasSettings gas_settings(const GasDef& def, Vec3 gravity) {
-  GasSettings settings;
-  settings.density = def.density;
-  settings.buoyancy = def.buoyancy;
-  settings.vorticity = def.vorticity;
-  settings.viscosity = def.viscosity;
-  settings.advection = def.advection;
-  settings.gravity = gravity;
-  return settings;
-}
 
 void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& scratch,
                  const GasKernels& kernels, TaskSystem& tasks, double time, float seconds) {
@@ -121,38 +199,40 @@ void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& s
     FluidEntry& entry = fluids.entries[slot];
     if (entry.def == nullptr) continue;
     FluidScratch& own = scratch[slot];
-    const GasSettings settings = gas_settings(entry.gas_def(), w.settings.gravity);
-    cut_fluid_cells(w, entry.gas.box, entry.gas.shape, tasks, own.solids);
+    cut_fluid_cells(w, entry.box(), entry.shape(), entry.is_liquid(), tasks, own.solids);
     own.impulses.clear();
     own.impulses.resize(own.solids.bodies.size(), GasImpulse{});
-    own.report = step_gas(entry.gas, own.solids.solids, entry.emitters.view(), settings, time, seconds,
-                          own.memory, kernels, tasks, own.impulses.view());
-    own.failed = !is_finite_grid(entry.gas);
-    if (own.failed) {
-      still(entry.gas);
-      own.memory = {};
+    own.report = {};
+    if (entry.is_liquid())
+      step_liquid_entry(w, entry, own, kernels, tasks, time, seconds);
+    else
+      step_gas_entry(w, entry, own, kernels, tasks, time, seconds);
+    if (!is_finite_fluid(entry)) {
+      still(entry);
+      own.gas = {}, own.liquid = {};
       own.report = {};
+      own.report.failed = true;
       continue;
     }
-    if (own.solids.solids.present())
-      add_lift(entry.gas, own.solids.solids, settings, seconds, own.impulses.view());
     push_bodies(w, entry, own, seconds);
   }
 }
 
-bool find_wind(const FluidStore& fluids, DVec3 point, Vec3& velocity, float& density) {
+bool find_stream(const FluidStore& fluids, DVec3 point, FluidStream& out) {
+  bool found = false;
   for (const FluidEntry& entry : fluids.entries) {
-    if (entry.def == nullptr) continue;
-    const GasBox& box = entry.gas.box;
-    const DVec3 upper = upper_corner(box);
-    if (point.x < box.corner.x || point.y < box.corner.y || point.z < box.corner.z || point.x > upper.x ||
-        point.y > upper.y || point.z > upper.z)
-      continue;
-    velocity = gas_velocity(entry.gas, point);
-    density = entry.gas_def().density;
-    return true;
+    if (entry.def == nullptr || !is_within(entry.box(), point)) continue;
+    if (entry.is_liquid()) {
+      const LiquidProbe probe = probe_liquid(entry.liquid, point, entry.liquid_def().density);
+      if (!probe.inside) continue;
+      out = {probe.velocity, entry.liquid_def().density, true};
+      return true;
+    }
+    if (found) continue;
+    out = {gas_velocity(entry.gas, point), entry.gas_def().density, false};
+    found = true;
   }
-  return false;
+  return found;
 }
 
 }  // namespace gyre

@@ -13,23 +13,36 @@
 
 namespace gyre {
 
+struct FluidReport {
+  int substeps = 0;
+  int iterations = 0;       // of the pressure
+  float divergence = 0.0f;  // 1/s
+  float residual = 0.0f;    // 1
+  bool failed = false;      // the fluid stopped being finite and was stilled
+  bool full = false;        // sources gave nothing, since there are as many particles as may be
+};
+
 // What a fluid keeps from step to step but does not need: solids, memory, the report.
 struct FluidScratch {
   FluidSolids solids;
-  GasMemory memory;
-  Array<GasImpulse> impulses;
-  GasReport report;
-  bool failed = false;  // the fluid stopped being finite and was stilled
+  GasMemory gas;
+  LiquidMemory liquid;
+  Array<GasImpulse> impulses;  // by label
+  Array<FluidBody> bodies;     // by label
+  Array<LiquidEmitter> sources;
+  FluidReport report;
 };
 
 // `scratch`: by slot. Cleared by whoever replaces the state.
 void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& scratch,
                  const GasKernels& kernels, TaskSystem& tasks, double time, float seconds);
 
-// Settings of the step of a gas.
-GasSettings gas_settings(const GasDef& def, Vec3 gravity);
-
-// The velocity of the gas at a point: true if there is one. The gas that was added first counts.
-bool find_wind(const FluidStore& fluids, DVec3 point, Vec3& velocity, float& density);
+// The fluid at a point: false if there is none. A liquid counts within its surface, and before gases; else the one that was added first.
+struct FluidStream {
+  Vec3 velocity{};       // m/s
+  float density = 0.0f;  // kg/m^3
+  bool is_liquid = false;
+};
+bool find_stream(const FluidStore& fluids, DVec3 point, FluidStream& out);
 
 }  // namespace gyre

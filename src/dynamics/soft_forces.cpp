@@ -111,15 +111,36 @@ void add_field(const FieldRecord& field, SoftEntry& entry, double time, float h)
   StreamForces(stream, entry, h).add();
 }
 
-void add_gases(const FluidStore& fluids, SoftEntry& entry, float h) {
+// m^3 that a kilogram of it fills.
+double volume_per_mass(const SoftEntry& entry) {
+  if (const auto* rope = std::get_if<RopeDef>(entry.def.get()))
+    return kPi * double(rope->radius) * double(rope->radius) / double(rope->linear_density);
+  if (const auto* cloth = std::get_if<ClothDef>(entry.def.get()))
+    return double(cloth->thickness) / double(cloth->area_density);
+  return 1.0 / double(std::get<SolidDef>(*entry.def).density);
+}
+
+// A liquid carries what it displaces.
+void add_buoyancy(const FluidStore& fluids, DVec3 gravity, SoftEntry& entry) {
+  Particles& p = entry.body.particles;
+  const double share = volume_per_mass(entry);
+  for (int i = 0; i < p.count; ++i) {
+    FluidStream stream;
+    if (!find_stream(fluids, p.place(i), stream) || !stream.is_liquid) continue;
+    const DVec3 force = (-share * double(p.mass[i]) * double(stream.density)) * gravity;
+    p.fx[i] += float(force.x), p.fy[i] += float(force.y), p.fz[i] += float(force.z);
+  }
+}
+
+void add_fluids(const FluidStore& fluids, DVec3 gravity, SoftEntry& entry, float h) {
   const auto stream = [&](DVec3 at, DVec3& velocity, double& density, double& coefficient) {
-    Vec3 wind;
-    float weight = 0.0f;
-    if (!find_wind(fluids, at, wind, weight)) return false;
-    velocity = DVec3(wind), density = double(weight), coefficient = 1.0;
+    FluidStream found;
+    if (!find_stream(fluids, at, found)) return false;
+    velocity = DVec3(found.velocity), density = double(found.density), coefficient = 1.0;
     return true;
   };
   StreamForces(stream, entry, h).add();
+  add_buoyancy(fluids, gravity, entry);
 }
 
 }  // namespace
@@ -132,7 +153,7 @@ void set_field_forces(const RigidWorld& w, const FluidStore& fluids, SoftEntry& 
   for (const FieldRecord& field : w.fields) {
     if (field.is_live()) add_field(field, entry, time, h);
   }
-  if (!fluids.empty()) add_gases(fluids, entry, h);
+  if (!fluids.empty()) add_fluids(fluids, DVec3(w.settings.gravity), entry, h);
 }
 
 }  // namespace gyre

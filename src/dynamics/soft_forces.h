@@ -1,5 +1,5 @@
-// Force fields and gases on soft matter in a sub-step: wind and drag on faces and segments, attraction on particles. A gas is wind of its own
-// velocity and density at each place, of the coefficient 1.
+// Force fields and gases on soft matter in a sub-step: wind and drag on faces and segments, attraction on particles. A fluid is wind of its own
+// velocity and density at each place, of the coefficient 1, and a liquid carries what it displaces.
 //
 // A face feels F = 1/2 rho C A |w . n| |w| w for the flow w past it, once, whichever side it shows; a solid's face only where the flow meets
 // it from outside; a segment of a rope 1/2 rho C 2 r l |w'| w' with the flow w' across it. Drag cannot turn the flow round within a

@@ -1,5 +1,6 @@
 #include "world/fluid_commands.h"
 
+#include "dynamics/fluid_solids.h"
 #include "fluid/store/fluid_builder.h"
 #include "rigid/sleep/island.h"
 #include "world/refusal.h"
@@ -40,8 +41,13 @@ Error check(const WorldState& s, const SetEmitters& c) {
 CommandResult execute(WorldState& s, const AddFluid& c) {
   const IdPool::Slot slot = s.fluids.ids.acquire();
   if (s.fluids.entries.size() < s.fluids.ids.capacity()) s.fluids.entries.resize(s.fluids.ids.capacity());
-  s.fluids.entries[slot.index] = build_fluid(c.def);
+  FluidEntry& entry = s.fluids.entries[slot.index] = build_fluid(c.def);
   if (slot.index < s.fluid_scratch.size()) s.fluid_scratch[slot.index] = {};
+  if (entry.is_liquid()) {
+    FluidSolids solids;
+    cut_fluid_cells(s.rigid, entry.box(), entry.shape(), true, *s.tasks, solids);
+    fill_liquid(entry, solids.solids);
+  }
   CommandResult out;
   out.done = true;
   out.fluid = {slot.index, std::uint16_t(slot.generation), s.number};

@@ -1,6 +1,8 @@
 // Reading gases and liquids through World.
 #include "base/float_mode.h"
 #include "fluid/gas/gas_reading.h"
+#include "fluid/liquid/liquid_reading.h"
+#include "fluid/liquid/liquid_surface.h"
 #include "fluid/store/fluid_builder.h"
 #include "world/fluid_commands.h"
 #include "world/world_state.h"
@@ -21,25 +23,27 @@ const FluidScratch* scratch_of(const WorldState& s, std::uint32_t slot) {
   return slot < s.fluid_scratch.size() ? &s.fluid_scratch[slot] : nullptr;
 }
 
-float cell_speed(const GasGrid& gas, int c) {
-  Vec3 mean;
-  mean.x = 0.5f * (gas.velocity[0][std::size_t(c)] + gas.velocity[0][std::size_t(c + 1)]);
-  mean.y = 0.5f * (gas.velocity[1][std::size_t(c)] + gas.velocity[1][std::size_t(c + gas.shape.pitch)]);
-  mean.z = 0.5f * (gas.velocity[2][std::size_t(c)] + gas.velocity[2][std::size_t(c + gas.shape.plane)]);
-  return length(mean);
+float cell_speed(const Array<float> (&velocity)[3], const GridShape& shape, int c) {
+  const auto mean = [&](int axis) {
+    return 0.5f * (velocity[axis][std::size_t(c)] + velocity[axis][std::size_t(c + shape.stride(axis))]);
+  };
+  return length(Vec3{mean(0), mean(1), mean(2)});
 }
 
 float value_of(const FluidEntry& entry, FluidField field, int c) {
   const std::size_t at = std::size_t(c);
+  const bool is_liquid = entry.is_liquid();
   switch (field) {
     case FluidField::smoke:
-      return entry.gas.density[at];
+      return is_liquid ? (entry.liquid.surface[at] < 0.0f ? 1.0f : 0.0f) : entry.gas.density[at];
     case FluidField::temperature:
-      return entry.gas.temperature[at];
+      return is_liquid ? 0.0f : entry.gas.temperature[at];
     case FluidField::pressure:
-      return entry.gas_def().density * entry.gas.pressure[at];
+      return is_liquid ? entry.liquid_def().density * entry.liquid.pressure[at]
+                       : entry.gas_def().density * entry.gas.pressure[at];
     case FluidField::speed:
-      return cell_speed(entry.gas, c);
+      return is_liquid ? cell_speed(entry.liquid.velocity, entry.liquid.shape, c)
+                       : cell_speed(entry.gas.velocity, entry.gas.shape, c);
   }
   return 0.0f;
 }
@@ -64,15 +68,23 @@ FluidInfo World::fluid_info(FluidId fluid) const {
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
   FluidInfo info;
   info.kind = entry.kind();
-  const GasBox& box = entry.gas.box;
+  const GasBox& box = entry.box();
   info.cells = {box.cells[0], box.cells[1], box.cells[2]};
   info.lower = box.corner, info.cell = box.cell;
-  info.user_data = entry.gas_def().user_data;
+  info.user_data = std::visit([](const auto& def) { return def.user_data; }, *entry.def);
   const GasSolids none;
   const FluidScratch* const scratch = scratch_of(*state_, fluid.index);
   const GasSolids& solids = scratch != nullptr ? scratch->solids.solids : none;
-  info.kinetic_energy = gas_kinetic_energy(entry.gas, solids, entry.gas_def().density, reading.tasks);
-  info.smoke_mass = smoke_mass(entry.gas, solids, reading.tasks);
+  if (entry.is_liquid()) {
+    const LiquidTotals totals =
+        liquid_totals(entry.liquid, entry.liquid_def().density, state_->rigid.settings.gravity);
+    info.particles = entry.liquid.particles();
+    info.kinetic_energy = totals.kinetic_energy;
+    info.volume = liquid_volume(entry.liquid, solids);
+  } else {
+    info.kinetic_energy = gas_kinetic_energy(entry.gas, solids, entry.gas_def().density, reading.tasks);
+    info.smoke_mass = smoke_mass(entry.gas, solids, reading.tasks);
+  }
   if (scratch == nullptr) return info;
   info.substeps = scratch->report.substeps, info.iterations = scratch->report.iterations;
   info.divergence = scratch->report.divergence, info.residual = scratch->report.residual;
@@ -85,6 +97,13 @@ FluidProbe World::probe(FluidId fluid, DVec3 point) const {
   if (!exists(fluid) || !is_finite(point)) return out;
   const FloatMode mode;
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
+  if (entry.is_liquid()) {
+    const LiquidProbe probe = probe_liquid(entry.liquid, point, entry.liquid_def().density);
+    out.velocity = probe.velocity, out.pressure = probe.pressure;
+    out.density = probe.inside ? 1.0f : 0.0f;
+    if (probe.has_surface) out.surface = float(probe.surface);
+    return out;
+  }
   const GasProbe probe = probe_gas(entry.gas, point, entry.gas_def().density, state_->rigid.settings.gravity);
   out.velocity = probe.velocity, out.pressure = probe.pressure;
   out.density = probe.density, out.temperature = probe.temperature;
@@ -94,15 +113,20 @@ FluidProbe World::probe(FluidId fluid, DVec3 point) const {
 void World::sample_velocity(FluidId fluid, std::span<const DVec3> points, std::span<Vec3> out) const {
   if (!exists(fluid)) return;
   const FloatMode mode;
-  const GasGrid& gas = state_->fluids.entries[fluid.index].gas;
-  for (std::size_t n = 0; n < min(points.size(), out.size()); ++n) out[n] = gas_velocity(gas, points[n]);
+  const FluidEntry& entry = state_->fluids.entries[fluid.index];
+  for (std::size_t n = 0; n < min(points.size(), out.size()); ++n) {
+    if (entry.is_liquid())
+      out[n] = probe_liquid(entry.liquid, points[n], entry.liquid_def().density).velocity;
+    else
+      out[n] = gas_velocity(entry.gas, points[n]);
+  }
 }
 
 std::size_t World::fluid_field(FluidId fluid, FluidField field, std::span<float> out) const {
   if (!exists(fluid)) return 0;
   const FloatMode mode;
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
-  const GridShape& shape = entry.gas.shape;
+  const GridShape& shape = entry.shape();
   std::size_t n = 0;
   for (int k = 0; k < shape.cells[2]; ++k) {
     for (int j = 0; j < shape.cells[1]; ++j) {
@@ -120,6 +144,43 @@ GasDef World::gas_def(FluidId fluid) const {
   def.emitters.clear();
   for (const GasEmitter& emitter : entry.emitters) def.emitters.push_back(emitter_def(emitter));
   def.fields = copy_fields(entry.gas);
+  return def;
+}
+
+std::size_t World::liquid_particles(FluidId fluid, std::span<DVec3> positions,
+                                    std::span<Vec3> velocities) const {
+  if (!exists(fluid) || !state_->fluids.entries[fluid.index].is_liquid()) return 0;
+  const LiquidGrid& grid = state_->fluids.entries[fluid.index].liquid;
+  const std::size_t count = std::size_t(grid.particles());
+  for (std::size_t i = 0; i < min(count, positions.size()); ++i)
+    positions[i] = grid.box.corner + DVec3{double(grid.position[0][i]), double(grid.position[1][i]),
+                                           double(grid.position[2][i])};
+  for (std::size_t i = 0; i < min(count, velocities.size()); ++i)
+    velocities[i] = {grid.motion[0][i], grid.motion[1][i], grid.motion[2][i]};
+  return count;
+}
+
+FluidSurfaceSize World::liquid_surface(FluidId fluid, std::span<Vec3> vertices,
+                                       std::span<std::uint32_t> indices) const {
+  if (!exists(fluid) || !state_->fluids.entries[fluid.index].is_liquid()) return {};
+  const FloatMode mode;
+  const LiquidGrid& grid = state_->fluids.entries[fluid.index].liquid;
+  Array<Vec3> found;
+  Array<std::uint32_t> corners;
+  find_surface_mesh(grid, found, corners);
+  const Vec3 corner = to_float(grid.box.corner);
+  for (std::size_t i = 0; i < min(found.size(), vertices.size()); ++i) vertices[i] = corner + found[i];
+  for (std::size_t i = 0; i < min(corners.size(), indices.size()); ++i) indices[i] = corners[i];
+  return {found.size(), corners.size()};
+}
+
+LiquidDef World::liquid_def(FluidId fluid) const {
+  if (!exists(fluid) || !state_->fluids.entries[fluid.index].is_liquid()) return {};
+  const FluidEntry& entry = state_->fluids.entries[fluid.index];
+  LiquidDef def = entry.liquid_def();
+  def.emitters.clear();
+  for (const GasEmitter& emitter : entry.emitters) def.emitters.push_back(emitter_def(emitter));
+  def.particles = copy_particles(entry.liquid);
   return def;
 }
 

@@ -65,11 +65,15 @@ void report_frozen(WorldState& s) {
   }
 }
 
-void report_stilled_fluids(WorldState& s) {
+void report_fluids(WorldState& s) {
   for (std::size_t slot = 0; slot < s.fluid_scratch.size(); ++slot) {
-    if (!s.fluid_scratch[slot].failed) continue;
-    report_problem(s, ErrorCode::invalid_data, {}, "fluid %d is no longer finite; it was stilled and goes on at rest", int(slot));
-    s.fluid_scratch[slot].failed = false;
+    FluidReport& report = s.fluid_scratch[slot].report;
+    if (report.failed)
+      report_problem(s, ErrorCode::invalid_data, {}, "fluid %d is no longer finite; it was stilled and goes on at rest", int(slot));
+    if (report.full)
+      report_problem(s, ErrorCode::unsupported, {}, "liquid %d has %d particles, as many as it may; its sources give no more", int(slot),
+                     s.fluids.entries[slot].liquid.particles());
+    report.failed = report.full = false;
   }
 }
 
@@ -326,7 +330,7 @@ void step_world(WorldState& s, float seconds) {
   }
   end_step(s, seconds);
   report_frozen(s);
-  report_stilled_fluids(s);
+  report_fluids(s);
   report_stiffness(s);
   report_large_islands(s);
   remove_broken_joints(s);

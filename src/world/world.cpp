@@ -62,6 +62,9 @@ bool World::remove_soft(SoftId soft) { return submit(*state_, RemoveSoft{soft}).
 FluidId World::add_gas(const GasDef& gas) {
   return submit(*state_, AddFluid{std::make_shared<const FluidDef>(gas)}).fluid;
 }
+FluidId World::add_liquid(const LiquidDef& liquid) {
+  return submit(*state_, AddFluid{std::make_shared<const FluidDef>(liquid)}).fluid;
+}
 bool World::remove_fluid(FluidId fluid) { return submit(*state_, RemoveFluid{fluid}).done; }
 bool World::set_emitters(FluidId fluid, std::span<const FluidEmitter> emitters) {
   return submit(*state_, SetEmitters{fluid, {emitters.begin(), emitters.end()}}).done;

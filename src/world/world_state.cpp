@@ -62,7 +62,7 @@ class HashVisitor {
     if (fluids.entries.empty()) return;
     for (const std::uint32_t generation : fluids.ids.generations()) add_word(generation);
     fluids.for_each([&](const FluidEntry& entry) {
-      add_word(std::uint64_t(entry.kind()) << 32 | std::uint64_t(entry.gas.shape.count()));
+      add_word(std::uint64_t(entry.kind()) << 32 | std::uint64_t(entry.shape().count()));
       for_each_fluid_array(entry, [&](const auto& array) {
         add_word(array.size());
         for (const auto& record : array) add_record(record);

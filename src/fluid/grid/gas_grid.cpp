@@ -154,6 +154,8 @@ void clear_solids(const GridShape& shape, int labels, GasSolids& solids) {
   }
   solids.solid.clear();
   solids.solid.resize(size, std::uint8_t(0));
+  solids.distance.clear();
+  solids.nearest.clear();
   solids.labels = labels;
   ++solids.revision;
 }

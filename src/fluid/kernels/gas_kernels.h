@@ -13,7 +13,7 @@
 namespace gyre {
 
 // A row of cells. plain: coefficients are the same along it but at its ends; empty: no cell has an equation.
-enum class RowKind : std::uint8_t { mixed, plain, empty };
+enum class PressureRow : std::uint8_t { mixed, plain, empty };
 
 // One level of the pressure equation.
 struct PressureLevel {
@@ -22,7 +22,7 @@ struct PressureLevel {
   const float* inverse_diagonal = nullptr;  // 0: no equation here
   const float* transfer = nullptr;          // scales what goes to the next coarser level, and comes from it
   const float* ground = nullptr;            // g, 1/m^2: the surface of a liquid; null: 0
-  const RowKind* rows = nullptr;
+  const PressureRow* rows = nullptr;
   bool halved[3] = {};  // axes along which the next coarser level has half the cells
 };
 

@@ -56,11 +56,11 @@ GYRE_INLINE void for_cells(const PressureLevel& level, float* out, int row_begin
   using Faces = FaceLanes<W, HasGround>;
   const int n = level.shape.cells[0];
   for_rows(level.shape, level.shape.cells[1], row_begin, row_end, [&](int c, int, int, int row) {
-    if (level.rows[row] == RowKind::empty) {
+    if (level.rows[row] == PressureRow::empty) {
       for (int i = 0; i < n; i += W) Wide<W>(0.0f).store(out + c + i);
       return;
     }
-    const bool plain = level.rows[row] == RowKind::plain;
+    const bool plain = level.rows[row] == PressureRow::plain;
     Faces inner;
     inner.spread(level, plain ? c + 1 : c);
     for (int i = 0; i < n; i += kGridLanes) {

@@ -63,27 +63,29 @@ void fill_cell_ghosts(const LiquidPass& pass, LiquidCell* cell) {
   wrap_points(pass, cell);
 }
 
-// Cells that solids leave no face of, and cells in a solid with open faces on opposite sides: liquid on either side of a thin wall must not
-// share a pressure within it. Their faces are closed. Without distances, all cells in solids.
+// Cells that solids leave no face of, and cells in a solid between two that are not: liquid on either side of a thin wall must not share a
+// pressure within it. Their faces are closed. Without distances, all cells in solids.
 void block_cells(const LiquidPass& pass) {
   const GridShape& shape = pass.shape();
   const GasSolids& solids = pass.solids;
   std::uint8_t* const blocked = pass.memory.blocked.data();
   const bool has_distance = !solids.distance.empty();
-  each_row(pass, -1, [&](int c, int, int) {
-    for (int i = c; i < c + shape.cells[0]; ++i) {
-      bool block = solids.solid[i] != 0;
+  each_row(pass, -1, [&](int c, int j, int k) {
+    for (int i = 0; i < shape.cells[0]; ++i) {
+      const int at = c + i, index[3] = {i, j, k};
+      bool block = solids.solid[at] != 0;
       if (has_distance) {
-        bool any = false, both = false;
+        bool any = false, thin = false;
         for (int axis = 0; axis < 3; ++axis) {
           const float* const open = pass.memory.open[axis].data();
-          const bool lower = open[i] > 0.0f, upper = open[i + shape.stride(axis)] > 0.0f;
-          any = any || lower || upper;
-          both = both || (lower && upper);
+          const int step = shape.stride(axis);
+          any = any || open[at] > 0.0f || open[at + step] > 0.0f;
+          thin = thin || (index[axis] > 0 && index[axis] < shape.cells[axis] - 1 &&
+                          solids.distance[at - step] >= 0.0f && solids.distance[at + step] >= 0.0f);
         }
-        block = solids.distance[i] < 0.0f && (!any || both);
+        block = solids.distance[at] < 0.0f && (!any || thin);
       }
-      blocked[i] = block ? 1 : 0;
+      blocked[at] = block ? 1 : 0;
     }
   });
   for (int axis = 0; axis < 3; ++axis) {

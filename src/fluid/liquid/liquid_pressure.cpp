@@ -95,8 +95,8 @@ void set_closed_faces(const LiquidPass& pass, Array<float> (&fields)[3]) {
 
 }  // namespace
 
-PressureReport project_liquid(const LiquidPass& pass, const ProjectionSettings& settings, float density,
-                              Vec3 gravity, std::span<GasImpulse> impulses) {
+PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& settings,
+                              std::span<GasImpulse> impulses) {
   LiquidGrid& grid = pass.grid;
   LiquidMemory& memory = pass.memory;
   const GridShape& shape = pass.shape();
@@ -109,7 +109,7 @@ PressureReport project_liquid(const LiquidPass& pass, const ProjectionSettings& 
     const CouplingGrid coupling{
         pass.box(),  shape,
         pass.solids, {memory.open[0].data(), memory.open[1].data(), memory.open[2].data()},
-        active,      density};
+        active,      settings.density};
     find_cut_faces(coupling, true, memory.coupling);
     predict_motions(pass.bodies, pass.step, velocity, memory.coupling);
   }
@@ -118,15 +118,17 @@ PressureReport project_liquid(const LiquidPass& pass, const ProjectionSettings& 
   float before = largest_cell(pass, vectors.r);
   for (int axis = 0; axis < 3; ++axis) {
     // A liquid that only rests moves by this until pressure holds it.
-    const float fall = absolute(part_along(gravity, axis)) * pass.step / pass.edge(axis);
+    const float fall = absolute(part_along(settings.gravity, axis)) * pass.step / pass.edge(axis);
     if (!pass.flat(axis) && fall > before) before = fall;
   }
   // From the pressure of the step before.
   float* const pressure = grid.pressure.data();
   const float step = pass.step;
+  const bool has_tension = settings.surface_tension > 0.0f;
+  const LiquidCell* const cell = memory.cell.data();
   each_row(pass, -1, [&](int c, int, int) {
     for (int i = c; i < c + shape.cells[0]; ++i) {
-      pressure[i] = active[i] > 0.0f ? pressure[i] : 0.0f;
+      pressure[i] = active[i] > 0.0f || (has_tension && cell[i] == LiquidCell::air) ? pressure[i] : 0.0f;
       vectors.x[i] = step * pressure[i];
     }
   });
@@ -134,9 +136,10 @@ PressureReport project_liquid(const LiquidPass& pass, const ProjectionSettings& 
   if (solids) push_bodies(vectors.x, memory.coupling);
   find_open_inflow(pass, vectors.r);
   if (solids) add_solid_inflow(pass, vectors.r);
-  const float allowed = settings.divergence / pass.step, reduced = settings.reduction * before;
+  const float allowed = settings.projection.divergence / pass.step,
+              reduced = settings.projection.reduction * before;
   const float target = allowed < reduced ? allowed : reduced;
-  PressureReport report = solve_pressure(memory.matrix, vectors, target, settings.max_iterations,
+  PressureReport report = solve_pressure(memory.matrix, vectors, target, settings.projection.max_iterations,
                                          pass.kernels, pass.tasks, solids ? &memory.coupling : nullptr);
   report.first = before;
   subtract_liquid_gradient(pass, vectors.x, 1.0f, grid.velocity);

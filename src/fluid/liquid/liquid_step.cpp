@@ -5,7 +5,9 @@
 #include "fluid/liquid/liquid_cells.h"
 #include "fluid/liquid/liquid_pressure.h"
 #include "fluid/liquid/liquid_reading.h"
+#include "fluid/liquid/liquid_viscosity.h"
 #include "fluid/liquid/particle_transfer.h"
+#include "fluid/liquid/surface_tension.h"
 
 namespace gyre {
 
@@ -105,8 +107,10 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings, LiquidR
   build_liquid_matrix(pass);
   if (settings.blend < 1.0f) save_velocity(pass);
   add_gravity(pass, settings.gravity);
-  const PressureReport solved =
-      project_liquid(pass, settings.projection, settings.density, settings.gravity, impulses);
+  if (settings.viscosity > 0.0f) add_liquid_viscosity(pass, settings.viscosity / settings.density);
+  if (settings.surface_tension > 0.0f)
+    set_surface_pressure(pass, settings.surface_tension / settings.density);
+  const PressureReport solved = project_liquid(pass, settings, impulses);
   report.iterations += solved.iterations;
   report.residual = solved.first > 0.0f ? solved.last / solved.first : 0.0f;
   report.divergence = largest_liquid_divergence(pass);
@@ -131,8 +135,10 @@ LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, std::span<co
   find_open_faces(pass);
   apply_emitters(pass, emitters, time);
   const float cells = largest_displacement(pass, settings.gravity);
+  const float longest = capillary_step(grid.box, settings.surface_tension / settings.density);
   report.substeps = 1;
-  while (report.substeps < settings.max_substeps && cells > settings.max_cells * float(report.substeps))
+  while (report.substeps < settings.max_substeps &&
+         (cells > settings.max_cells * float(report.substeps) || step > longest * float(report.substeps)))
     ++report.substeps;
   pass.step = step / float(report.substeps);
   for (int substep = 0; substep < report.substeps; ++substep) {

@@ -240,7 +240,7 @@ void find_row_kinds(TaskSystem& tasks, PressureGrid& grid) {
                        all_equal(grid.transfer.data() + c, 1, n - 1) &&
                        (grid.ground.empty() || all_equal(grid.ground.data() + c, 1, n - 1));
     const bool empty = all_zero(grid.inverse_diagonal.data() + c, n);
-    grid.rows[j + k * shape.cells[1]] = empty ? RowKind::empty : plain ? RowKind::plain : RowKind::mixed;
+    grid.rows[j + k * shape.cells[1]] = empty ? PressureRow::empty : plain ? PressureRow::plain : PressureRow::mixed;
   });
 }
 
@@ -274,7 +274,7 @@ void resize_pressure_level(PressureGrid& grid, const GridShape& shape, bool fine
   grid.ground.clear();
   grid.is_air.clear();
   if (has_ground) renew(grid.ground), grid.is_air.resize(size, std::uint8_t(0));
-  grid.rows.resize(std::size_t(shape.rows()), RowKind::mixed);
+  grid.rows.resize(std::size_t(shape.rows()), PressureRow::mixed);
   if (!finest) renew(grid.b), renew(grid.x), renew(grid.other);
 }
 

@@ -19,7 +19,7 @@ struct PressureGrid {
   Array<float> ground;         // of liquids; empty: 0
   Array<std::uint8_t> is_air;  // of liquids: cells in which the pressure is zero
   float full_face = 0.0f;      // of liquids, 1/m^2: the coefficient of a face that is open
-  Array<RowKind> rows;
+  Array<PressureRow> rows;
   Array<float> b, x, other;  // of a cycle over the levels; those of the finest belong to the caller
   bool halved[3] = {};
   bool periodic[3] = {};

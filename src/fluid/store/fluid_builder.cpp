@@ -110,6 +110,109 @@ void set_vortices(const TaylorGreen& vortices, GasGrid& grid) {
   });
 }
 
+Error check_particles(const LiquidDef& def) {
+  const LiquidParticles& particles = *def.particles;
+  const std::size_t count = particles.positions.size();
+  if (particles.velocities.size() != count)
+    return refuse("particles: there are %zu positions and %zu velocities", count,
+                  particles.velocities.size());
+  if (!particles.affine.empty() && particles.affine.size() != 9 * count)
+    return refuse("particles.affine has %zu numbers; it must have none or %zu", particles.affine.size(),
+                  9 * count);
+  if (!particles.volumes.empty() && particles.volumes.size() != count)
+    return refuse("particles.volumes has %zu numbers; it must have none or %zu", particles.volumes.size(),
+                  count);
+  for (const float one : particles.volumes)
+    if (!(one > 0.0f) || !std::isfinite(one))
+      return refuse("particles.volumes has %g; each must be finite and above 0", double(one));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_good_place(particles.positions[i]) || !is_within(particles.positions[i], def.lower, def.upper))
+      return refuse("particles.positions[%d] lies outside the box of the liquid", int(i));
+    if (!is_finite(particles.velocities[i])) return refuse("particles.velocities[%d] is not finite", int(i));
+  }
+  for (const float one : particles.affine)
+    if (!std::isfinite(one)) return refuse("%s", "particles.affine has a number that is not finite");
+  return {};
+}
+
+// Of two boxes.
+double shared_volume(DVec3 lower_a, DVec3 upper_a, DVec3 lower_b, DVec3 upper_b) {
+  const double x = min(upper_a.x, upper_b.x) - max(lower_a.x, lower_b.x);
+  const double y = min(upper_a.y, upper_b.y) - max(lower_a.y, lower_b.y);
+  const double z = min(upper_a.z, upper_b.z) - max(lower_a.z, lower_b.z);
+  return x > 0.0 && y > 0.0 && z > 0.0 ? x * y * z : 0.0;
+}
+
+// Whole cells that cover the box.
+std::array<int, 3> liquid_cells(const LiquidDef& def) {
+  const DVec3 size = def.upper - def.lower;
+  const double sizes[3] = {size.x, size.y, size.z};
+  std::array<int, 3> cells{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    constexpr double kRounding = 1.0e-6;  // of a cell, so that a box of whole cells has no more
+    const double count = std::ceil(sizes[axis] / double(def.cell_size) - kRounding);
+    cells[axis] = count < 1.0 ? 1 : count < double(kMaxFluidCells) ? int(count) : int(kMaxFluidCells);
+  }
+  return cells;
+}
+
+template <class Def>
+GasBox box_of(const Def& def, std::array<int, 3> cells, const double (&edges)[3]) {
+  GasBox box;
+  for (int axis = 0; axis < 3; ++axis) box.cells[axis] = cells[std::size_t(axis)];
+  box.cell = {float(edges[0]), float(edges[1]), float(edges[2])};
+  box.corner = def.lower;
+  for (int s = 0; s < 6; ++s) {
+    box.side[s] = def.sides[std::size_t(s)];
+    box.wall_velocity[s] = def.wall_velocities[std::size_t(s)];
+  }
+  return box;
+}
+
+void build(const GasDef& def, FluidEntry& entry) {
+  const DVec3 size = def.upper - def.lower;
+  const double edges[3] = {size.x / double(def.cells[0]), size.y / double(def.cells[1]),
+                           size.z / double(def.cells[2])};
+  const GasBox box = box_of(def, def.cells, edges);
+  entry.gas = make_gas_grid(box, def.ambient_temperature);
+  const GridShape& shape = entry.gas.shape;
+  if (def.fields) {
+    paste(shape, 0, def.fields->velocity_x, entry.gas.velocity[0]);
+    paste(shape, 1, def.fields->velocity_y, entry.gas.velocity[1]);
+    paste(shape, 2, def.fields->velocity_z, entry.gas.velocity[2]);
+    paste(shape, -1, def.fields->density, entry.gas.density);
+    paste(shape, -1, def.fields->temperature, entry.gas.temperature);
+    paste(shape, -1, def.fields->pressure, entry.gas.pressure);
+  } else if (def.vortices) {
+    set_vortices(*def.vortices, entry.gas);
+  } else {
+    const float velocity[3] = {def.initial_velocity.x, def.initial_velocity.y, def.initial_velocity.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!box.flat(axis))
+        for_places(shape, axis,
+                   [&](int c, int, int, int) { entry.gas.velocity[axis][std::size_t(c)] = velocity[axis]; });
+    }
+  }
+  // As at the end of a step, so that a reading before the first one is right at periodic sides too.
+  const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
+  for (Array<float>* const field : {&entry.gas.density, &entry.gas.temperature, &entry.gas.pressure})
+    wrap_ghosts(shape, periodic, field->data());
+  for (Array<float>& field : entry.gas.velocity) wrap_ghosts(shape, periodic, field.data());
+}
+
+void build(const LiquidDef& def, FluidEntry& entry) {
+  const double size = double(def.cell_size);
+  entry.liquid = make_liquid_grid(box_of(def, liquid_cells(def), {size, size, size}));
+}
+
+// Within the box and finite.
+bool is_good_column(const GasBox& box, int axis, const Array<float>& column) {
+  const float edge = axis == 0 ? box.cell.x : axis == 1 ? box.cell.y : box.cell.z;
+  for (const float at : column)
+    if (!(at >= 0.0f && at <= float(box.cells[axis]) * edge)) return false;
+  return true;
+}
+
 }  // namespace
 
 Error check_emitters(std::span<const FluidEmitter> emitters, DVec3 lower, DVec3 upper) {
@@ -164,6 +267,36 @@ Error check_fluid(const GasDef& def) {
   return def.fields ? check_fields(def) : Error{};
 }
 
+Error check_fluid(const LiquidDef& def) {
+  if (const Error e = check_box(def.lower, def.upper)) return e;
+  if (const Error e = check_range("cell_size", double(def.cell_size), 1.0e-9, "above 0")) return e;
+  const std::array<int, 3> cells = liquid_cells(def);
+  if (double(cells[0]) * double(cells[1]) * double(cells[2]) > double(kMaxFluidCells))
+    return refuse("a liquid of %d x %d x %d cells is too large: at most %d cells", cells[0], cells[1],
+                  cells[2], int(kMaxFluidCells));
+  if (const Error e = check_range("density", double(def.density), 1.0e-30, "above 0")) return e;
+  if (const Error e = check_range("viscosity", double(def.viscosity), 0.0, "at least 0")) return e;
+  if (const Error e = check_range("surface_tension", double(def.surface_tension), 0.0, "at least 0"))
+    return e;
+  if (!is_finite(def.initial_velocity)) return refuse("%s", "initial_velocity is not finite");
+  if (const Error e = check_sides(def.sides, def.wall_velocities)) return e;
+  if (const Error e = check_emitters(def.emitters, def.lower, def.upper)) return e;
+  const double per_cell = cells[0] == 1 || cells[1] == 1 || cells[2] == 1 ? 4.0 : 8.0;
+  const double size = double(def.cell_size);
+  double particles = 0.0;
+  for (std::size_t n = 0; n < def.fill.size(); ++n) {
+    if (const Error e = check_box(def.fill[n].lower, def.fill[n].upper))
+      return refuse("fill[%d]: %s", int(n), e.message);
+    particles += per_cell * shared_volume(def.fill[n].lower, def.fill[n].upper, def.lower, def.upper) /
+                 (size * size * size);
+  }
+  if (def.particles) particles = double(def.particles->positions.size());
+  if (particles > double(kMaxLiquidParticles))
+    return refuse("a liquid of %.4g particles is too large: at most %d particles", particles,
+                  kMaxLiquidParticles);
+  return def.particles ? check_particles(def) : Error{};
+}
+
 GasEmitter make_emitter(const FluidEmitter& emitter) {
   GasEmitter out;
   out.position = emitter.position, out.radius = emitter.radius;
@@ -182,50 +315,70 @@ FluidEmitter emitter_def(const GasEmitter& emitter) {
   return out;
 }
 
-FluidEntry build_fluid(std::shared_ptr<const FluidDef> shared) {
+FluidEntry build_fluid(std::shared_ptr<const FluidDef> def) {
   FluidEntry entry;
-  entry.def = std::move(shared);
-  const GasDef& def = entry.gas_def();
-  GasBox box;
-  const DVec3 size = def.upper - def.lower;
-  const double sizes[3] = {size.x, size.y, size.z};
-  float edges[3] = {};
-  for (int axis = 0; axis < 3; ++axis) {
-    box.cells[axis] = def.cells[std::size_t(axis)];
-    edges[axis] = float(sizes[axis] / double(box.cells[axis]));
-  }
-  box.cell = {edges[0], edges[1], edges[2]};
-  box.corner = def.lower;
-  for (int s = 0; s < 6; ++s) {
-    box.side[s] = def.sides[std::size_t(s)];
-    box.wall_velocity[s] = def.wall_velocities[std::size_t(s)];
-  }
-  entry.gas = make_gas_grid(box, def.ambient_temperature);
-  const GridShape& shape = entry.gas.shape;
-  if (def.fields) {
-    paste(shape, 0, def.fields->velocity_x, entry.gas.velocity[0]);
-    paste(shape, 1, def.fields->velocity_y, entry.gas.velocity[1]);
-    paste(shape, 2, def.fields->velocity_z, entry.gas.velocity[2]);
-    paste(shape, -1, def.fields->density, entry.gas.density);
-    paste(shape, -1, def.fields->temperature, entry.gas.temperature);
-    paste(shape, -1, def.fields->pressure, entry.gas.pressure);
-  } else if (def.vortices) {
-    set_vortices(*def.vortices, entry.gas);
-  } else {
-    const float velocity[3] = {def.initial_velocity.x, def.initial_velocity.y, def.initial_velocity.z};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!box.flat(axis))
-        for_places(shape, axis,
-                   [&](int c, int, int, int) { entry.gas.velocity[axis][std::size_t(c)] = velocity[axis]; });
-    }
-  }
-  // As at the end of a step, so that a reading before the first one is right at periodic sides too.
-  const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
-  for (Array<float>* const field : {&entry.gas.density, &entry.gas.temperature, &entry.gas.pressure})
-    wrap_ghosts(shape, periodic, field->data());
-  for (Array<float>& field : entry.gas.velocity) wrap_ghosts(shape, periodic, field.data());
-  for (const FluidEmitter& emitter : def.emitters) entry.emitters.push_back(make_emitter(emitter));
+  entry.def = std::move(def);
+  std::visit(
+      [&](const auto& one) {
+        build(one, entry);
+        for (const FluidEmitter& emitter : one.emitters) entry.emitters.push_back(make_emitter(emitter));
+      },
+      *entry.def);
   return entry;
+}
+
+bool fill_liquid(FluidEntry& entry, const GasSolids& solids) {
+  const LiquidDef& def = entry.liquid_def();
+  LiquidGrid& grid = entry.liquid;
+  if (def.particles) {
+    const LiquidParticles& from = *def.particles;
+    const float volume = particle_volume(grid.box);
+    for (std::size_t i = 0; i < from.positions.size(); ++i) {
+      add_particle(grid, difference(from.positions[i], grid.box.corner), from.velocities[i],
+                   from.volumes.empty() ? volume : from.volumes[i]);
+      if (from.affine.empty()) continue;
+      for (std::size_t k = 0; k < 9; ++k)
+        grid.affine[k][std::size_t(grid.particles() - 1)] = from.affine[9 * i + k];
+    }
+  } else {
+    for (const FluidRegion& region : def.fill)
+      fill_liquid_box(grid, region.lower, region.upper, def.initial_velocity, solids);
+  }
+  find_liquid_fields(grid, solids);
+  return grid.particles() <= kMaxLiquidParticles;
+}
+
+bool fits_definition(const FluidEntry& entry) {
+  const std::size_t size = std::size_t(entry.shape().size);
+  if (!entry.is_liquid()) {
+    const GasGrid& gas = entry.gas;
+    bool good = gas.density.size() == size && gas.temperature.size() == size && gas.pressure.size() == size;
+    for (const Array<float>& faces : gas.velocity) good = good && faces.size() == size;
+    return good;
+  }
+  const LiquidGrid& liquid = entry.liquid;
+  const std::size_t count = liquid.volume.size();
+  bool good = count <= std::size_t(kMaxLiquidParticles) && liquid.surface.size() == size &&
+              liquid.pressure.size() == size;
+  for (const Array<float>& faces : liquid.velocity) good = good && faces.size() == size;
+  for (const Array<float>& column : liquid.motion) good = good && column.size() == count;
+  for (const Array<float>& column : liquid.affine) good = good && column.size() == count;
+  for (int axis = 0; axis < 3; ++axis)
+    good = good && liquid.position[axis].size() == count &&
+           is_good_column(liquid.box, axis, liquid.position[axis]);
+  return good;
+}
+
+LiquidParticles copy_particles(const LiquidGrid& grid) {
+  LiquidParticles out;
+  for (std::size_t i = 0; i < std::size_t(grid.particles()); ++i) {
+    out.positions.push_back(grid.box.corner + DVec3{double(grid.position[0][i]), double(grid.position[1][i]),
+                                                    double(grid.position[2][i])});
+    out.velocities.push_back({grid.motion[0][i], grid.motion[1][i], grid.motion[2][i]});
+    out.volumes.push_back(grid.volume[i]);
+    for (std::size_t k = 0; k < 9; ++k) out.affine.push_back(grid.affine[k][i]);
+  }
+  return out;
 }
 
 GasFields copy_fields(const GasGrid& grid) {

@@ -1,4 +1,4 @@
-// Makes the entry of a gas from its definition, which is checked first. A pure function: the same definition gives the same bits.
+// Makes the entry of a gas or liquid from its definition, which is checked first. A pure function: the same definition gives the same bits.
 #pragma once
 
 #include "fluid/store/fluid_store.h"
@@ -10,17 +10,24 @@
 namespace gyre {
 
 constexpr std::int64_t kMaxFluidCells = 1 << 24;  // of one fluid
+constexpr int kMaxLiquidParticles = 1 << 22;      // of one liquid
 
 // Says why a definition is refused; code none if it is not. The message names the field, what was found and what is expected.
 Error check_fluid(const GasDef& def);
+Error check_fluid(const LiquidDef& def);
 Error check_emitters(std::span<const FluidEmitter> emitters, DVec3 lower, DVec3 upper);
 
-// The definition must have passed its check.
+// The definition must have passed its check. A liquid has no particles yet: see fill_liquid.
 FluidEntry build_fluid(std::shared_ptr<const FluidDef> def);
+// The particles of the definition of a liquid, but for places within solids. Returns false, and leaves some out, if there are too many.
+bool fill_liquid(FluidEntry& entry, const GasSolids& solids);
+// True if the arrays of an entry that was read from a file can be those of its definition.
+bool fits_definition(const FluidEntry& entry);
 GasEmitter make_emitter(const FluidEmitter& emitter);
 FluidEmitter emitter_def(const GasEmitter& emitter);
 
-// The fields of a gas as a definition holds them.
+// The fields of a gas, the particles of a liquid, as a definition holds them.
 GasFields copy_fields(const GasGrid& grid);
+LiquidParticles copy_particles(const LiquidGrid& grid);
 
 }  // namespace gyre

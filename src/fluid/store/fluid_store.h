@@ -5,6 +5,7 @@
 #include "base/container/array.h"
 #include "base/container/slot_map.h"
 #include "fluid/gas/gas_step.h"
+#include "fluid/liquid/liquid_step.h"
 
 #include <gyre/fluid.h>
 
@@ -14,7 +15,7 @@
 
 namespace gyre {
 
-using FluidDef = std::variant<GasDef>;
+using FluidDef = std::variant<GasDef, LiquidDef>;
 
 // The force of a fluid on a body in the last step in which the body was awake. A body that sleeps wakes when it changes.
 struct FluidPush {
@@ -24,12 +25,17 @@ struct FluidPush {
 
 struct FluidEntry {
   std::shared_ptr<const FluidDef> def;  // null: the slot is free
-  GasGrid gas;
+  GasGrid gas;                          // of a gas, else empty
+  LiquidGrid liquid;                    // of a liquid, else empty
   Array<GasEmitter> emitters;
   Array<FluidPush> pushes;  // ascending by body
 
-  FluidKind kind() const { return FluidKind::gas; }
+  FluidKind kind() const { return FluidKind(def->index()); }
+  bool is_liquid() const { return kind() == FluidKind::liquid; }
   const GasDef& gas_def() const { return std::get<GasDef>(*def); }
+  const LiquidDef& liquid_def() const { return std::get<LiquidDef>(*def); }
+  const GasBox& box() const { return is_liquid() ? liquid.box : gas.box; }
+  const GridShape& shape() const { return is_liquid() ? liquid.shape : gas.shape; }
 };
 
 struct FluidStore {
@@ -53,6 +59,12 @@ template <class Entry, class Visitor>
 void for_each_fluid_array(Entry& entry, Visitor&& visit) {
   for (auto& faces : entry.gas.velocity) visit(faces);
   visit(entry.gas.density), visit(entry.gas.temperature), visit(entry.gas.pressure);
+  for (auto& column : entry.liquid.position) visit(column);
+  for (auto& column : entry.liquid.motion) visit(column);
+  for (auto& column : entry.liquid.affine) visit(column);
+  visit(entry.liquid.volume);
+  for (auto& faces : entry.liquid.velocity) visit(faces);
+  visit(entry.liquid.surface), visit(entry.liquid.pressure);
   visit(entry.emitters);
   visit(entry.pushes);
 }

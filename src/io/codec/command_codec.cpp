@@ -211,7 +211,7 @@ void fields(C& c, T& v) {
 template <class C, class T>
 requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>> || Is<T, std::vector<DVec3>> ||
          Is<T, std::vector<std::uint32_t>> || Is<T, std::vector<float>> ||
-         Is<T, std::vector<FluidEmitter>>) void fields(C& c, T& list) {
+         Is<T, std::vector<FluidEmitter>> || Is<T, std::vector<FluidRegion>>) void fields(C& c, T& list) {
   c.count(list);
   for (auto& item : list) all(c, item);
 }
@@ -320,6 +320,21 @@ void fields(C& c, T& v) {
   all(c, lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
       initial, vortices, emitters, state, user_data);
 }
+template <class C, Is<FluidRegion> T>
+void fields(C& c, T& v) {
+  auto& [lower, upper] = v;
+  all(c, lower, upper);
+}
+template <class C, Is<LiquidParticles> T>
+void fields(C& c, T& v) {
+  auto& [positions, velocities, volumes, affine] = v;
+  all(c, positions, velocities, volumes, affine);
+}
+template <class C, Is<LiquidDef> T>
+void fields(C& c, T& v) {
+  auto& [lower, upper, cell_size, fill, density, viscosity, tension, sides, walls, initial, emitters, particles, user_data] = v;
+  all(c, lower, upper, cell_size, fill, density, viscosity, tension, sides, walls, initial, emitters, particles, user_data);
+}
 // The kind, then the definition.
 void fields(FieldWriter& c, const std::shared_ptr<const FluidDef>& def) {
   c.number(std::uint8_t(def->index()));
@@ -329,6 +344,7 @@ void fields(FieldReader& c, std::shared_ptr<const FluidDef>& def) {
   std::uint8_t kind = 0;
   c.number(kind);
   FluidDef read;
+  if (kind == 1) read.emplace<LiquidDef>();
   if (kind >= std::variant_size_v<FluidDef>) c.fail();
   std::visit([&](auto& one) { fields(c, one); }, read);
   def = std::make_shared<const FluidDef>(std::move(read));

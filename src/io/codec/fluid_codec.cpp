@@ -6,19 +6,6 @@
 
 namespace gyre {
 
-namespace {
-
-// Fields are as long as those that were built.
-bool fits(const FluidEntry& entry) {
-  const GasGrid& gas = entry.gas;
-  const std::size_t size = std::size_t(gas.shape.size);
-  bool good = gas.density.size() == size && gas.temperature.size() == size && gas.pressure.size() == size;
-  for (const Array<float>& faces : gas.velocity) good = good && faces.size() == size;
-  return good;
-}
-
-}  // namespace
-
 void write_fluids(ByteWriter& out, const FluidStore& fluids) {
   out.put_all(fluids.ids.generations());
   fluids.for_each([&](const FluidEntry& entry) {
@@ -39,7 +26,7 @@ bool read_fluids(ByteReader& in, FluidStore& fluids) {
     FluidEntry& entry = fluids.entries[slot] = build_fluid(std::move(def));
     bool good = true;
     for_each_fluid_array(entry, [&](auto& array) { good = good && read_array(in, array); });
-    if (!good || !fits(entry)) return false;
+    if (!good || !fits_definition(entry)) return false;
   }
   return true;
 }

@@ -71,7 +71,7 @@ struct Tracer {
   void operator()(const char* name, const FluidStore& fluids) {
     StateTrace::Column& out = add(name);
     fluids.for_each([&](const FluidEntry& entry) {
-      std::uint64_t hash = std::uint64_t(entry.gas.shape.count());
+      std::uint64_t hash = std::uint64_t(entry.shape().count());
       for_each_fluid_array(entry, [&](const auto& array) {
         for (const auto& record : array) hash = mix_bits(hash + hash_record(record));
       });
