@@ -12,6 +12,7 @@ const scenes = {
     gases: [{ name: 'sheet', bounds: [[-1, 0, 0], [1, 2, 0.1]], cells: [24, 24, 1], boundary: { z: 'closed' }, emitters: [{ position: [0, 0.3, 0], radius: 0.25, temperature: 420 }] }],
   },
   cavity: { gases: [{ name: 'cavity', bounds: [[-1, 0, 0], [1, 2, 0.1]], cells: [24, 24, 1], viscosity: 0.01, boundary: 'no_slip', walls: { '+y': { velocity: [1, 0, 0] } } }] },
+  still: { gases: [{ name: 'sheet', bounds: [[-1, 0, 0], [1, 2, 0.1]], cells: [24, 24, 1], boundary: 'closed' }] },
   dam: { liquids: [{ name: 'dam', bounds: [[-1, 0, -0.5], [1, 1.5, 0.5]], cell_size: 0.1, fill: [{ box: [[-1, 0, -0.5], [-0.2, 1, 0.5]] }] }] },
 };
 const files = Object.fromEntries(Object.entries(scenes).map(([name, scene]) => [`${name}.gyre.json`, Buffer.from(JSON.stringify({ gyre_scene: 1, name, view, ...scene }))]));
@@ -106,6 +107,31 @@ test('a dam breaks: its surface flows, particles show instead', async (t) => {
   await page.evaluate(() => window.gyre.overlay('particles', true));
   await settled(page);
   assert.ok(changed(flown, await page.screenshot()) > 0.01, 'particles look like the surface');
+  viewer.noErrors(page);
+});
+
+test('the mouse stirs a flat gas, and going back takes it back', async (t) => {
+  const page = await open(t, 'still.gyre.json', '&overlays=speed');
+  await page.evaluate(() => window.gyre.advance(2));
+  const fastest = () => page.evaluate(() => window.gyre.viewer.playback.frame.fluids[0].voxels.reduce((most, value, i) => (i % 4 === 3 ? Math.max(most, value) : most), 0));
+  const before = { speed: await fastest(), hash: await page.evaluate(() => window.gyre.hash()) };
+  const from = await page.evaluate(() => window.gyre.onPage(-0.4, 1, 0.05));
+  const to = await page.evaluate(() => window.gyre.onPage(0.3, 1, 0.05));
+  const camera = () => page.evaluate(() => window.gyre.viewer.stage.camera.position.toArray());
+  const eye = await camera();
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(to.x, to.y, { steps: 4 });
+  await settled(page);
+  await page.evaluate(() => window.gyre.advance(2));
+  assert.ok((await fastest()) > before.speed + 100, `stirred, the fastest is ${await fastest()} of 255, before ${before.speed}`);
+  assert.deepEqual(await camera(), eye, 'the view turned');
+  await page.mouse.up();
+  await settled(page);
+  await page.evaluate(() => window.gyre.seek(2));
+  await page.evaluate(() => window.gyre.seek(1));
+  await page.evaluate(() => window.gyre.advance(1));
+  assert.equal(await page.evaluate(() => window.gyre.hash()), before.hash);
   viewer.noErrors(page);
 });
 

@@ -272,6 +272,8 @@ export type Command =
   | { do: 'grab_soft'; key: number; at: Vec3 } // its vertex that is nearest
   | { do: 'pull'; to: Vec3 }
   | { do: 'release' }
+  | { do: 'stir'; key: number; at: Vec3; velocity: Vec3 } // a gas around a place moves so, until the next command about it
+  | { do: 'still'; key: number } // nobody stirs it any more
   | { do: 'throw'; what: Throwable; size: number; density: number; from: Vec3; velocity: Vec3 }
   | { do: 'remove'; key: number }
   | { do: 'remove_soft'; key: number }

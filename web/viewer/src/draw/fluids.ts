@@ -123,8 +123,8 @@ export class Fluids {
     });
   }
 
-  get any(): boolean {
-    return this.items.length > 0;
+  get known(): FluidDescription[] {
+    return this.items.map(({ fluid }) => fluid);
   }
 }
 

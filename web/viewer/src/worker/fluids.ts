@@ -1,10 +1,11 @@
 // Gases and liquids of a world: the page is told of their boxes once, and of their smoke, heat, light and surfaces in each frame.
-import { type FluidId, FluidField, type FluidInfo, FluidKind, type World } from 'gyre-physics';
+import { type FluidEmitter, type FluidEmitterInput, type FluidId, FluidField, type FluidInfo, FluidKind, type World } from 'gyre-physics';
 import type { Box, FlowData, FluidDescription, FluidState, Vec3 } from '../protocol';
 import { placeOf } from './keys';
 
 const SUN: Vec3 = normalized([0.45, 1, 0.62]); // as on the page
 const THICKNESS = 9; // optical thickness of the thickest smoke along the shortest side of its box
+const STIRRED = 0.5; // radius of what a pointer stirs, in parts of the shortest side times THICKNESS
 const ARROWS = 26; // along the longer side of a slice
 const NONE = { bytes: new Uint8Array(0), floats: new Float32Array(0), indices: new Uint32Array(0) };
 
@@ -19,6 +20,7 @@ interface Scales {
   ambient: number; // K
   heat: number; // K above it
   fastest: number; // m/s, of all frames so far
+  emitters: readonly FluidEmitter[]; // those that it began with
 }
 
 const cellsOf = ({ cells }: FluidInfo): Vec3 => [cells[0]!, cells[1]!, cells[2]!];
@@ -74,6 +76,24 @@ export class FluidReader {
     return { voxels, fastest: scales.fastest, vertices: NONE.floats.slice(), normals: NONE.floats.slice(), indices: NONE.indices.slice() };
   }
 
+  // A ball of gas around `at` moves with `velocity`: one more emitter, with the smoke and the temperature of this place.
+  stir(world: World, id: FluidId, at: Vec3, velocity: Vec3): void {
+    const info = world.fluidInfo(id);
+    if (info.kind !== FluidKind.gas) return;
+    const { density, temperature } = world.probe(id, at);
+    const cell = Math.max(...[0, 1, 2].filter((axis) => info.cells[axis]! > 1).map((axis) => info.cell[axis]!));
+    const radius = Math.max(STIRRED / extinctionOf(info), 1.5 * cell);
+    this.setEmitters(world, id, info, [{ position: at, radius, density, temperature, velocity }]);
+  }
+
+  still(world: World, id: FluidId): void {
+    this.setEmitters(world, id, world.fluidInfo(id), []);
+  }
+
+  private setEmitters(world: World, id: FluidId, info: FluidInfo, more: FluidEmitterInput[]): void {
+    world.setEmitters(id, [...this.scalesOf(world, id, info).emitters, ...more]);
+  }
+
   private readLiquid(world: World, id: FluidId): FluidState {
     const surface = world.liquidSurface(id);
     const vertices = Float32Array.from(surface.vertices, (value, i) => value - this.origin[i % 3]!);
@@ -85,7 +105,7 @@ export class FluidReader {
     const place = placeOf(id);
     let scales = this.scales.get(place);
     if (!scales) {
-      scales = info.kind === FluidKind.gas ? scalesOf(world, id) : { smoke: 0, ambient: 0, heat: 0, fastest: 0 };
+      scales = info.kind === FluidKind.gas ? scalesOf(world, id) : { smoke: 0, ambient: 0, heat: 0, fastest: 0, emitters: [] };
       this.scales.set(place, scales);
     }
     return scales;
@@ -104,7 +124,7 @@ function scalesOf(world: World, id: FluidId): Scales {
   for (const density of fields?.density ?? []) smoke = Math.max(smoke, density);
   for (const temperature of fields?.temperature ?? []) hottest = Math.max(hottest, temperature);
   // A thousandth of a kelvin is rounding.
-  return { smoke, ambient, heat: hottest - ambient > 1e-3 ? hottest - ambient : 0, fastest: 0 };
+  return { smoke, ambient, heat: hottest - ambient > 1e-3 ? hottest - ambient : 0, fastest: 0, emitters };
 }
 
 function extinctionOf({ cell, cells }: FluidInfo): number {

@@ -246,6 +246,9 @@ export class LiveSession implements Session {
           return this.hand.pull(scene, this.inWorld(command.to));
         case 'release':
           return this.hand.release(scene);
+        case 'stir':
+        case 'still':
+          return this.stir(this.fluidKeys.id(command.key, world), command);
         case 'throw':
           return this.throw(command);
         case 'remove':
@@ -283,6 +286,12 @@ export class LiveSession implements Session {
     const loads = new Set(holds.map(({ body }) => body).filter((body) => body >= 0));
     const load = [...loads].reduce((sum, body) => sum + scene.massProperties(scene.sceneBodies[body]!).mass, 0);
     this.hand.grabSoft(scene, id, this.inWorld(at), new Set(holds.map(({ vertex }) => vertex)), load);
+  }
+
+  private stir(id: FluidId, command: Extract<Command, { do: 'stir' | 'still' }>): void {
+    if (!id || !this.scene.fluidExists(id)) return;
+    if (command.do === 'stir') this.fluids.stir(this.scene, id, this.inWorld(command.at), command.velocity);
+    else this.fluids.still(this.scene, id);
   }
 
   // What sleeps does not feel gravity change by itself.
