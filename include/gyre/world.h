@@ -276,6 +276,10 @@ class World {
   std::optional<Penetration> penetration(const ShapePose& shape, const QueryFilter& filter = {}) const;
   std::size_t penetration_all(const ShapePose& shape, std::span<Penetration> out, const QueryFilter& filter = {}) const;
 
+  // The shapes that are inside a sensor now: all that overlap or touch it, of bodies of any type, asleep or not, and that its filter
+  // admits; in order of index. Copies up to out.size(); returns how many there are, 0 if the shape is not a sensor.
+  std::size_t sensor_visitors(ShapeId sensor, std::span<ShapeId> out) const;
+
   // Batches: many questions at once over the world's threads. An error names the first question that cannot be asked, or spans of
   // different length; nothing is asked then. One batch at a time uses the threads; a batch that another thread asks meanwhile is
   // answered by that thread alone.

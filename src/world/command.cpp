@@ -5,10 +5,12 @@
 #include "collision/contact/pair_update.h"
 #include "dynamics/soft_contacts.h"
 #include "math/rotation.h"
+#include "rigid/collision_bodies.h"
 #include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
 #include "world/field_commands.h"
 #include "world/joint_commands.h"
+#include "world/query_sight.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
 
@@ -164,6 +166,7 @@ CommandResult execute(WorldState& s, const AddBody& c) {
     w.bodies.motion[body].angular_velocity = def.angular_velocity + Vec3{};
   }
   refit_body(w, body);
+  wake_overlapped(s, body);
   return {true, body_id(w, body), {}, {}};
 }
 
@@ -188,6 +191,7 @@ CommandResult execute(WorldState& s, const AddShape& c) {
   const ShapeId id = attach_shape(w, c.body.index, c.def);
   refresh_mass(w, c.body.index);
   refit_body(w, c.body.index);
+  wake_overlapped(s, c.body.index);
   return {true, {}, id, {}};
 }
 
@@ -224,6 +228,7 @@ CommandResult execute(WorldState& s, const SetPose& c) {
   refresh_inertia(w.bodies, body);
   for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
   refit_body(w, body);
+  wake_overlapped(s, body);
   return {true, {}, {}, {}};
 }
 
@@ -233,6 +238,7 @@ CommandResult execute(WorldState& s, const SetVelocity& c) {
   wake_if_movable(w, c.body.index);
   w.bodies.motion[c.body.index].linear_velocity = c.linear + Vec3{};
   w.bodies.motion[c.body.index].angular_velocity = c.angular + Vec3{};
+  if (!can_move(w, c.body.index)) show_halt_to_sensors(w, c.body.index);
   mark_moved(w, c.body.index);
   return {true, {}, {}, {}};
 }
@@ -248,6 +254,7 @@ CommandResult execute(WorldState& s, const MoveKinematic& c) {
       finite_or((1.0f / c.seconds) * difference(center, w.bodies.poses[body].center) + Vec3{}, {});
   motion.angular_velocity = finite_or(
       (1.0f / c.seconds) * rotation_between(w.bodies.poses[body].orientation, orientation) + Vec3{}, {});
+  if (!can_move(w, body)) show_halt_to_sensors(w, body);
   mark_moved(w, body);
   return {true, {}, {}, {}};
 }
@@ -270,6 +277,7 @@ CommandResult execute(WorldState& s, const SetType& c) {
   refresh_mass(w, body);
   for (const ShapeId id : w.bodies.shapes[body]) refresh_proxy(w, id.index);
   refit_body(w, body);
+  wake_overlapped(s, body);
   return {true, {}, {}, {}};
 }
 
@@ -346,6 +354,7 @@ CommandResult execute(WorldState& s, const SetFilter& c) {
   drop_contacts(w, shape);
   w.shapes.proxies[shape].filter = c.filter;
   refit_placed_shape(w, shape);
+  wake_overlapped(s, w.shapes.bodies[shape]);
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const SetMotor& c) {

@@ -63,6 +63,7 @@ void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
   w.bodies.flags[body].awake = 0;
   clear_motion(w.bodies.motion[body]);
   w.bodies.awake_stale = true;
+  ++w.bodies.sleeping_count;
   w.events.sleep_changes.push_back({body_id(w, body), true});
 }
 
@@ -170,6 +171,20 @@ void wake_neighbours(RigidWorld& w, std::uint32_t body) {
       if (end != kNoBody && std::uint32_t(end) != body && is_dynamic(w, std::uint32_t(end)))
         wake(w, std::uint32_t(end));
     }
+  }
+}
+
+void show_halt_to_sensors(RigidWorld& w, std::uint32_t body) {
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    bool any = false;
+    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) {
+      Contact& contact = w.contacts.contacts[slot];
+      if (contact.sensor == 0) return;
+      contact.cached_distance = kUnseen;
+      any = true;
+    });
+    // A changed shape has active contacts in the next step.
+    if (any) w.shapes.changed.push_back(id.index);
   }
 }
 

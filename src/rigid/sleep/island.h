@@ -69,6 +69,9 @@ void wake(RigidWorld& w, std::uint32_t body);
 void wake_all(RigidWorld& w);
 // Wakes all bodies that touch the body or are joined to it, before it is removed or moved.
 void wake_neighbours(RigidWorld& w, std::uint32_t body);
+// A command halts a kinematic body. The narrow phase of a step works on the poses before it, so sensors have not seen where the last step
+// moved the body: their contacts are updated once more.
+void show_halt_to_sensors(RigidWorld& w, std::uint32_t body);
 // Stage: wakes sleeping bodies that touch awake or moving ones or are joined to them.
 void wake_touched(RigidWorld& w);
 // Stage: updates the still times of awake bodies and puts still islands to sleep.

@@ -121,8 +121,9 @@ struct BodyStore {
   // with joints_of().
   Array<SmallArray<std::uint32_t, 2>> joints;
   Array<std::uint32_t> awake;      // simulated bodies, ascending; derived
-  std::size_t sleeping_count = 0;  // dynamic bodies that sleep and are not frozen; derived
-  bool awake_stale = false;        // `awake` and `sleeping_count` must be derived again before use
+  // Dynamic bodies that sleep and are not frozen; derived. While `awake_stale`, an upper bound.
+  std::size_t sleeping_count = 0;
+  bool awake_stale = false;  // `awake` and `sleeping_count` must be derived again before use
 };
 
 // The joint slots of a body; and the list to be changed, for which room is made.
