@@ -4,6 +4,7 @@
 #include <gyre/defs.h>
 #include <gyre/events.h>
 #include <gyre/fields.h>
+#include <gyre/fluid.h>
 #include <gyre/geometry.h>
 #include <gyre/ids.h>
 #include <gyre/joints.h>

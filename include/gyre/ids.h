@@ -21,5 +21,6 @@ using ShapeId = Id<struct ShapeTag>;
 using JointId = Id<struct JointTag>;
 using FieldId = Id<struct FieldTag>;
 using SoftId = Id<struct SoftTag>;
+using FluidId = Id<struct FluidTag>;
 
 }  // namespace gyre

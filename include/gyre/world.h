@@ -12,6 +12,7 @@
 #include <gyre/defs.h>
 #include <gyre/events.h>
 #include <gyre/fields.h>
+#include <gyre/fluid.h>
 #include <gyre/ids.h>
 #include <gyre/joints.h>
 #include <gyre/math.h>
@@ -133,6 +134,9 @@ class World {
   SoftId add_cloth(const ClothDef& cloth);
   SoftId add_solid(const SolidDef& solid);
   bool remove_soft(SoftId soft);
+  FluidId add_gas(const GasDef& gas);
+  FluidId add_liquid(const LiquidDef& liquid);
+  bool remove_fluid(FluidId fluid);
 
   // --------------------------------------------------------------------------------------------------------- change
   bool set_pose(BodyId body, const Pose& pose);  // teleports: keeps the velocity, drops the contacts
@@ -189,6 +193,9 @@ class World {
   // they are put.
   bool set_vertices(SoftId soft, std::span<const DVec3> positions, std::span<const Vec3> velocities);
 
+  // Fluids (fluid.h). Replaces all emitters.
+  bool set_emitters(FluidId fluid, std::span<const FluidEmitter> emitters);
+
   // Gives an impulse at once to every dynamic body within range; see ExplosionDef.
   bool explode(const ExplosionDef& explosion);
 
@@ -201,6 +208,7 @@ class World {
   bool exists(JointId joint) const;
   bool exists(FieldId field) const;
   bool exists(SoftId soft) const;
+  bool exists(FluidId fluid) const;
   // Each returns the zero value for a stale id.
   Pose pose(BodyId body) const;
   DVec3 center_of_mass(BodyId body) const;  // world
@@ -235,6 +243,22 @@ class World {
   // its vertices, in the order of the definition; returns how many there are, 0 without such a surface.
   std::size_t soft_surface(SoftId soft, std::span<DVec3> out) const;
   std::span<const std::uint32_t> soft_surface_triangles(SoftId soft) const;  // counter-clockwise seen from outside
+  // Gases and liquids. Copies up to out.size() ids, in order of index; returns how many there are.
+  std::size_t fluids(std::span<FluidId> out) const;
+  FluidInfo fluid_info(FluidId fluid) const;
+  // Points outside the box read the nearest point inside.
+  FluidProbe probe(FluidId fluid, DVec3 point) const;
+  // The velocity (m/s) at many points; as many are read as both spans have room for.
+  void sample_velocity(FluidId fluid, std::span<const DVec3> points, std::span<Vec3> out) const;
+  // A field of cell centres, x fastest, then y, then z: kg/m^3, K, Pa or m/s. Copies up to out.size() numbers; returns how many there are.
+  std::size_t fluid_field(FluidId fluid, FluidField field, std::span<float> out) const;
+  // The particles of a liquid, m and m/s. Copies up to the room of each span; returns how many there are.
+  std::size_t liquid_particles(FluidId fluid, std::span<DVec3> positions, std::span<Vec3> velocities) const;
+  // The surface of a liquid as triangles, counter-clockwise seen from outside, made anew at each call. Copies up to the room of each span.
+  FluidSurfaceSize liquid_surface(FluidId fluid, std::span<Vec3> vertices, std::span<std::uint32_t> indices) const;
+  // A definition with which the fluid goes on as it is: its fields or particles are in it.
+  GasDef gas_def(FluidId fluid) const;
+  LiquidDef liquid_def(FluidId fluid) const;
   // Pairs of an edge and a triangle without a common vertex that intersect, of one or of two cloths: exact, for tests, and slow.
   std::size_t cloth_crossings() const;
 

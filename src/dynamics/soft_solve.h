@@ -24,6 +24,7 @@
 
 #include "base/arena/arena.h"
 #include "dynamics/soft_surfaces.h"
+#include "fluid/store/fluid_store.h"
 #include "rigid/store/rigid_world.h"
 #include "soft/solver/soft_step.h"
 #include "task/task_system.h"
@@ -90,6 +91,7 @@ struct SoftScratch {
 struct SoftSolve {
   RigidWorld* w = nullptr;
   SoftStore* store = nullptr;
+  const FluidStore* fluids = nullptr;
   SoftScratch* scratch = nullptr;
   const SoftKernels* kernels = nullptr;
   std::span<const std::uint32_t> members{};  // slots; empty: the batch has no soft matter

@@ -328,9 +328,10 @@ void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
     w.bodies.last_moves.resize(w.bodies.motion.size());
 }
 
-void add_soft(BatchContext& batch, SoftStore& soft, SoftScratch& scratch, const HalfStepping& plan) {
+void add_soft(BatchContext& batch, SoftStore& soft, const FluidStore& fluids, SoftScratch& scratch, const HalfStepping& plan) {
   batch.soft = {.w = &batch.w,
                 .store = &soft,
+                .fluids = &fluids,
                 .scratch = &scratch,
                 .kernels = &select_soft_kernels(batch.kernels.width),
                 .members = scratch.slots,
@@ -415,7 +416,7 @@ void sum_up(SolveScratch& scratch) {
 
 }  // namespace
 
-void solve_step(RigidWorld& w, SoftStore& soft, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
+void solve_step(RigidWorld& w, SoftStore& soft, const FluidStore& fluids, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
                 const SolverKernels& kernels, float seconds) {
   const SolverSettings* const row_solver = row_solver_of(w);
   const HalfStepping plan = plan_half_steps(w, seconds, row_solver != nullptr);
@@ -433,7 +434,7 @@ void solve_step(RigidWorld& w, SoftStore& soft, SolveScratch& scratch, Arena& ar
   };
   const auto solve_together = [&](const IslandBatch& members, bool has_soft) {
     BatchContext batch = describe(members, scratch.together);
-    if (has_soft) add_soft(batch, soft, scratch.soft, plan);
+    if (has_soft) add_soft(batch, soft, fluids, scratch.soft, plan);
     if (row_solver != nullptr) {
       solve_batch_as_rows(batch, *row_solver, arena, tasks);
     } else {

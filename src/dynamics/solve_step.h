@@ -37,7 +37,7 @@ static_assert(kColoringOptions.max_colors < 64, "colors_used has a bit for each,
 // Solves one step of `seconds`. Writes velocities, delta positions, delta rotations and orientations of awake bodies, and impulses in
 // manifolds and joints.
 // Soft matter, if there is any, moves in the batch of all bodies that it touches.
-void solve_step(RigidWorld& w, SoftStore& soft, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
+void solve_step(RigidWorld& w, SoftStore& soft, const FluidStore& fluids, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
                 const SolverKernels& kernels, float seconds);
 
 }  // namespace gyre

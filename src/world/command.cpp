@@ -11,6 +11,7 @@
 #include "world/field_commands.h"
 #include "world/joint_commands.h"
 #include "world/query_sight.h"
+#include "world/fluid_commands.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
 

@@ -2,11 +2,13 @@
 // command, shows it to the log, and executes it. A recording is a list of commands, so it cannot miss a change.
 #pragma once
 
+#include "fluid/store/fluid_store.h"
 #include "soft/store/soft_store.h"
 #include "world/flat_joint.h"
 
 #include <gyre/defs.h>
 #include <gyre/fields.h>
+#include <gyre/fluid.h>
 #include <gyre/result.h>
 #include <gyre/soft.h>
 
@@ -164,6 +166,16 @@ struct SetVertices {
   std::vector<DVec3> positions;
   std::vector<Vec3> velocities;
 };
+struct AddFluid {
+  std::shared_ptr<const FluidDef> def;
+};
+struct RemoveFluid {
+  FluidId fluid;
+};
+struct SetEmitters {
+  FluidId fluid;
+  std::vector<FluidEmitter> emitters;
+};
 struct Step {
   float seconds = 0;
 };
@@ -173,7 +185,7 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
                              SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
                              SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled,
-                             SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices>;
+                             SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices, AddFluid, RemoveFluid, SetEmitters>;
 
 // The result of a command: success, and the id of the new object.
 struct CommandResult {
@@ -183,6 +195,7 @@ struct CommandResult {
   JointId joint;
   FieldId field{};
   SoftId soft{};
+  FluidId fluid{};
 };
 
 // Checks the command, shows it to the log and executes it. A refused command changes nothing and is reported as one

@@ -2,6 +2,7 @@
 #include "world/field_commands.h"
 #include "world/joint_commands.h"
 #include "world/refusal.h"
+#include "world/fluid_commands.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
 

@@ -34,10 +34,6 @@ void for_each_overlapping(const RigidWorld& w, std::uint32_t shape, Array<std::u
   }
 }
 
-bool is_asleep(const RigidWorld& w, std::uint32_t body) {
-  return is_movable(w.bodies.flags[body]) && w.bodies.flags[body].awake == 0;
-}
-
 // The box of all vertices with their radius, rounded outward.
 Aabb box_of(const SoftEntry& entry) {
   const Particles& p = entry.body.particles;

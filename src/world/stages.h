@@ -9,6 +9,7 @@ namespace gyre {
 enum class StageName : std::uint8_t {
   refit,
   find_pairs,
+  flow,
   touch_soft,
   collide,
   link_islands,
@@ -18,10 +19,10 @@ enum class StageName : std::uint8_t {
   break_joints,
   put_to_sleep,
 };
-constexpr int kStageCount = 10;
-inline constexpr const char* kStageNames[kStageCount] = {"refit",        "find_pairs",  "touch_soft",  "collide",
-                                                         "link_islands", "solve",       "clamp_fast_bodies",
-                                                         "finish_bodies", "break_joints", "put_to_sleep"};
+constexpr int kStageCount = 11;
+inline constexpr const char* kStageNames[kStageCount] = {
+    "refit", "find_pairs",        "flow",          "touch_soft",   "collide",     "link_islands",
+    "solve", "clamp_fast_bodies", "finish_bodies", "break_joints", "put_to_sleep"};
 
 // The profiler measures the whole step beside its stages.
 constexpr int kWholeStep = kStageCount;
@@ -41,9 +42,8 @@ enum class CounterName : std::uint8_t {
   fast_bodies,  // bodies that CCD swept
 };
 constexpr int kCounterCount = 10;
-inline constexpr const char* kCounterNames[kCounterCount] = {"refitted_boxes", "new_pairs", "contacts",
-                                                             "full_looks",     "manifolds", "colors",
-                                                             "joints",         "swept_joints", "awake_bodies",
-                                                             "fast_bodies"};
+inline constexpr const char* kCounterNames[kCounterCount] = {
+    "refitted_boxes", "new_pairs", "contacts",     "full_looks",   "manifolds",
+    "colors",         "joints",    "swept_joints", "awake_bodies", "fast_bodies"};
 
 }  // namespace gyre

@@ -6,6 +6,7 @@
 #include "collision/contact/contact_store.h"
 #include "collision/broadphase/proxy.h"
 #include "rigid/store/rigid_world.h"
+#include "fluid/store/fluid_store.h"
 #include "soft/store/soft_store.h"
 
 namespace gyre {
@@ -197,6 +198,15 @@ template <Is<SoftContact> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.shape), f(r.body), f(r.triangle), for_each_field(r.normal, f), for_each_field(r.from_body, f), f(r.gap);
   f(r.static_friction), f(r.dynamic_friction), for_each_field(r.surface_velocity, f), for_each_field(r.impulse, f), f(r.grip);
+}
+template <Is<GasEmitter> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.position, f), f(r.radius), f(r.density), f(r.temperature), for_each_field(r.velocity, f);
+  f(r.has_velocity), f(r.start), f(r.end);
+}
+template <Is<FluidPush> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.body), for_each_field(r.force, f), for_each_field(r.torque, f);
 }
 template <Is<RigidSettings> T, class F>
 void for_each_field(T& r, F&& f) {

@@ -1,5 +1,6 @@
 // One step of the world as a list of stages. Each stage is a function from arrays to arrays in a lower layer.
 #include "base/check.h"
+#include "dynamics/fluid_step.h"
 #include "dynamics/soft_contacts.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/integrate/spring_stability.h"
@@ -64,6 +65,14 @@ void report_frozen(WorldState& s) {
   }
 }
 
+void report_stilled_fluids(WorldState& s) {
+  for (std::size_t slot = 0; slot < s.fluid_scratch.size(); ++slot) {
+    if (!s.fluid_scratch[slot].failed) continue;
+    report_problem(s, ErrorCode::invalid_data, {}, "fluid %d is no longer finite; it was stilled and goes on at rest", int(slot));
+    s.fluid_scratch[slot].failed = false;
+  }
+}
+
 // An explicit integrator must not explode silently: a step longer than the critical one is reported every time.
 void report_stiffness(WorldState& s) {
   const RigidWorld& w = s.rigid;
@@ -122,12 +131,16 @@ void count_work(WorldState& s) {
   count(s, CounterName::fast_bodies, s.continuous.fast.size());
 }
 
-// The collision stages: fat boxes, pairs, manifolds, touches.
-void detect_collisions(WorldState& s, float seconds) {
+// The collision stages: fat boxes, pairs, manifolds, touches. Fluids move for the step of `flow` seconds; 0: they have moved already.
+void detect_collisions(WorldState& s, float seconds, float flow) {
   RigidWorld& w = s.rigid;
   run_stage(s, StageName::refit, [&] { refit(w, *s.tasks, seconds); });
   count(s, CounterName::refitted_boxes, w.shapes.changed.size());
   run_stage(s, StageName::find_pairs, [&] { count(s, CounterName::new_pairs, find_pairs(w, *s.tasks)); });
+  run_stage(s, StageName::flow, [&] {
+    if (s.fluids.empty() || flow == 0.0f) return;
+    step_fluids(w, s.fluids, s.fluid_scratch, *s.gas_kernels, *s.tasks, s.time, flow);
+  });
   run_stage(s, StageName::touch_soft, [&] {
     if (!s.soft.empty()) find_soft_contacts(w, s.soft, s.solve.soft.shapes_near, s.arena, *s.tasks, seconds);
   });
@@ -170,7 +183,7 @@ void solve_to_tolerance(WorldState& s, float seconds) {
   save_before(s);
   const auto solve = [&] {
     w.settings.substeps = substeps;
-    solve_step(w, s.soft, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
+    solve_step(w, s.soft, s.fluids, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
     w.settings.substeps = min_substeps;
   };
   solve();
@@ -195,12 +208,12 @@ void solve_to_tolerance(WorldState& s, float seconds) {
 }
 
 void step_undivided(WorldState& s, float seconds) {
-  detect_collisions(s, seconds);
+  detect_collisions(s, seconds, seconds);
   s.rigid.now = s.time;
   run_stage(s, StageName::solve, [&] {
     if (motion_settings(s.rigid).time == TimeStepping::error_controlled)
       return solve_to_tolerance(s, seconds);
-    solve_step(s.rigid, s.soft, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
+    solve_step(s.rigid, s.soft, s.fluids, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
   });
   finish_step(s, seconds, seconds, true);
 }
@@ -223,7 +236,7 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
   for (int n = 0;; ++n) {
     w.settings.substeps =
         clamp(std::int32_t(std::ceil(double(substeps) * length / double(seconds))), 1, substeps);
-    solve_step(w, s.soft, s.solve, s.arena, *s.tasks, *s.kernels, float(length));
+    solve_step(w, s.soft, s.fluids, s.solve, s.arena, *s.tasks, *s.kernels, float(length));
     if (bounded || n + 1 == kMaxTries) break;
     const FirstImpact first = find_first_impact(w, s.impacts.before, length);
     if (!(first.time < length)) break;
@@ -243,7 +256,7 @@ void apply_impacts(WorldState& s, float threshold, float seconds, float left) {
   for (const std::uint32_t body : s.impacts.hit_bodies) {
     for (const ShapeId id : w.bodies.shapes[body]) refit_shape(w, id.index, seconds);
   }
-  detect_collisions(s, left);
+  detect_collisions(s, left, 0.0f);
 }
 
 // Steps from impact to impact. A bounce that would last less than 1/64 of the step is suppressed, so a ball with
@@ -256,7 +269,7 @@ void step_to_impacts(WorldState& s, float seconds) {
   double left = double(seconds);
   for (int piece = 0; left > 0.0; ++piece) {
     w.now = s.time + (double(seconds) - left);
-    detect_collisions(s, float(left));
+    detect_collisions(s, float(left), piece == 0 ? seconds : 0.0f);
     report.bounded = report.impacts >= max_impacts || piece > 3 * max_impacts;
     if (report.bounded) {
       w.inactive_contacts.clear();
@@ -313,6 +326,7 @@ void step_world(WorldState& s, float seconds) {
   }
   end_step(s, seconds);
   report_frozen(s);
+  report_stilled_fluids(s);
   report_stiffness(s);
   report_large_islands(s);
   remove_broken_joints(s);

@@ -59,6 +59,13 @@ SoftId World::add_solid(const SolidDef& solid) {
   return submit(*state_, AddSoft{std::make_shared<const SoftDef>(solid)}).soft;
 }
 bool World::remove_soft(SoftId soft) { return submit(*state_, RemoveSoft{soft}).done; }
+FluidId World::add_gas(const GasDef& gas) {
+  return submit(*state_, AddFluid{std::make_shared<const FluidDef>(gas)}).fluid;
+}
+bool World::remove_fluid(FluidId fluid) { return submit(*state_, RemoveFluid{fluid}).done; }
+bool World::set_emitters(FluidId fluid, std::span<const FluidEmitter> emitters) {
+  return submit(*state_, SetEmitters{fluid, {emitters.begin(), emitters.end()}}).done;
+}
 bool World::attach(SoftId soft, int vertex, BodyId body) {
   if (!exists(body)) {
     report_problem(*state_, ErrorCode::stale_id, body, "attach: body %u (generation %u) does not exist in this world",

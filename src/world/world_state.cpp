@@ -58,6 +58,17 @@ class HashVisitor {
       });
     });
   }
+  void operator()(const char*, const FluidStore& fluids) {
+    if (fluids.entries.empty()) return;
+    for (const std::uint32_t generation : fluids.ids.generations()) add_word(generation);
+    fluids.for_each([&](const FluidEntry& entry) {
+      add_word(std::uint64_t(entry.kind()) << 32 | std::uint64_t(entry.gas.shape.count()));
+      for_each_fluid_array(entry, [&](const auto& array) {
+        add_word(array.size());
+        for (const auto& record : array) add_record(record);
+      });
+    });
+  }
   void operator()(const char*, const std::vector<AnyShape>& geometry) {
     for (const AnyShape& shape : geometry) add_word(hash_shape(shape));
   }
@@ -142,6 +153,7 @@ std::unique_ptr<WorldState> make_world_state(const WorldDef& def) {
   state->tasks = def.host_tasks.run != nullptr ? std::make_unique<TaskSystem>(def.host_tasks)
                                                : std::make_unique<TaskSystem>(def.threads);
   state->kernels = &select_kernels(def.simd_width);
+  state->gas_kernels = &select_gas_kernels(def.simd_width);
   state->recycle_contacts = select_recycling(def.simd_width);
   const char* timed[kStageCount + 1];
   for (int i = 0; i < kStageCount; ++i) timed[i] = kStageNames[i];

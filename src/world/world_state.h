@@ -4,6 +4,7 @@
 
 #include "base/arena/arena.h"
 #include "base/profile/profile.h"
+#include "dynamics/fluid_step.h"
 #include "dynamics/solve_step.h"
 #include "rigid/rigid_step.h"
 #include "rigid/store/rigid_world.h"
@@ -54,6 +55,7 @@ struct WorldState {
   // Simulation state.
   RigidWorld rigid;
   SoftStore soft;
+  FluidStore fluids;
   double time = 0.0;             // s
   std::uint64_t step_count = 0;
 
@@ -66,6 +68,8 @@ struct WorldState {
   SolveScratch solve;
   ContinuousScratch continuous;
   ImpactScratch impacts;
+  const GasKernels* gas_kernels = nullptr;
+  std::vector<FluidScratch> fluid_scratch;  // by slot
   SoftStore soft_before;  // before a step that may be tried again
   StageProfile profile;
   StageHook stage_hook;
@@ -111,7 +115,8 @@ template <class Column>
 constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || std::is_same_v<Column, Array<JointDetail>> ||
                                  std::is_same_v<Column, Array<PathPoint>> || std::is_same_v<Column, Array<FieldRecord>> ||
                                  std::is_same_v<Column, Array<MotionSettings>> || std::is_same_v<Column, Array<LastMove>> ||
-                                 std::is_same_v<Column, Array<SolverSettings>> || std::is_same_v<Column, SoftStore>;
+                                 std::is_same_v<Column, Array<SolverSettings>> || std::is_same_v<Column, SoftStore> ||
+                                 std::is_same_v<Column, FluidStore>;
 
 // Calls visit(name, column) for every state column, in a fixed order. A column is an Array or an IsColumn of records
 // that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
@@ -150,6 +155,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("contacts", s.rigid.contacts.contacts);
   visit("manifolds", s.rigid.contacts.manifolds);
   visit("soft", s.soft);
+  visit("fluids", s.fluids);
 }
 
 // A world with default state: no bodies; threads and kernels as in the def.
@@ -163,6 +169,8 @@ Error check_columns(const RigidWorld& w);
 void derive_state(RigidWorld& w);
 // Checks what refers from soft matter to bodies and shapes.
 Error check_soft_columns(const RigidWorld& w, const SoftStore& soft);
+// Checks fluids and what they refer to.
+Error check_fluid_columns(const RigidWorld& w, const FluidStore& fluids);
 // Checks and derives: the last step of loading.
 Error rebuild_derived(RigidWorld& w);
 

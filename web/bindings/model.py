@@ -10,7 +10,7 @@ from pathlib import Path
 import headers
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "joints", "events", "soft", "fields", "world", "replay", "debug", "track"]
+HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "joints", "events", "soft", "fluid", "fields", "world", "replay", "debug", "track"]
 # Public headers that are not bound, and why.
 NOT_BOUND = {"gyre": "includes the others", "decomposition": "seconds of work on a mesh, done before a page is made; its hulls come as hulls",
              "bounds": "measures meshes before they are cooked; a page does not choose volumes",
@@ -60,6 +60,7 @@ RENAMED = {
     "World::exists(JointId)": "jointExists",
     "World::exists(FieldId)": "fieldExists",
     "World::exists(SoftId)": "softExists",
+    "World::exists(FluidId)": "fluidExists",
     "World::create(WorldDef)": "createWorld",
     "Replay::open(vector<byte>,WorldDef)": "openReplay",
     "PoseTrack::open(vector<byte>)": "openPoseTrack",

@@ -43,13 +43,18 @@ double smoke_mass(const GasGrid& grid, const GasSolids& solids, TaskSystem& task
   return cell_volume(grid.box) * sum;
 }
 
+Vec3 gas_velocity(const GasGrid& grid, DVec3 point) {
+  const Vec3 local = difference(point, grid.box.corner);
+  return {sample_field(grid.box, grid.shape, grid.velocity[0].data(), 0, local),
+          sample_field(grid.box, grid.shape, grid.velocity[1].data(), 1, local),
+          sample_field(grid.box, grid.shape, grid.velocity[2].data(), 2, local)};
+}
+
 GasProbe probe_gas(const GasGrid& grid, DVec3 point, float density, Vec3 gravity) {
   const GasBox& box = grid.box;
   const Vec3 local = difference(point, box.corner);
   GasProbe probe;
-  probe.velocity.x = sample_field(box, grid.shape, grid.velocity[0].data(), 0, local);
-  probe.velocity.y = sample_field(box, grid.shape, grid.velocity[1].data(), 1, local);
-  probe.velocity.z = sample_field(box, grid.shape, grid.velocity[2].data(), 2, local);
+  probe.velocity = gas_velocity(grid, point);
   probe.density = sample_field(box, grid.shape, grid.density.data(), -1, local);
   probe.temperature = sample_field(box, grid.shape, grid.temperature.data(), -1, local);
   probe.pressure = density * sample_field(box, grid.shape, grid.pressure.data(), -1, local);

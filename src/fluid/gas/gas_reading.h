@@ -12,6 +12,9 @@ double gas_kinetic_energy(const GasGrid& grid, const GasSolids& solids, float de
 // The integral of the density of smoke outside solids: kg.
 double smoke_mass(const GasGrid& grid, const GasSolids& solids, TaskSystem& tasks);
 
+// m/s at a point of the world, between faces linearly.
+Vec3 gas_velocity(const GasGrid& grid, DVec3 point);
+
 struct GasProbe {
   Vec3 velocity{};           // m/s, between faces linearly
   float pressure = 0.0f;     // Pa, relative to the air outside at that height, or to the mean of a closed box

@@ -84,6 +84,9 @@ void center_pressure(const GasPass& pass) {
 // For readings between the last cell of a periodic axis and the first.
 void fill_periodic_ghosts(const GasPass& pass) {
   const bool periodic[3] = {pass.box().periodic(0), pass.box().periodic(1), pass.box().periodic(2)};
+  for (int axis = 0; axis < 3; ++axis) clear_outside(pass.shape(), axis, pass.grid.velocity[axis]);
+  for (Array<float>* field : {&pass.grid.density, &pass.grid.temperature, &pass.grid.pressure})
+    clear_outside(pass.shape(), -1, *field);
   for (Array<float>* field : {&pass.grid.density, &pass.grid.temperature, &pass.grid.pressure})
     wrap_ghosts(pass.shape(), periodic, field->data());
   for (Array<float>& field : pass.grid.velocity) wrap_ghosts(pass.shape(), periodic, field.data());
@@ -97,7 +100,7 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
   trace_paths(pass);
   if (settings.viscosity > 0.0f) save_velocity(pass);
   add_pressure(pass, 0.5f, true);
-  transport_fields(pass);
+  transport_fields(pass, settings.advection);
   if (conserves_smoke) conserve_smoke(pass, mass);
   apply_emitters(pass, emitters, time);
   set_walls(pass);

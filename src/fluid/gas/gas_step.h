@@ -16,6 +16,7 @@ struct GasSettings {
   float buoyancy = 1.0f;   // 1: of gas that expands as an ideal one
   float vorticity = 0.0f;  // 1: strength of confinement
   float viscosity = 0.0f;  // Pa s
+  Advection advection = Advection::maccormack;
   Vec3 gravity{0.0f, -9.81f, 0.0f};
   float max_cells = 4.0f;  // of displacement in a sub-step
   int max_substeps = 32;

@@ -126,6 +126,22 @@ float sample_field(const GasBox& box, const GridShape& shape, const float* field
   return sum;
 }
 
+void clear_outside(const GridShape& shape, int faces, Array<float>& field) {
+  const int rows_y = shape.cells[1] + (faces == 1 ? 1 : 0), rows_z = shape.cells[2] + (faces == 2 ? 1 : 0);
+  const int length = shape.cells[0] + (faces == 0 ? 1 : 0);
+  int end = 0;
+  const auto clear_to = [&](int next) {
+    for (int c = end; c < next; ++c) field[std::size_t(c)] = 0.0f;
+  };
+  for (int k = 0; k < rows_z; ++k) {
+    for (int j = 0; j < rows_y; ++j) {
+      clear_to(shape.row(j, k));
+      end = shape.row(j, k) + length;
+    }
+  }
+  clear_to(int(field.size()));
+}
+
 void clear_solids(const GridShape& shape, int labels, GasSolids& solids) {
   const std::size_t size = std::size_t(shape.size);
   for (int axis = 0; axis < 3; ++axis) {

@@ -8,15 +8,14 @@
 #include "base/container/array.h"
 #include "fluid/grid/grid_shape.h"
 
+#include <gyre/fluid.h>
 #include <gyre/math.h>
 
 #include <cstdint>
 
 namespace gyre {
 
-// A side of the box. periodic: what leaves there enters on the opposite side, for both sides of an axis; open: air at rest pressure stands
-// outside, and gas passes freely; closed: a wall along which gas slips; no_slip: a wall that holds the gas next to it by viscosity.
-enum class GasBoundary : std::uint8_t { periodic, open, closed, no_slip };
+using GasBoundary = FluidBoundary;
 
 struct GasBox {
   int cells[3] = {0, 0, 0};
@@ -56,6 +55,8 @@ void fill_ghosts(const GasBox& box, const GridShape& shape, float* field, const 
 // The same of a pressure, which is zero in the middle between the last cell and its ghost at an open side.
 void fill_pressure_ghosts(const GasBox& box, const GridShape& shape, float* field);
 void clear_ghosts(const GridShape& shape, float* field);
+// All numbers of the array that are no cell (faces = -1) or face across the axis: kernels leave there what depends on their width.
+void clear_outside(const GridShape& shape, int faces, Array<float>& field);
 // Copies where ghosts are of use on periodic axes only and are zero elsewhere.
 void wrap_ghosts(const GridShape& shape, const bool periodic[3], float* field);
 // Faces that stand twice in the array: those of the upper side of a periodic axis are those of the lower side. Ghosts beyond the faces, likewise.

@@ -17,6 +17,10 @@ struct GasSolids {
   Array<float> velocity[3];      // m/s: of the solid, along that axis
   Array<std::int16_t> label[3];  // of the solid that cuts the face, -1: none
   Array<std::uint8_t> solid;     // cells: 1 within a solid
+  // For liquids, whose particles stay outside; gases leave both empty. At centres of cells: the distance from the surface of the nearest
+  // solid, m, negative within it, right up to four cells and no less than that beyond, and the label of that solid, -1 beyond.
+  Array<float> distance;
+  Array<std::int16_t> nearest;
   int labels = 0;
   std::uint64_t revision = 1;  // another number whenever `open` or `solid` changes
 

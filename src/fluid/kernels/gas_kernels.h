@@ -2,8 +2,8 @@
 // A kernel works on a range of rows of cells, numbered row = j + k * rows along y; several workers may do several ranges at once, since each
 // writes only its own rows. Every width gives the same bits.
 //
-// The pressure equation is sum of a (x_i - x_n) over the six faces of a cell = b_i; a is 0 where a face is closed. Arrays of cell centres
-// have zeros beyond the last cell of a row, and ghosts as fluid/grid/gas_grid.h says.
+// The pressure equation is the sum of a (x_i - x_n) over the six faces of a cell, plus g x_i, = b_i; a is 0 where a face is closed. Arrays of cell
+// centres have zeros beyond the last cell of a row, and ghosts as fluid/grid/gas_grid.h says.
 #pragma once
 
 #include "fluid/grid/grid_shape.h"
@@ -12,14 +12,17 @@
 
 namespace gyre {
 
+// A row of cells. plain: coefficients are the same along it but at its ends; empty: no cell has an equation.
+enum class PressureRow : std::uint8_t { mixed, plain, empty };
+
 // One level of the pressure equation.
 struct PressureLevel {
   GridShape shape;
   const float* face[3] = {};                // a, 1/m^2
   const float* inverse_diagonal = nullptr;  // 0: no equation here
   const float* transfer = nullptr;          // scales what goes to the next coarser level, and comes from it
-  // Rows in which `a` is the same along the row but at its ends.
-  const std::uint8_t* plain = nullptr;
+  const float* ground = nullptr;            // g, 1/m^2: the surface of a liquid; null: 0
+  const PressureRow* rows = nullptr;
   bool halved[3] = {};  // axes along which the next coarser level has half the cells
 };
 

@@ -10,10 +10,10 @@ namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 // The coefficients of W cells, of their lower and upper faces along each axis.
-template <int W>
+template <int W, bool HasGround>
 struct FaceLanes {
   Wide<W> a[6];
-  Wide<W> inverse, transfer;
+  Wide<W> inverse, transfer, ground;
 
   GYRE_INLINE void load(const PressureLevel& level, int c) {
     a[0] = Wide<W>::load_unaligned(level.face[0] + c);
@@ -24,6 +24,7 @@ struct FaceLanes {
     a[5] = Wide<W>::load_unaligned(level.face[2] + c + level.shape.plane);
     inverse = Wide<W>::load_unaligned(level.inverse_diagonal + c);
     transfer = Wide<W>::load_unaligned(level.transfer + c);
+    if constexpr (HasGround) ground = Wide<W>::load_unaligned(level.ground + c);
   }
   // The numbers of cell c in every lane.
   GYRE_INLINE void spread(const PressureLevel& level, int c) {
@@ -31,29 +32,36 @@ struct FaceLanes {
     a[2] = level.face[1][c], a[3] = level.face[1][c + level.shape.pitch];
     a[4] = level.face[2][c], a[5] = level.face[2][c + level.shape.plane];
     inverse = level.inverse_diagonal[c], transfer = level.transfer[c];
+    if constexpr (HasGround) ground = level.ground[c];
   }
 };
 
-// sum of a (x - x_n) at cells c to c + W
-template <int W>
-GYRE_INLINE Wide<W> apply_stencil(const FaceLanes<W>& faces, const GridShape& shape, const float* x, int c,
-                                  Wide<W> here) {
+// sum of a (x - x_n) and g x at cells c to c + W
+template <int W, bool HasGround>
+GYRE_INLINE Wide<W> apply_stencil(const FaceLanes<W, HasGround>& faces, const GridShape& shape,
+                                  const float* x, int c, Wide<W> here) {
   const Wide<W> along_x = faces.a[0] * (here - Wide<W>::load_unaligned(x + c - 1)) +
                           faces.a[1] * (here - Wide<W>::load_unaligned(x + c + 1));
   const Wide<W> along_y = faces.a[2] * (here - Wide<W>::load_unaligned(x + c - shape.pitch)) +
                           faces.a[3] * (here - Wide<W>::load_unaligned(x + c + shape.pitch));
   const Wide<W> along_z = faces.a[4] * (here - Wide<W>::load_unaligned(x + c - shape.plane)) +
                           faces.a[5] * (here - Wide<W>::load_unaligned(x + c + shape.plane));
+  if constexpr (HasGround) return along_x + along_y + along_z + faces.ground * here;
   return along_x + along_y + along_z;
 }
 
-// Calls fn(c, part, faces, lanes) for every W cells of the rows; `part`: which W of 16 these are.
-template <int W, class Fn>
-GYRE_INLINE void for_cells(const PressureLevel& level, int row_begin, int row_end, Fn&& fn) {
+// Calls fn(c, part, faces, lanes) for every W cells of the rows; `part`: which W of 16 these are. Empty rows of `out` become zero.
+template <int W, bool HasGround, class Fn>
+GYRE_INLINE void for_cells(const PressureLevel& level, float* out, int row_begin, int row_end, Fn&& fn) {
+  using Faces = FaceLanes<W, HasGround>;
   const int n = level.shape.cells[0];
   for_rows(level.shape, level.shape.cells[1], row_begin, row_end, [&](int c, int, int, int row) {
-    const bool plain = level.plain[row] != 0;
-    FaceLanes<W> inner;
+    if (level.rows[row] == PressureRow::empty) {
+      for (int i = 0; i < n; i += W) Wide<W>(0.0f).store(out + c + i);
+      return;
+    }
+    const bool plain = level.rows[row] == PressureRow::plain;
+    Faces inner;
     inner.spread(level, plain ? c + 1 : c);
     for (int i = 0; i < n; i += kGridLanes) {
       GYRE_UNROLL
@@ -62,11 +70,11 @@ GYRE_INLINE void for_cells(const PressureLevel& level, int row_begin, int row_en
         if (plain && at > 0 && at + W < n) {
           fn(c + at, part, inner, FullLanes<W>{});
         } else if (at + W <= n) {
-          FaceLanes<W> faces;
+          Faces faces;
           faces.load(level, c + at);
           fn(c + at, part, faces, FullLanes<W>{});
         } else if (at < n) {
-          FaceLanes<W> faces;
+          Faces faces;
           faces.load(level, c + at);
           fn(c + at, part, faces, PartLanes<W>(n - at));
         }
@@ -75,10 +83,11 @@ GYRE_INLINE void for_cells(const PressureLevel& level, int row_begin, int row_en
   });
 }
 
-template <int W>
-double apply_cells(const PressureLevel& level, const float* x, float* y, int row_begin, int row_end) {
+template <int W, bool HasGround>
+GYRE_INLINE double apply_rows(const PressureLevel& level, const float* x, float* y, int row_begin,
+                              int row_end) {
   LaneSums<W> sums;
-  for_cells<W>(level, row_begin, row_end, [&](int c, int part, const FaceLanes<W>& faces, auto lanes) {
+  for_cells<W, HasGround>(level, y, row_begin, row_end, [&](int c, int part, const auto& faces, auto lanes) {
     const Wide<W> here = Wide<W>::load(x + c);
     const Wide<W> result = lanes.keep_real(apply_stencil<W>(faces, level.shape, x, c, here));
     result.store(y + c);
@@ -88,39 +97,56 @@ double apply_cells(const PressureLevel& level, const float* x, float* y, int row
 }
 
 template <int W>
-void find_residual(const PressureLevel& level, const float* b, const float* x, float* y, int row_begin,
-                   int row_end) {
-  for_cells<W>(level, row_begin, row_end, [&](int c, int, const FaceLanes<W>& faces, auto lanes) {
+double apply_cells(const PressureLevel& level, const float* x, float* y, int row_begin, int row_end) {
+  return level.ground != nullptr ? apply_rows<W, true>(level, x, y, row_begin, row_end)
+                                 : apply_rows<W, false>(level, x, y, row_begin, row_end);
+}
+
+template <int W, bool HasGround>
+GYRE_INLINE void residual_rows(const PressureLevel& level, const float* b, const float* x, float* y,
+                               int row_begin, int row_end) {
+  for_cells<W, HasGround>(level, y, row_begin, row_end, [&](int c, int, const auto& faces, auto lanes) {
     const Wide<W> here = Wide<W>::load(x + c);
     const Wide<W> rest = Wide<W>::load(b + c) - apply_stencil<W>(faces, level.shape, x, c, here);
     lanes.keep_real(faces.transfer * rest).store(y + c);
   });
 }
 
-template <int W, bool HasBefore>
+template <int W>
+void find_residual(const PressureLevel& level, const float* b, const float* x, float* y, int row_begin,
+                   int row_end) {
+  level.ground != nullptr ? residual_rows<W, true>(level, b, x, y, row_begin, row_end)
+                          : residual_rows<W, false>(level, b, x, y, row_begin, row_end);
+}
+
+template <int W, bool HasBefore, bool HasGround>
 GYRE_INLINE double smooth_rows(const PressureLevel& level, const float* b, const float* x,
                                const float* before, float inertia, float gain, float* out, int row_begin,
                                int row_end) {
   LaneSums<W> sums;
   const Wide<W> keeps(inertia), gains(gain);
-  for_cells<W>(level, row_begin, row_end, [&](int c, int part, const FaceLanes<W>& faces, auto lanes) {
-    const Wide<W> here = Wide<W>::load(x + c), right = Wide<W>::load(b + c);
-    const Wide<W> rest = right - apply_stencil<W>(faces, level.shape, x, c, here);
-    Wide<W> last = here;
-    if constexpr (HasBefore) last = here - Wide<W>::load(before + c);
-    const Wide<W> result = lanes.keep_real(here + keeps * last + gains * faces.inverse * rest);
-    result.store(out + c);
-    sums.add(part, result * right);
-  });
+  for_cells<W, HasGround>(
+      level, out, row_begin, row_end, [&](int c, int part, const auto& faces, auto lanes) {
+        const Wide<W> here = Wide<W>::load(x + c), right = Wide<W>::load(b + c);
+        const Wide<W> rest = right - apply_stencil<W>(faces, level.shape, x, c, here);
+        Wide<W> last = here;
+        if constexpr (HasBefore) last = here - Wide<W>::load(before + c);
+        const Wide<W> result = lanes.keep_real(here + keeps * last + gains * faces.inverse * rest);
+        result.store(out + c);
+        sums.add(part, result * right);
+      });
   return sums.total();
 }
 
 template <int W>
 double smooth_cells(const PressureLevel& level, const float* b, const float* x, const float* before,
                     float inertia, float gain, float* out, int row_begin, int row_end) {
-  return before != nullptr
-             ? smooth_rows<W, true>(level, b, x, before, inertia, gain, out, row_begin, row_end)
-             : smooth_rows<W, false>(level, b, x, before, inertia, gain, out, row_begin, row_end);
+  const auto run = [&](auto rows) {
+    return rows(level, b, x, before, inertia, gain, out, row_begin, row_end);
+  };
+  if (level.ground != nullptr)
+    return before != nullptr ? run(smooth_rows<W, true, true>) : run(smooth_rows<W, false, true>);
+  return before != nullptr ? run(smooth_rows<W, true, false>) : run(smooth_rows<W, false, false>);
 }
 
 template <int W>

@@ -15,29 +15,14 @@ PressureLevel PressureMatrix::level(int index) const {
   }
   level.inverse_diagonal = grid.inverse_diagonal.data();
   level.transfer = grid.transfer.data();
-  level.plain = grid.plain.data();
+  level.ground = grid.ground.empty() ? nullptr : grid.ground.data();
+  level.rows = grid.rows.data();
   return level;
 }
 
 namespace {
 
 constexpr int kCoarsest = 2;  // cells along an axis that are not halved
-
-void resize_level(PressureGrid& grid, const GridShape& shape, bool finest) {
-  const std::size_t size = std::size_t(shape.size);
-  if (grid.inverse_diagonal.size() == size && grid.shape.pitch == shape.pitch &&
-      grid.shape.plane == shape.plane && grid.shape.cells[0] == shape.cells[0] &&
-      grid.shape.cells[2] == shape.cells[2]) {
-    return;
-  }
-  const auto renew = [size](Array<float>& field) { field.clear(), field.resize(size, 0.0f); };
-  grid.shape = shape;
-  for (Array<float>& faces : grid.face) renew(faces);
-  renew(grid.inverse_diagonal);
-  renew(grid.transfer);
-  grid.plain.resize(std::size_t(shape.rows()), std::uint8_t(0));
-  if (!finest) renew(grid.b), renew(grid.x), renew(grid.other);
-}
 
 template <class Fn>
 void each_row(const GridShape& shape, int rows_y, int rows_z, TaskSystem& tasks, Fn&& fn) {
@@ -118,11 +103,47 @@ void coarsen_faces(const PressureGrid& fine, int axis, TaskSystem& tasks, Pressu
   });
 }
 
+// Air, and how strongly cells are tied to it. What a fine cell has is in series with the way from its centre to that of the coarse cell,
+// half an edge: two rows of cells at the distance d from the surface become one at d + 1/2.
+void coarsen_ground(const PressureGrid& fine, TaskSystem& tasks, PressureGrid& coarse) {
+  const GridShape& shape = coarse.shape;
+  each_row(shape, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
+    const auto children = [&](int axis, int place, int& begin, int& end) {
+      begin = fine.halved[axis] ? 2 * place : place;
+      end = fine.halved[axis] && begin + 1 < fine.shape.cells[axis] ? begin + 2 : begin + 1;
+    };
+    int y, y_end, z, z_end;
+    children(1, j, y, y_end);
+    children(2, k, z, z_end);
+    for (int i = 0; i < shape.cells[0]; ++i) {
+      int x, x_end;
+      children(0, i, x, x_end);
+      float sum = 0.0f;
+      bool air = false;
+      for (int zz = z; zz < z_end; ++zz) {
+        for (int yy = y; yy < y_end; ++yy) {
+          for (int xx = x; xx < x_end; ++xx) {
+            const int at = fine.shape.at(xx, yy, zz);
+            const float ground = fine.ground[at];
+            air = air || fine.is_air[at] != 0;
+            if (!(ground > 0.0f)) continue;
+            const float way = 2.0f * fine.full_face;
+            sum += way > 0.0f ? ground * way / (ground + way) : ground;
+          }
+        }
+      }
+      coarse.ground[c + i] = sum;
+      coarse.is_air[c + i] = air ? 1 : 0;
+    }
+  });
+}
+
 // Diagonals. Returns the number of cells that have an equation.
 int find_diagonals(TaskSystem& tasks, PressureGrid& grid) {
   const GridShape& shape = grid.shape;
   const float *const ax = grid.face[0].data(), *const ay = grid.face[1].data(),
                      *const az = grid.face[2].data();
+  const float* const ground = grid.ground.empty() ? nullptr : grid.ground.data();
   float* const to = grid.inverse_diagonal.data();
   return reduce_blocks(
       tasks, shape.rows(), kGridRows, 0,
@@ -131,8 +152,9 @@ int find_diagonals(TaskSystem& tasks, PressureGrid& grid) {
         for (int row = begin; row < end; ++row) {
           const int c = shape.row(row % shape.cells[1], row / shape.cells[1]);
           for (int i = c; i < c + shape.cells[0]; ++i) {
-            const float diagonal =
+            float diagonal =
                 ax[i] + ax[i + 1] + (ay[i] + ay[i + shape.pitch]) + (az[i] + az[i + shape.plane]);
+            if (ground != nullptr) diagonal += ground[i];
             to[i] = diagonal > 0.0f ? 1.0f / diagonal : 0.0f;
             active += diagonal > 0.0f ? 1 : 0;
           }
@@ -142,13 +164,16 @@ int find_diagonals(TaskSystem& tasks, PressureGrid& grid) {
       [](int a, int b) { return a + b; });
 }
 
-// transfer: 1 over the sum of the weights with which a cell takes from cells of the coarser level that have an equation.
+// transfer: 1 over the sum of the weights with which a cell takes from cells of the coarser level that have an equation, or have none
+// because they are air.
 void find_transfer(PressureMatrix& matrix, int fine_index, const GasKernels& kernels, TaskSystem& tasks) {
   PressureGrid& fine = matrix.levels[fine_index];
   PressureGrid& coarse = matrix.levels[fine_index + 1];
   each_row(coarse.shape, coarse.shape.cells[1], coarse.shape.cells[2], tasks, [&](int c, int, int) {
     for (int i = c; i < c + coarse.shape.cells[0]; ++i)
-      coarse.x[i] = coarse.inverse_diagonal[i] > 0.0f ? 1.0f : 0.0f;
+      coarse.x[i] = coarse.inverse_diagonal[i] > 0.0f || (!coarse.is_air.empty() && coarse.is_air[i] != 0)
+                        ? 1.0f
+                        : 0.0f;
   });
   wrap_ghosts(coarse.shape, coarse.periodic, coarse.x.data());
   PressureLevel level = matrix.level(fine_index);
@@ -196,18 +221,26 @@ bool all_equal(const float* from, int begin, int end) {
   return true;
 }
 
-void find_plain_rows(TaskSystem& tasks, PressureGrid& grid) {
+bool all_zero(const float* from, int count) {
+  int any = 0;
+  for (int i = 0; i < count; ++i) any |= from[i] != 0.0f ? 1 : 0;
+  return any == 0;
+}
+
+void find_row_kinds(TaskSystem& tasks, PressureGrid& grid) {
   const GridShape& shape = grid.shape;
   const int n = shape.cells[0];
   each_row(shape, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
-    const bool plain = n > 2 && all_equal(grid.face[0].data() + c, 1, n) &&
+    const bool plain = n > 2 && all_equal(grid.inverse_diagonal.data() + c, 1, n - 1) &&
+                       all_equal(grid.face[0].data() + c, 1, n) &&
                        all_equal(grid.face[1].data() + c, 1, n - 1) &&
                        all_equal(grid.face[1].data() + c + shape.pitch, 1, n - 1) &&
                        all_equal(grid.face[2].data() + c, 1, n - 1) &&
                        all_equal(grid.face[2].data() + c + shape.plane, 1, n - 1) &&
-                       all_equal(grid.inverse_diagonal.data() + c, 1, n - 1) &&
-                       all_equal(grid.transfer.data() + c, 1, n - 1);
-    grid.plain[j + k * shape.cells[1]] = plain ? 1 : 0;
+                       all_equal(grid.transfer.data() + c, 1, n - 1) &&
+                       (grid.ground.empty() || all_equal(grid.ground.data() + c, 1, n - 1));
+    const bool empty = all_zero(grid.inverse_diagonal.data() + c, n);
+    grid.rows[j + k * shape.cells[1]] = empty ? PressureRow::empty : plain ? PressureRow::plain : PressureRow::mixed;
   });
 }
 
@@ -217,12 +250,36 @@ void build_pressure_matrix(const GasBox& box, const GridShape& shape, const GasS
                            const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix) {
   matrix.singular = !box.any_open();
   matrix.solids_revision = solids.present() ? solids.revision : 0;
-  resize_level(matrix.levels[0], shape, true);
+  resize_pressure_level(matrix.levels[0], shape, true, false);
   for (int axis = 0; axis < 3; ++axis) {
     matrix.levels[0].periodic[axis] = box.periodic(axis) && !box.flat(axis);
     find_faces(box, solids, axis, tasks, matrix.levels[0]);
   }
   find_cut_rows(shape, solids, tasks, matrix);
+  build_pressure_levels(kernels, tasks, matrix);
+}
+
+void resize_pressure_level(PressureGrid& grid, const GridShape& shape, bool finest, bool has_ground) {
+  const std::size_t size = std::size_t(shape.size);
+  if (grid.inverse_diagonal.size() == size && grid.shape.pitch == shape.pitch &&
+      grid.shape.plane == shape.plane && grid.shape.cells[0] == shape.cells[0] &&
+      grid.shape.cells[2] == shape.cells[2]) {
+    return;
+  }
+  const auto renew = [size](Array<float>& field) { field.clear(), field.resize(size, 0.0f); };
+  grid.shape = shape;
+  for (Array<float>& faces : grid.face) renew(faces);
+  renew(grid.inverse_diagonal);
+  renew(grid.transfer);
+  grid.ground.clear();
+  grid.is_air.clear();
+  if (has_ground) renew(grid.ground), grid.is_air.resize(size, std::uint8_t(0));
+  grid.rows.resize(std::size_t(shape.rows()), PressureRow::mixed);
+  if (!finest) renew(grid.b), renew(grid.x), renew(grid.other);
+}
+
+void build_pressure_levels(const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix) {
+  const bool has_ground = !matrix.levels[0].ground.empty();
   matrix.active_cells = find_diagonals(tasks, matrix.levels[0]);
   matrix.count = 1;
   while (matrix.count < PressureMatrix::kMaxLevels) {
@@ -239,13 +296,20 @@ void build_pressure_matrix(const GasBox& box, const GridShape& shape, const GasS
       coarse.periodic[axis] = fine.periodic[axis];
     }
     if (!smaller) break;
-    resize_level(coarse, make_grid_shape(cells[0], cells[1], cells[2]), false);
+    resize_pressure_level(coarse, make_grid_shape(cells[0], cells[1], cells[2]), false, has_ground);
     for (int axis = 0; axis < 3; ++axis) coarsen_faces(fine, axis, tasks, coarse);
+    if (has_ground) {
+      coarsen_ground(fine, tasks, coarse);
+      const int halves = (fine.halved[0] ? 1 : 0) + (fine.halved[1] ? 1 : 0) + (fine.halved[2] ? 1 : 0);
+      const float growth[4] = {1.0f, 0.5f, 1.0f,
+                               2.0f};  // of the faces: twice as many each other axis, twice as far
+      coarse.full_face = fine.full_face * growth[halves];
+    }
     find_diagonals(tasks, coarse);
     find_transfer(matrix, matrix.count - 1, kernels, tasks);
     ++matrix.count;
   }
-  for (int index = 0; index < matrix.count; ++index) find_plain_rows(tasks, matrix.levels[index]);
+  for (int index = 0; index < matrix.count; ++index) find_row_kinds(tasks, matrix.levels[index]);
 }
 
 }  // namespace gyre

@@ -16,7 +16,10 @@ namespace gyre {
 struct PressureGrid {
   GridShape shape;
   Array<float> face[3], inverse_diagonal, transfer;
-  Array<std::uint8_t> plain;
+  Array<float> ground;         // of liquids; empty: 0
+  Array<std::uint8_t> is_air;  // of liquids: cells in which the pressure is zero
+  float full_face = 0.0f;      // of liquids, 1/m^2: the coefficient of a face that is open
+  Array<PressureRow> rows;
   Array<float> b, x, other;  // of a cycle over the levels; those of the finest belong to the caller
   bool halved[3] = {};
   bool periodic[3] = {};
@@ -43,6 +46,10 @@ inline constexpr float kMinOpen = 0.01f;
 
 void build_pressure_matrix(const GasBox& box, const GridShape& shape, const GasSolids& solids,
                            const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix);
+
+// All but the faces, the ground and the air of the finest level, whose shape and periodic axes are set.
+void build_pressure_levels(const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix);
+void resize_pressure_level(PressureGrid& grid, const GridShape& shape, bool finest, bool has_ground);
 
 // Rows of a grid that a worker takes at a time.
 inline constexpr int kGridRows = 32;

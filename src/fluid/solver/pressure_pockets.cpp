@@ -16,6 +16,7 @@ bool mark_connected(PressureMatrix& matrix, std::int32_t mark, Array<std::int32_
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const std::int32_t c = queue[head];
     const int from_first = c - shape.first;
+    reaches_outside = reaches_outside || (!finest.ground.empty() && finest.ground[c] > 0.0f);
     const int index[3] = {from_first % shape.plane % shape.pitch, from_first % shape.plane / shape.pitch,
                           from_first / shape.plane};
     for (int side = 0; side < 6; ++side) {

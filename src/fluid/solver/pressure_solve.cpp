@@ -125,7 +125,8 @@ void remove_mean(const PressureMatrix& matrix, float* r, TaskSystem& tasks) {
 }  // namespace
 
 PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& v, float target,
-                              int max_iterations, const GasKernels& kernels, TaskSystem& tasks) {
+                              int max_iterations, const GasKernels& kernels, TaskSystem& tasks,
+                              const BodyCoupling* coupling) {
   const PressureLevel level = matrix.level(0);
   const GridShape& shape = level.shape;
   const auto rows = [&](auto&& fn) {
@@ -158,10 +159,11 @@ PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& v, 
     }
     rows([&](int begin, int end) { kernels.update_direction(level, beta, v.z, v.p, begin, end); });
     wrap_ghosts(shape, matrix.levels[0].periodic, v.p);
-    const double curvature = reduce_blocks(
+    double curvature = reduce_blocks(
         tasks, shape.rows(), kGridRows, 0.0,
         [&](int begin, int end, int) { return kernels.apply(level, v.p, v.q, begin, end); },
         [](double sum, double more) { return sum + more; });
+    if (coupling != nullptr && coupling->any_moves) curvature += coupling->add_product(v.p, v.q);
     if (!(curvature > 0.0)) break;
     const float alpha = float(now / curvature);
     report.last = reduce_blocks(

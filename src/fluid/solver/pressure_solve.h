@@ -4,6 +4,7 @@
 // to 2 (S. Gershgorin).
 #pragma once
 
+#include "fluid/solver/body_coupling.h"
 #include "fluid/solver/pressure_matrix.h"
 
 namespace gyre {
@@ -25,7 +26,9 @@ struct PressureReport {
 };
 
 // Until no number of what remains is larger than `target`. The ghosts and the cells beyond the ends of rows of all vectors are zero.
+// `coupling`: bodies that move by the pressure; the preconditioner takes no part in them.
 PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& vectors, float target,
-                              int max_iterations, const GasKernels& kernels, TaskSystem& tasks);
+                              int max_iterations, const GasKernels& kernels, TaskSystem& tasks,
+                              const BodyCoupling* coupling = nullptr);
 
 }  // namespace gyre

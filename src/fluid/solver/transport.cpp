@@ -26,7 +26,7 @@ void limit_samples(const GasBox& box, const GridShape& shape, bool outside, int 
   }
 }
 
-void transport(const GasPass& pass, int faces, const float* outside, float* field) {
+void transport(const GasPass& pass, Advection advection, int faces, const float* outside, float* field) {
   const GasBox& box = pass.box();
   const GridShape& shape = pass.shape();
   TransportPass work;
@@ -53,6 +53,12 @@ void transport(const GasPass& pass, int faces, const float* outside, float* fiel
   };
   fill(field);
   run(pass.kernels.move);
+  if (advection == Advection::semi_lagrangian) {
+    each_row(pass, faces, [&](int c, int, int) {
+      for (int i = c; i < c + work.points[0]; ++i) field[i] = work.moved[i];
+    });
+    return fill(field);
+  }
   fill(work.moved);
   if (faces < 0) {
     run(pass.kernels.find_correction);
@@ -95,13 +101,13 @@ void trace_paths(const GasPass& pass) {
   }
 }
 
-void transport_fields(const GasPass& pass) {
+void transport_fields(const GasPass& pass, Advection advection) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (!pass.flat(axis)) transport(pass, axis, nullptr, pass.grid.velocity[axis].data());
+    if (!pass.flat(axis)) transport(pass, advection, axis, nullptr, pass.grid.velocity[axis].data());
   }
   const float none = 0.0f, ambient = pass.grid.ambient_temperature;
-  transport(pass, -1, &none, pass.grid.density.data());
-  transport(pass, -1, &ambient, pass.grid.temperature.data());
+  transport(pass, advection, -1, &none, pass.grid.density.data());
+  transport(pass, advection, -1, &ambient, pass.grid.temperature.data());
 }
 
 float max_displacement(const GasPass& pass) {

@@ -8,7 +8,7 @@ namespace gyre {
 
 // Traces cells through the velocity as it is: the displacements of the next transport_fields.
 void trace_paths(const GasPass& pass);
-void transport_fields(const GasPass& pass);
+void transport_fields(const GasPass& pass, Advection advection);
 
 // The largest number of cells that the gas passes along an axis within the step.
 float max_displacement(const GasPass& pass);

@@ -23,6 +23,7 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
   columns.rigid.world_number = state.number;
   state.rigid = std::move(columns.rigid);
   state.soft = std::move(columns.soft);
+  state.fluids = std::move(columns.fluids);
   state.time = columns.time;
   state.step_count = columns.step_count;
   state.queried_changes.store(kNothingQueried, std::memory_order_relaxed);
@@ -44,6 +45,7 @@ void clear_reports(WorldState& state) {
   for (const std::unique_ptr<WorkerContext>& worker : state.solve.workers) forget_batch(worker->scratch);
   state.solve.counts = {};
   state.solve.colors = 0;
+  state.fluid_scratch.clear();
 }
 
 }  // namespace gyre

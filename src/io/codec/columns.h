@@ -11,6 +11,7 @@ struct StateColumns {
   std::uint64_t step_count = 0;
   RigidWorld rigid;
   SoftStore soft;
+  FluidStore fluids;
 };
 
 // Replaces the state of a world by checked columns, derived for the number of this world. Ids stay valid if their

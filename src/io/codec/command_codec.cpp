@@ -53,8 +53,10 @@ class FieldReader {
   void shape(AnyShape& value) { value = read_shape(in_, geometry_); }
   template <class T>
   void count(std::vector<T>& list) {
-    constexpr std::size_t kMinBytes =
-        std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
+    // A shape takes more, an emitter without a velocity this.
+    constexpr std::size_t kMinBytes = std::is_same_v<T, ShapeDef>       ? 64
+                                      : std::is_same_v<T, FluidEmitter> ? 53
+                                                                        : sizeof(T);
     list.resize(in_.get_count(kMinBytes));
   }
   template <class T>
@@ -154,10 +156,10 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<FieldDef> T>
 void fields(C& c, T& v) {
-  auto& [kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence, turbulence_length, center,
-         strength, radius, falloff, core, axis, normal, offset] = v;
-  all(c, kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence, turbulence_length, center,
-      strength, radius, falloff, core, axis, normal, offset);
+  auto& [kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence,
+         turbulence_length, center, strength, radius, falloff, core, axis, normal, offset] = v;
+  all(c, kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence,
+      turbulence_length, center, strength, radius, falloff, core, axis, normal, offset);
 }
 template <class C, Is<ExplosionDef> T>
 void fields(C& c, T& v) {
@@ -208,7 +210,8 @@ void fields(C& c, T& v) {
 }
 template <class C, class T>
 requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>> || Is<T, std::vector<DVec3>> ||
-         Is<T, std::vector<std::uint32_t>>) void fields(C& c, T& list) {
+         Is<T, std::vector<std::uint32_t>> || Is<T, std::vector<float>> ||
+         Is<T, std::vector<FluidEmitter>>) void fields(C& c, T& list) {
   c.count(list);
   for (auto& item : list) all(c, item);
 }
@@ -217,26 +220,28 @@ constexpr bool has_extra_fields(JointKind kind) { return kind > JointKind::dista
 template <class C, Is<FlatJoint> T>
 void fields(C& c, T& v) {
   auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
-         damping, frequency, damping_ratio, break_force, break_torque, collide_connected, axis_b, friction, limit_frequency, limit_damping,
-         swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y, angular_z,
-         drive, path, path_closed, path_orientation] = v;
+         damping, frequency, damping_ratio, break_force, break_torque, collide_connected, axis_b, friction,
+         limit_frequency, limit_damping, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y,
+         linear_z, angular_x, angular_y, angular_z, drive, path, path_closed, path_orientation] = v;
   all(c, kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
       damping, frequency, damping_ratio, break_force, break_torque, collide_connected);
   all(c, friction, limit_frequency, limit_damping);
   if (!has_extra_fields(kind)) return;
-  all(c, axis_b, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y,
-      angular_z, drive, path, path_closed, path_orientation);
+  all(c, axis_b, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x,
+      angular_y, angular_z, drive, path, path_closed, path_orientation);
 }
 
 // -------------------------------------------------------------------------------------------------------- soft matter
 
 template <class C, class T>
-requires(Is<T, std::array<float, 2>> || Is<T, std::array<int, 2>> || Is<T, std::array<int, 3>>) void fields(C& c, T& values) {
+requires(Is<T, std::array<float, 2>> || Is<T, std::array<int, 2>> ||
+         Is<T, std::array<int, 3>>) void fields(C& c, T& values) {
   for (auto& value : values) all(c, value);
 }
 template <class C, Is<SoftSettings> T>
 void fields(C& c, T& v) {
-  auto& [integrator, damping, static_friction, dynamic_friction, filter, user_data, positions, velocities] = v;
+  auto& [integrator, damping, static_friction, dynamic_friction, filter, user_data, positions, velocities] =
+      v;
   all(c, integrator, damping, static_friction, dynamic_friction, filter, user_data, positions, velocities);
 }
 template <class C, Is<RopeDef> T>
@@ -251,8 +256,10 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<ClothDef> T>
 void fields(C& c, T& v) {
-  auto& [grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision, settings] = v;
-  all(c, grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision, settings);
+  auto& [grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision,
+         settings] = v;
+  all(c, grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision,
+      settings);
 }
 template <class C, Is<SolidBox> T>
 void fields(C& c, T& v) {
@@ -285,21 +292,65 @@ void fields(FieldReader& c, std::shared_ptr<const SoftDef>& def) {
   def = std::make_shared<const SoftDef>(std::move(read));
 }
 
+// ------------------------------------------------------------------------------------------------------------- fluids
+
+template <class C, class T>
+requires(Is<T, std::array<FluidBoundary, 6>> || Is<T, std::array<Vec3, 6>>) void fields(C& c, T& values) {
+  for (auto& value : values) all(c, value);
+}
+template <class C, Is<FluidEmitter> T>
+void fields(C& c, T& v) {
+  auto& [position, radius, density, temperature, velocity, start, end] = v;
+  all(c, position, radius, density, temperature, velocity, start, end);
+}
+template <class C, Is<TaylorGreen> T>
+void fields(C& c, T& v) {
+  auto& [amplitude, wave_number] = v;
+  all(c, amplitude, wave_number);
+}
+template <class C, Is<GasFields> T>
+void fields(C& c, T& v) {
+  auto& [x, y, z, density, temperature, pressure] = v;
+  all(c, x, y, z, density, temperature, pressure);
+}
+template <class C, Is<GasDef> T>
+void fields(C& c, T& v) {
+  auto& [lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
+         initial, vortices, emitters, state, user_data] = v;
+  all(c, lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
+      initial, vortices, emitters, state, user_data);
+}
+// The kind, then the definition.
+void fields(FieldWriter& c, const std::shared_ptr<const FluidDef>& def) {
+  c.number(std::uint8_t(def->index()));
+  std::visit([&](const auto& one) { fields(c, one); }, *def);
+}
+void fields(FieldReader& c, std::shared_ptr<const FluidDef>& def) {
+  std::uint8_t kind = 0;
+  c.number(kind);
+  FluidDef read;
+  if (kind >= std::variant_size_v<FluidDef>) c.fail();
+  std::visit([&](auto& one) { fields(c, one); }, read);
+  def = std::make_shared<const FluidDef>(std::move(read));
+}
+
 // ----------------------------------------------------------------------------------------------------------- commands
 
 template <class T, class... Of>
 concept IsOneOf = (Is<T, Of> || ...);
 
 template <class C, class T>
-requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSurfaceRule, SetSleeping,
-                 SetSubsteps, AddField, RemoveField, Explode, AddSoft, RemoveSoft, Step>
+requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair,
+                 SetSurfaceRule, SetSleeping, SetSubsteps, AddField, RemoveField, Explode, AddSoft,
+                 RemoveSoft, AddFluid, RemoveFluid, Step>
 void fields(C& c, T& v) {
   auto& [only] = v;
   all(c, only);
 }
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
-                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft>
+                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft,
+                 SetEmitters>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
@@ -310,7 +361,8 @@ void fields(C& c, T& v) {
   all(c, integrator, springs, time, tolerance, max_impacts);
 }
 template <class C, class T>
-requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis, AttachSoft, SetVertices>
+requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis, AttachSoft,
+                 SetVertices>
 void fields(C& c, T& v) {
   auto& [first, second, third] = v;
   all(c, first, second, third);
@@ -359,6 +411,19 @@ std::shared_ptr<const SoftDef> read_soft_def(ByteReader& in) {
   const GeometryTable none;
   FieldReader reader(in, none, 0);
   std::shared_ptr<const SoftDef> def;
+  fields(reader, def);
+  return def;
+}
+
+void write_fluid_def(ByteWriter& out, const FluidDef& def) {
+  FieldWriter writer(out);
+  fields(writer, std::make_shared<const FluidDef>(def));
+}
+
+std::shared_ptr<const FluidDef> read_fluid_def(ByteReader& in) {
+  const GeometryTable none;
+  FieldReader reader(in, none, 0);
+  std::shared_ptr<const FluidDef> def;
   fields(reader, def);
   return def;
 }

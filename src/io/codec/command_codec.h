@@ -22,5 +22,8 @@ void for_each_shape(const Command& command, FunctionRef<void(const AnyShape&)> f
 // The definition of a rope, cloth or solid.
 void write_soft_def(ByteWriter& out, const SoftDef& def);
 std::shared_ptr<const SoftDef> read_soft_def(ByteReader& in);
+// The definition of a fluid.
+void write_fluid_def(ByteWriter& out, const FluidDef& def);
+std::shared_ptr<const FluidDef> read_fluid_def(ByteReader& in);
 
 }  // namespace gyre

@@ -8,6 +8,7 @@
 #include <gyre/defs.h>
 #include <gyre/fields.h>
 #include <gyre/joints.h>
+#include <gyre/fluid.h>
 #include <gyre/soft.h>
 
 namespace gyre {
@@ -50,6 +51,10 @@ template <>
 inline constexpr int kEnumCount<SolidModel> = int(SolidModel::neo_hookean) + 1;
 template <>
 inline constexpr int kEnumCount<SoftGrip> = int(SoftGrip::sticks) + 1;
+template <>
+inline constexpr int kEnumCount<FluidBoundary> = int(FluidBoundary::no_slip) + 1;
+template <>
+inline constexpr int kEnumCount<Advection> = int(Advection::semi_lagrangian) + 1;
 template <>
 inline constexpr int kEnumCount<ProxyMotion> = int(ProxyMotion::moving) + 1;
 

@@ -67,6 +67,17 @@ struct Tracer {
       out.rows.push_back(hash);
     });
   }
+  // A row for each fluid.
+  void operator()(const char* name, const FluidStore& fluids) {
+    StateTrace::Column& out = add(name);
+    fluids.for_each([&](const FluidEntry& entry) {
+      std::uint64_t hash = std::uint64_t(entry.gas.shape.count());
+      for_each_fluid_array(entry, [&](const auto& array) {
+        for (const auto& record : array) hash = mix_bits(hash + hash_record(record));
+      });
+      out.rows.push_back(hash);
+    });
+  }
   template <class Record>
   void operator()(const char* name, const Record& record) {
     add(name).rows.push_back(hash_record(record));

@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "io/codec/record_codec.h"
+#include "io/codec/fluid_codec.h"
 #include "io/codec/soft_codec.h"
 #include "world/world_access.h"
 
@@ -28,6 +29,7 @@ Error bad_snapshot(const char* what) { return make_error(ErrorCode::invalid_data
 constexpr std::uint64_t kShapeLayout = hash_text("shape 1");
 
 constexpr std::uint64_t kSoftLayout = hash_text("soft 1");
+constexpr std::uint64_t kFluidLayout = hash_text("fluid 1");
 
 template <class Column>
 struct ColumnLayout {  // a single record
@@ -53,6 +55,10 @@ struct ColumnLayout<std::vector<AnyShape>> {
 template <>
 struct ColumnLayout<SoftStore> {
   static RecordLayout get() { return {1, kSoftLayout}; }
+};
+template <>
+struct ColumnLayout<FluidStore> {
+  static RecordLayout get() { return {1, kFluidLayout}; }
 };
 
 // An empty later column is not written, and a missing one is read as empty, so older snapshots can be read.
@@ -110,6 +116,13 @@ class ColumnWriter {
     ByteWriter payload;
     write_soft(payload, soft);
     out_.put(std::uint64_t(soft.ids.size()));
+    out_.put(std::uint64_t(payload.size()));
+    out_.put_bytes(payload.view());
+  }
+  void write(const FluidStore& fluids) {
+    ByteWriter payload;
+    write_fluids(payload, fluids);
+    out_.put(std::uint64_t(fluids.ids.size()));
     out_.put(std::uint64_t(payload.size()));
     out_.put_bytes(payload.view());
   }
@@ -229,6 +242,10 @@ class ColumnReader {
     ByteReader in(stored.payload);
     return read_soft(in, soft) && in.finished() && soft.ids.size() == stored.count;
   }
+  bool read(const StoredColumn& stored, FluidStore& fluids) {
+    ByteReader in(stored.payload);
+    return read_fluids(in, fluids) && in.finished() && fluids.ids.size() == stored.count;
+  }
   template <class Record>
   bool read(const StoredColumn& stored, Record& record) {
     return stored.count == 1 && size_fits<Record>(stored) &&
@@ -314,15 +331,16 @@ Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number
   if (e) return e;
   columns.rigid.world_number = world_number;
   e = rebuild_derived(columns.rigid);
-  return e ? e : check_soft_columns(columns.rigid, columns.soft);
+  if (e.ok()) e = check_soft_columns(columns.rigid, columns.soft);
+  return e ? e : check_fluid_columns(columns.rigid, columns.fluids);
 }
 
 std::uint64_t state_layout() {
   std::uint64_t hash = 0;
   const StateColumns columns;
   for_each_column(columns, [&]<class Column>(const char* name, const Column&) {
-    // Soft matter has its own layout, which readers compare: recordings without any stay readable when it changes.
-    if constexpr (std::is_same_v<Column, SoftStore>) return;
+    // Soft matter and fluids have their own layouts, which readers compare: recordings without any stay readable when those change.
+    if constexpr (std::is_same_v<Column, SoftStore> || std::is_same_v<Column, FluidStore>) return;
     hash = mix_bits(hash + ColumnLayout<Column>::get().hash);
     hash = mix_bits(hash + hash_text(name));
   });

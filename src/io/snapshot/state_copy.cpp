@@ -198,6 +198,11 @@ struct OtherSize {
       for_each_soft_array(entry, [&](const auto& array) { bytes += array.bytes(); });
     });
   }
+  void operator()(const char*, const FluidStore& fluids) {
+    fluids.for_each([&](const FluidEntry& entry) {
+      for_each_fluid_array(entry, [&](const auto& array) { bytes += array.bytes(); });
+    });
+  }
   void operator()(const char*, const std::vector<AnyShape>& shapes) { bytes += shapes.capacity() * sizeof(AnyShape); }
   template <class T>
   void operator()(const char*, const T&) {

@@ -10,10 +10,6 @@ namespace {
 
 bool is_dynamic(const RigidWorld& w, std::uint32_t body) { return is_movable(w.bodies.flags[body]); }
 
-bool is_asleep(const RigidWorld& w, std::uint32_t body) {
-  return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
-}
-
 // Disjoint sets of bodies; the root of an island is its lowest body.
 class Islands {
  public:

@@ -32,6 +32,10 @@ constexpr float kDriftSpeedShare = 1.0e-4f;
 // still pushed out must not sleep.
 constexpr float kPushoutWeight = 4.0f;
 
+inline bool is_asleep(const RigidWorld& w, std::uint32_t body) {
+  return w.bodies.flags[body].type == BodyType::dynamic && w.bodies.flags[body].awake == 0;
+}
+
 // Calls fn(body_a, body_b) if the contact or joint connects two bodies. One of the two may be static or kinematic.
 template <class Fn>
 void visit_contact_edge(const Contact& contact, Fn&& fn) {

@@ -1,0 +1,303 @@
+#include "dynamics/fluid_solids.h"
+
+#include "base/hash.h"
+#include "collision/broadphase/broadphase.h"
+#include "geometry/query/point_query.h"
+#include "math/rotation.h"
+#include "task/parallel.h"
+
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace gyre {
+
+namespace {
+
+constexpr int kCornerRows = 8;    // of corners in a block of work
+constexpr float kClosed = 0.01f;  // a face that is open by less is closed, as for the pressure
+constexpr std::size_t kMaxLabels = 32767;
+
+// Where corners of cells are, in the world and in the arrays. Along a flat axis they stand in the middle of the cell, so that a plane flow
+// sees the section there.
+struct CornerGrid {
+  int count[3];
+  Vec3 cell;
+  DVec3 corner;
+  bool flat[3];
+
+  CornerGrid(const GasBox& box) : cell(box.cell), corner(box.corner) {
+    for (int axis = 0; axis < 3; ++axis) count[axis] = box.cells[axis] + 1, flat[axis] = box.flat(axis);
+  }
+  std::size_t size() const { return std::size_t(count[0]) * std::size_t(count[1]) * std::size_t(count[2]); }
+  std::size_t at(int i, int j, int k) const {
+    return std::size_t(i) + std::size_t(count[0]) * (std::size_t(j) + std::size_t(count[1]) * std::size_t(k));
+  }
+  double along(int axis, int n) const { return flat[axis] ? 0.5 : double(n); }
+  DVec3 place(int i, int j, int k) const {
+    return corner +
+           DVec3{along(0, i) * double(cell.x), along(1, j) * double(cell.y), along(2, k) * double(cell.z)};
+  }
+  float edge(int axis) const { return axis == 0 ? cell.x : axis == 1 ? cell.y : cell.z; }
+  float reach() const { return 2.0f * max(cell.x, max(cell.y, cell.z)); }
+};
+
+// A shape whose box meets that of the fluid.
+struct NearShape {
+  const Shape* shape = nullptr;
+  std::uint32_t body = 0;
+  Pose pose;  // world_from_shape
+  Aabb box;
+};
+
+bool has_solid_motion(const RigidWorld& w, std::uint32_t body) {
+  return w.bodies.flags[body].type != BodyType::fixed;
+}
+
+std::uint64_t add_key(std::uint64_t key, double number) {
+  return mix_bits(key + __builtin_bit_cast(std::uint64_t, number));
+}
+std::uint64_t add_shape_key(std::uint64_t key, const RigidWorld& w, std::uint32_t shape,
+                            const NearShape& near) {
+  key = mix_bits(key + (std::uint64_t(shape) << 32 | w.shapes.ids.generation(shape)));
+  for (const double number : {near.pose.position.x, near.pose.position.y, near.pose.position.z})
+    key = add_key(key, number);
+  const Quat& q = near.pose.orientation;
+  for (const float number : {q.x, q.y, q.z, q.w}) key = add_key(key, double(number));
+  return key;
+}
+
+// The corners of an axis within a box that is grown by the reach.
+void corners_within(const CornerGrid& grid, int axis, double low, double high, int& begin, int& end) {
+  const double origin = axis == 0 ? grid.corner.x : axis == 1 ? grid.corner.y : grid.corner.z;
+  const double edge = double(grid.edge(axis)), reach = double(grid.reach());
+  begin = 0, end = grid.count[axis];
+  if (grid.flat[axis]) return;
+  const double first = std::ceil((low - reach - origin) / edge),
+               last = std::floor((high + reach - origin) / edge);
+  begin = first > 0.0 ? (first < double(end) ? int(first) : end) : 0;
+  if (last < double(end - 1)) end = last < double(begin) ? begin : int(last) + 1;
+}
+
+void add_shape(const CornerGrid& grid, const NearShape& near, TaskSystem& tasks, CornerDistances& out) {
+  int begin[3], end[3];
+  const double low[3] = {double(near.box.low.x), double(near.box.low.y), double(near.box.low.z)};
+  const double high[3] = {double(near.box.high.x), double(near.box.high.y), double(near.box.high.z)};
+  for (int axis = 0; axis < 3; ++axis)
+    corners_within(grid, axis, low[axis], high[axis], begin[axis], end[axis]);
+  const int rows_y = end[1] - begin[1], rows_z = end[2] - begin[2];
+  if (rows_y <= 0 || rows_z <= 0 || end[0] <= begin[0]) return;
+  const DQuat turn = to_double(near.pose.orientation);
+  const float reach = grid.reach();
+  // Of a mesh or height field also what is deep inside is asked for: the whole of the box is within this distance.
+  const double far = double(reach) + length(DVec3(near.box.high) - DVec3(near.box.low)) +
+                     length(grid.place(grid.count[0], grid.count[1], grid.count[2]) - grid.corner);
+  for_blocks(tasks, rows_y * rows_z, kCornerRows, [&](int first, int last, int) {
+    for (int row = first; row < last; ++row) {
+      const int k = begin[2] + row / rows_y, j = begin[1] + row % rows_y;
+      if ((grid.flat[1] && j > 0) || (grid.flat[2] && k > 0)) continue;
+      for (int i = begin[0]; i < end[0]; ++i) {
+        if (grid.flat[0] && i > 0) continue;
+        const DVec3 local = rotate_inverse(turn, grid.place(i, j, k) - near.pose.position);
+        PointDistance found;
+        if (!find_point_distance(*near.shape, local, far, found) || !(found.distance < double(reach)))
+          continue;
+        const std::size_t at = grid.at(i, j, k);
+        const float distance = max(float(found.distance), -reach);
+        if (!(distance < out.distance[at])) continue;
+        out.distance[at] = distance;
+        out.body[at] = near.body;
+      }
+    }
+  });
+}
+
+// The second corner along a flat axis is as the first.
+void copy_flat_corners(const CornerGrid& grid, CornerDistances& out) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!grid.flat[axis]) continue;
+    for (int k = 0; k < grid.count[2]; ++k) {
+      for (int j = 0; j < grid.count[1]; ++j) {
+        for (int i = 0; i < grid.count[0]; ++i) {
+          const int n[3] = {i, j, k};
+          if (n[axis] == 0) continue;
+          const std::size_t from = grid.at(axis == 0 ? 0 : i, axis == 1 ? 0 : j, axis == 2 ? 0 : k);
+          out.distance[grid.at(i, j, k)] = out.distance[from], out.body[grid.at(i, j, k)] = out.body[from];
+        }
+      }
+    }
+  }
+}
+
+void clear_corners(const CornerGrid& grid, CornerDistances& out) {
+  out.distance.clear(), out.body.clear();
+  out.distance.resize(grid.size(), grid.reach());
+  out.body.resize(grid.size(), kNoIndex);
+}
+
+// The part of a triangle in which what is linear between the values at its corners is negative.
+float negative_part(float a, float b, float c) {
+  const int count = (a < 0.0f ? 1 : 0) + (b < 0.0f ? 1 : 0) + (c < 0.0f ? 1 : 0);
+  if (count == 0) return 0.0f;
+  if (count == 3) return 1.0f;
+  // The corner that differs in sign from the two others comes first.
+  const bool negative = count == 1;
+  if ((b < 0.0f) == negative)
+    std::swap(a, b);
+  else if ((c < 0.0f) == negative)
+    std::swap(a, c);
+  const float part = (a / (a - b)) * (a / (a - c));
+  return negative ? part : 1.0f - part;
+}
+// Of a rectangle with the corners a, b, c, d in a round: the mean of its two ways into triangles, so that no diagonal is preferred.
+float negative_part(float a, float b, float c, float d) {
+  return 0.25f *
+         (negative_part(a, b, c) + negative_part(a, c, d) + negative_part(a, b, d) + negative_part(b, c, d));
+}
+
+class FaceCutter {
+ public:
+  FaceCutter(const RigidWorld& w, const GasBox& box, const GridShape& shape, FluidSolids& out)
+      : w_(w), grid_(box), shape_(shape), out_(out) {}
+
+  // Faces across an axis: the open part, the label and the velocity of the solid there.
+  void cut(int axis, TaskSystem& tasks) {
+    const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
+    int count[3];
+    for (int n = 0; n < 3; ++n) count[n] = shape_.cells[n] + (n == axis ? 1 : 0);
+    for_blocks(tasks, count[1] * count[2], kCornerRows, [&](int first, int last, int) {
+      for (int row = first; row < last; ++row) {
+        const int k = row / count[1], j = row % count[1];
+        for (int i = 0; i < count[0]; ++i) {
+          int at[3] = {i, j, k};
+          std::size_t corner[4];
+          corner[0] = grid_.at(at[0], at[1], at[2]);
+          ++at[b];
+          corner[1] = grid_.at(at[0], at[1], at[2]);
+          ++at[c];
+          corner[2] = grid_.at(at[0], at[1], at[2]);
+          --at[b];
+          corner[3] = grid_.at(at[0], at[1], at[2]);
+          set_face(axis, i, j, k, corner);
+        }
+      }
+    });
+  }
+
+ private:
+  void set_face(int axis, int i, int j, int k, const std::size_t (&corner)[4]) {
+    const Array<float>& d = out_.all.distance;
+    const std::size_t c = std::size_t(shape_.at(i, j, k));
+    std::size_t nearest = corner[0];
+    for (const std::size_t one : corner)
+      if (d[one] < d[nearest]) nearest = one;
+    if (!(d[nearest] < 0.0f)) return;
+    out_.solids.open[axis][c] = 1.0f - negative_part(d[corner[0]], d[corner[1]], d[corner[2]], d[corner[3]]);
+    const std::uint32_t body = out_.all.body[nearest];
+    const std::int16_t label = out_.label_of[body];
+    out_.solids.label[axis][c] = label;
+    const DVec3 half{axis == 0 ? 0.0 : 0.5, axis == 1 ? 0.0 : 0.5, axis == 2 ? 0.0 : 0.5};
+    const DVec3 at =
+        grid_.corner + DVec3{(i + half.x) * double(grid_.cell.x), (j + half.y) * double(grid_.cell.y),
+                             (k + half.z) * double(grid_.cell.z)};
+    if (!has_solid_motion(w_, body)) return;
+    const BodyMotion& motion = w_.bodies.motion[body];
+    const Vec3 arm = difference(at, w_.bodies.poses[body].center);
+    const Vec3 velocity = motion.linear_velocity + cross(motion.angular_velocity, arm);
+    out_.solids.velocity[axis][c] = axis == 0 ? velocity.x : axis == 1 ? velocity.y : velocity.z;
+  }
+
+  const RigidWorld& w_;
+  CornerGrid grid_;
+  const GridShape& shape_;
+  FluidSolids& out_;
+};
+
+// A cell all of whose faces are closed lies within a solid.
+void mark_solid_cells(const GridShape& shape, TaskSystem& tasks, GasSolids& solids) {
+  for_blocks(tasks, shape.rows(), kCornerRows, [&](int first, int last, int) {
+    for (int row = first; row < last; ++row) {
+      const int begin = shape.row(row % shape.cells[1], row / shape.cells[1]);
+      for (int c = begin; c < begin + shape.cells[0]; ++c) {
+        bool closed = true;
+        for (int axis = 0; axis < 3; ++axis) {
+          const Array<float>& open = solids.open[axis];
+          closed =
+              closed && open[std::size_t(c)] < kClosed && open[std::size_t(c + shape.stride(axis))] < kClosed;
+        }
+        if (closed) solids.solid[std::size_t(c)] = 1;
+      }
+    }
+  });
+}
+
+// Numbers the bodies that the corners name, in the order of their indices.
+void number_bodies(const RigidWorld& w, std::span<const NearShape> shapes, FluidSolids& out) {
+  out.label_of.resize(w.bodies.flags.size(), std::int16_t(-1));
+  for (std::int16_t& label : out.label_of) label = -1;
+  for (const NearShape& near : shapes) out.label_of[near.body] = 0;
+  out.bodies.clear();
+  for (std::uint32_t body = 0; body < out.label_of.size(); ++body) {
+    if (out.label_of[body] < 0) continue;
+    // So many bodies in one fluid share the last label.
+    if (out.bodies.size() < kMaxLabels) out.bodies.push_back(body);
+    out.label_of[body] = std::int16_t(out.bodies.size() - 1);
+  }
+}
+
+}  // namespace
+
+void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& shape, TaskSystem& tasks,
+                     FluidSolids& out) {
+  const CornerGrid grid(box);
+  const DVec3 reach{double(grid.reach()), double(grid.reach()), double(grid.reach())};
+  const DVec3 upper =
+      grid.corner + DVec3{box.cells[0] * double(box.cell.x), box.cells[1] * double(box.cell.y),
+                          box.cells[2] * double(box.cell.z)};
+  const Aabb near_box{to_float(grid.corner - reach), to_float(upper + reach)};
+  out.shapes_near.clear();
+  w.broadphase->query(w.shapes.proxies, near_box, out.shapes_near);
+  Array<NearShape> fixed, moving;
+  std::uint64_t fixed_key = 1, all_key = 1;
+  for (const std::uint32_t one : out.shapes_near) {
+    const Proxy& proxy = w.shapes.proxies[one];
+    if (proxy.sensor) continue;
+    const std::uint32_t body = w.shapes.bodies[one];
+    const NearShape near{&w.shapes.colliders[one].shape, body,
+                         origin_pose(w.bodies, body) * w.shapes.body_from_shape[one], proxy.fat_box};
+    all_key = add_shape_key(all_key, w, one, near);
+    if (!has_solid_motion(w, body)) fixed_key = add_shape_key(fixed_key, w, one, near);
+    (has_solid_motion(w, body) ? moving : fixed).push_back(near);
+  }
+  const bool any = !fixed.empty() || !moving.empty();
+  if (!any) {
+    if (out.solids.labels != 0) clear_solids(shape, 0, out.solids), ++out.solids.revision;
+    out.bodies.clear();
+    out.all.key = 0;
+    return;
+  }
+  if (out.fixed.key != fixed_key) {
+    clear_corners(grid, out.fixed);
+    for (const NearShape& near : fixed) add_shape(grid, near, tasks, out.fixed);
+    copy_flat_corners(grid, out.fixed);
+    out.fixed.key = fixed_key;
+  }
+  const bool moved = out.all.key != all_key;
+  if (moved) {
+    out.all.distance = out.fixed.distance, out.all.body = out.fixed.body;
+    for (const NearShape& near : moving) add_shape(grid, near, tasks, out.all);
+    copy_flat_corners(grid, out.all);
+    out.all.key = all_key;
+  }
+  Array<NearShape>& every = fixed;
+  for (const NearShape& near : moving) every.push_back(near);
+  number_bodies(w, every.view(), out);
+  const std::uint64_t revision = out.solids.revision;
+  clear_solids(shape, int(out.bodies.size()), out.solids);
+  out.solids.revision = revision + (moved ? 1 : 0);
+  FaceCutter cutter(w, box, shape, out);
+  for (int axis = 0; axis < 3; ++axis) cutter.cut(axis, tasks);
+  mark_solid_cells(shape, tasks, out.solids);
+}
+
+}  // namespace gyre

@@ -1,0 +1,274 @@
+// Cells, surface and matrix of a liquid.
+#include "fluid/liquid/liquid_cells.h"
+
+#include "fluid/solver/pressure_pockets.h"
+
+#include <cmath>
+
+namespace gyre {
+
+namespace {
+
+// A surface closer to a liquid's centre than this counts as this far off, in edges: the coefficient of the face stays below 50 times that of
+// others, which keeps the digits of a float, and the level of a resting surface changes by at most this.
+constexpr float kMinTheta = 0.02f;
+// A cell by a solid counts as if at least this share of the room around it were open: particles are too coarse to fill less evenly.
+constexpr float kMinRoom = 0.3f;
+
+// The share of each cell that solids leave, from the distance of its centre; without distances, from its faces.
+void find_room(const LiquidPass& pass, float* room) {
+  const GridShape& shape = pass.shape();
+  const GasSolids& solids = pass.solids;
+  const float* const distance = solids.distance.empty() ? nullptr : solids.distance.data();
+  const float inverse = 1.0f / pass.edge(0);
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      float share = 0.0f;
+      if (distance != nullptr) {
+        share = 0.5f - kParticleSkin + distance[i] * inverse;
+      } else if (solids.solid[i] == 0) {
+        for (int axis = 0; axis < 3; ++axis)
+          share += solids.open[axis][i] + solids.open[axis][i + shape.stride(axis)];
+        share *= 1.0f / 6.0f;
+      }
+      room[i] = share > 0.0f ? share < 1.0f ? share : 1.0f : 0.0f;
+    }
+  });
+}
+
+// to = 1/8, 3/4, 1/8 of from along an axis: the parts of the linear weights that lie in the three cells.
+void blur(const LiquidPass& pass, int axis, float* from, float* to) {
+  const GridShape& shape = pass.shape();
+  fill_ghosts(pass.box(), shape, from);
+  const int step = shape.stride(axis);
+  const bool flat = pass.flat(axis);
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i)
+      to[i] = flat ? from[i] : 0.75f * from[i] + 0.125f * (from[i - step] + from[i + step]);
+  });
+}
+
+// Ghosts beyond walls are solid.
+void fill_cell_ghosts(const LiquidPass& pass, LiquidCell* cell) {
+  const GridShape& shape = pass.shape();
+  for (int axis = 0; axis < 3; ++axis) {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3, n = shape.cells[axis], stride = shape.stride(axis);
+    for (int j = -1; j <= shape.cells[b]; ++j) {
+      for (int i = -1; i <= shape.cells[a]; ++i) {
+        LiquidCell* const line = cell + shape.first + i * shape.stride(a) + j * shape.stride(b);
+        line[-stride] = line[n * stride] = LiquidCell::solid;
+      }
+    }
+  }
+  wrap_points(pass, cell);
+}
+
+// Cells that solids leave no face of, and cells in a solid with open faces on opposite sides: liquid on either side of a thin wall must not
+// share a pressure within it. Their faces are closed. Without distances, all cells in solids.
+void block_cells(const LiquidPass& pass) {
+  const GridShape& shape = pass.shape();
+  const GasSolids& solids = pass.solids;
+  std::uint8_t* const blocked = pass.memory.blocked.data();
+  const bool has_distance = !solids.distance.empty();
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      bool block = solids.solid[i] != 0;
+      if (has_distance) {
+        bool any = false, both = false;
+        for (int axis = 0; axis < 3; ++axis) {
+          const float* const open = pass.memory.open[axis].data();
+          const bool lower = open[i] > 0.0f, upper = open[i + shape.stride(axis)] > 0.0f;
+          any = any || lower || upper;
+          both = both || (lower && upper);
+        }
+        block = solids.distance[i] < 0.0f && (!any || both);
+      }
+      blocked[i] = block ? 1 : 0;
+    }
+  });
+  for (int axis = 0; axis < 3; ++axis) {
+    float* const open = pass.memory.open[axis].data();
+    const int step = shape.stride(axis), last = shape.cells[axis];
+    each_row(pass, axis, [&](int c, int j, int k) {
+      const int across = axis == 1 ? j : k;
+      for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+        const int at = axis == 0 ? i : across, f = c + i;
+        if ((at > 0 && blocked[f - step] != 0) || (at < last && blocked[f] != 0)) open[f] = 0.0f;
+      }
+    });
+  }
+}
+
+// A cell whose centre lies in a solid has too little room for particles to tell whether it is liquid. It is as far from the surface as the cells
+// beside it whose centres do not.
+void find_surface_in_solids(const LiquidPass& pass) {
+  const GridShape& shape = pass.shape();
+  const float* const distance = pass.solids.distance.empty() ? nullptr : pass.solids.distance.data();
+  if (distance == nullptr) return;
+  float* const surface = pass.grid.surface.data();
+  LiquidCell* const cell = pass.memory.cell.data();
+  const std::uint8_t* const blocked = pass.memory.blocked.data();
+  each_row(pass, -1, [&](int c, int j, int k) {
+    for (int i = 0; i < shape.cells[0]; ++i) {
+      const int at = c + i;
+      if (distance[at] >= 0.0f || blocked[at] != 0) continue;
+      const int index[3] = {i, j, k};
+      float sum = 0.0f, weights = 0.0f;
+      for (int axis = 0; axis < 3; ++axis) {
+        const float* const open = pass.memory.open[axis].data();
+        const int step = shape.stride(axis);
+        if (index[axis] > 0 && distance[at - step] >= 0.0f)
+          sum += open[at] * surface[at - step], weights += open[at];
+        if (index[axis] < shape.cells[axis] - 1 && distance[at + step] >= 0.0f)
+          sum += open[at + step] * surface[at + step], weights += open[at + step];
+      }
+      surface[at] = weights > 0.0f ? sum / weights : pass.edge(0);
+      pass.memory.filled[at] = 1.0f;
+      cell[at] = surface[at] <= 0.0f ? LiquidCell::liquid : LiquidCell::air;
+    }
+  });
+}
+
+}  // namespace
+
+void find_open_faces(const LiquidPass& pass) {
+  const GridShape& shape = pass.shape();
+  const GasSolids& solids = pass.solids;
+  const bool has_distance = solids.present() && !solids.distance.empty();
+  for (int axis = 0; axis < 3; ++axis) {
+    float* const to = pass.memory.open[axis].data();
+    const int step = shape.stride(axis), last = shape.cells[axis];
+    const bool wraps = pass.wraps(axis), flat = pass.flat(axis);
+    const float low = wraps || pass.box().open(2 * axis) ? 1.0f : 0.0f;
+    const float high = wraps || pass.box().open(2 * axis + 1) ? 1.0f : 0.0f;
+    const float half_inverse = 0.5f / pass.edge(axis);
+    each_row(pass, axis, [&](int c, int j, int k) {
+      const int across = axis == 1 ? j : k;
+      for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+        const int at = axis == 0 ? i : across, f = c + i;
+        to[f] = flat ? 0.0f : at == 0 ? low : at == last ? high : 1.0f;
+        if (!solids.present()) continue;
+        float open = solids.open[axis][f];
+        if (has_distance) {
+          const float below = solids.distance[at > 0 ? f - step : f],
+                      above = solids.distance[at < last ? f : f - step];
+          open = 0.5f + half_inverse * (below + above);
+        }
+        to[f] = !(open >= kMinOpen) ? 0.0f : open < 1.0f ? open * to[f] : to[f];
+      }
+    });
+  }
+  if (solids.present()) block_cells(pass);
+}
+
+void find_surface(const LiquidPass& pass) {
+  const GridShape& shape = pass.shape();
+  float* const filled = pass.memory.filled.data();
+  float* const surface = pass.grid.surface.data();
+  LiquidCell* const cell = pass.memory.cell.data();
+  const float inverse_volume = 1.0f / (pass.edge(0) * pass.edge(1) * pass.edge(2));
+  const float* room = nullptr;
+  if (pass.solids.present()) {
+    find_room(pass, pass.scratch(0));
+    blur(pass, 0, pass.scratch(0), pass.scratch(1));
+    blur(pass, 1, pass.scratch(1), pass.scratch(0));
+    blur(pass, 2, pass.scratch(0), pass.scratch(1));
+    room = pass.scratch(1);
+  }
+  const std::uint8_t* const blocked = pass.solids.present() ? pass.memory.blocked.data() : nullptr;
+  const float edge = pass.edge(0);
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      float full = filled[i] * inverse_volume;
+      if (room != nullptr) full /= room[i] > kMinRoom ? room[i] : kMinRoom;
+      filled[i] = full;
+      const float part = full < 1.0f ? full : 1.0f;
+      const float depth =
+          part >= 0.5f ? 1.0f - std::sqrt(2.0f * (1.0f - part)) : std::sqrt(2.0f * part) - 1.0f;
+      surface[i] = -edge * depth;
+      cell[i] = blocked != nullptr && blocked[i] != 0 ? LiquidCell::solid
+                : full >= 0.5f                        ? LiquidCell::liquid
+                                                      : LiquidCell::air;
+    }
+  });
+  if (pass.solids.present()) find_surface_in_solids(pass);
+  fill_ghosts(pass.box(), shape, surface);
+  fill_cell_ghosts(pass, cell);
+}
+
+void build_liquid_matrix(const LiquidPass& pass) {
+  const GridShape& shape = pass.shape();
+  PressureMatrix& matrix = pass.memory.matrix;
+  PressureGrid& finest = matrix.levels[0];
+  resize_pressure_level(finest, shape, true, true);
+  const LiquidCell* const cell = pass.memory.cell.data();
+  const float* const surface = pass.grid.surface.data();
+  float full = 0.0f;
+  int axes = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    finest.periodic[axis] = pass.wraps(axis);
+    const float inner = pass.flat(axis) ? 0.0f : 1.0f / (pass.edge(axis) * pass.edge(axis));
+    full += inner;
+    axes += pass.flat(axis) ? 0 : 1;
+    const int step = shape.stride(axis), last = shape.cells[axis];
+    const bool open_low = pass.box().open(2 * axis), open_high = pass.box().open(2 * axis + 1);
+    const float* const open = pass.memory.open[axis].data();
+    float* const steepness = pass.memory.steepness[axis].data();
+    float* const face = finest.face[axis].data();
+    each_row(pass, axis, [&](int c, int j, int k) {
+      const int across = axis == 1 ? j : k;
+      for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+        const int f = c + i, at = axis == 0 ? i : across;
+        const bool lower = cell[f - step] == LiquidCell::liquid, upper = cell[f] == LiquidCell::liquid;
+        float steep = 0.0f, between = 0.0f;
+        if (open[f] > 0.0f && (lower || upper)) {
+          if (lower && upper) {
+            steep = 1.0f;
+            between = inner * open[f];
+          } else if ((at == 0 && open_low) || (at == last && open_high)) {
+            steep = 2.0f;
+          } else {
+            const float in = lower ? surface[f - step] : surface[f],
+                        out = lower ? surface[f] : surface[f - step];
+            const float theta = in / (in - out);  // in <= 0 < out
+            steep = 1.0f / (theta > kMinTheta ? theta : kMinTheta);
+          }
+        }
+        steepness[f] = steep;
+        face[f] = between;
+      }
+    });
+  }
+  finest.full_face = axes > 0 ? full / float(axes) : 0.0f;
+  float inner[3];
+  for (int axis = 0; axis < 3; ++axis)
+    inner[axis] = pass.flat(axis) ? 0.0f : 1.0f / (pass.edge(axis) * pass.edge(axis));
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      float ground = 0.0f;
+      if (cell[i] == LiquidCell::liquid) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const int step = shape.stride(axis);
+          const float *const open = pass.memory.open[axis].data(), *const steep =
+                                                                       pass.memory.steepness[axis].data();
+          if (cell[i - step] != LiquidCell::liquid) ground += inner[axis] * open[i] * steep[i];
+          if (cell[i + step] != LiquidCell::liquid) ground += inner[axis] * open[i + step] * steep[i + step];
+        }
+      }
+      finest.ground[i] = ground;
+      finest.is_air[i] = cell[i] == LiquidCell::air ? 1 : 0;
+    }
+  });
+  build_pressure_levels(pass.kernels, pass.tasks, matrix);
+  // Solids may enclose liquid that no air touches; without them all of the liquid touches air or none.
+  matrix.has_pockets = pass.solids.present();
+  if (matrix.has_pockets) find_pockets(matrix);
+  const double grounded = sum_rows(shape, pass.tasks, [&](int c, int, int) {
+    int any = 0;
+    for (int i = c; i < c + shape.cells[0]; ++i) any |= finest.ground[i] > 0.0f ? 1 : 0;
+    return double(any);
+  });
+  matrix.singular = !(grounded > 0.0);
+}
+
+}  // namespace gyre

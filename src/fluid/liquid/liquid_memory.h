@@ -1,0 +1,34 @@
+// LiquidMemory: arrays that the stages of a step of a liquid share. Nothing in it is state: with a new one the results have the same bits.
+#pragma once
+
+#include "fluid/solver/body_coupling.h"
+#include "fluid/solver/pressure_matrix.h"
+
+namespace gyre {
+
+// Cells of a liquid's grid.
+enum class LiquidCell : std::uint8_t { air, liquid, solid };
+
+struct LiquidMemory {
+  static constexpr int kFields = 8;
+  Array<float> field[kFields];
+  Array<float> sums[3];   // of faces: pairs of the volume of particles and of its momentum
+  Array<float> filled;    // at centres: the fraction of the room around that is full
+  Array<float> drift[3];  // m/s, on faces: what moves particles, besides the velocity, to where there is room
+  Array<float> before[3];  // velocities on faces, as particles give them
+  Array<float> open[3];    // of faces: the fraction through which the liquid passes
+  // Of faces: what the gradient of pressure is multiplied by. 1 between cells of liquid, at the surface an edge over the distance from the
+  // liquid's centre to it, 0 where pressure does not act.
+  Array<float> steepness[3];
+  Array<std::uint8_t> blocked;  // cells without room for liquid
+  Array<LiquidCell> cell;
+  Array<std::uint8_t> layer[3];  // of faces: how many from those beside liquid, which are 0
+  Array<std::uint8_t> next_layer;
+  Array<std::int32_t> start;  // of the particles of each cell
+  Array<std::int32_t> place;  // of each particle in the order of cells, -1: it has left
+  Array<float> spare;         // a column of particles while they are sorted
+  PressureMatrix matrix;
+  BodyCoupling coupling;
+};
+
+}  // namespace gyre

@@ -1,0 +1,105 @@
+// LiquidPass: the data of the stages of a step of a liquid. Each stage is a function from these arrays to these arrays.
+#pragma once
+
+#include "fluid/grid/fluid_body.h"
+#include "fluid/liquid/liquid_grid.h"
+#include "fluid/liquid/liquid_memory.h"
+#include "fluid/solver/gas_pass.h"
+#include "task/parallel.h"
+
+#include <span>
+
+namespace gyre {
+
+inline float part_along(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+// Particles stay this many edges away from solids.
+inline constexpr float kParticleSkin = 0.1f;
+
+struct LiquidPass {
+  LiquidGrid& grid;
+  const GasSolids& solids;
+  std::span<const FluidBody> bodies;
+  LiquidMemory& memory;
+  const GasKernels& kernels;
+  TaskSystem& tasks;
+  float step = 0.0f;     // s
+  float elapsed = 0.0f;  // s, from the beginning of the step, where solids stand as given
+
+  const GasBox& box() const { return grid.box; }
+  const GridShape& shape() const { return grid.shape; }
+  float* scratch(int index) const { return memory.field[index].data(); }
+  float edge(int axis) const { return part_along(grid.box.cell, axis); }
+  bool flat(int axis) const { return grid.box.flat(axis); }
+  bool wraps(int axis) const { return grid.box.periodic(axis) && !grid.box.flat(axis); }
+};
+
+// Calls fn(c, j, k) for every row of points, c the index of its first; `faces`: the axis across whose faces they lie, -1: cells.
+template <class Fn>
+void each_row(const LiquidPass& pass, int faces, Fn&& fn) {
+  const GridShape& shape = pass.shape();
+  const int rows_y = shape.cells[1] + (faces == 1 ? 1 : 0), rows_z = shape.cells[2] + (faces == 2 ? 1 : 0);
+  for_blocks(pass.tasks, rows_y * rows_z, kGridRows, [&](int begin, int end, int) {
+    for (int row = begin; row < end; ++row) {
+      const int k = row / rows_y, j = row - k * rows_y;
+      fn(shape.row(j, k), j, k);
+    }
+  });
+}
+
+// Ghosts of periodic axes: of cells the cells of the opposite side, of faces across the axis likewise, and its upper faces are its lower ones.
+template <class T>
+void wrap_points(const LiquidPass& pass, T* field) {
+  const GridShape& shape = pass.shape();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!pass.wraps(axis)) continue;
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3, n = shape.cells[axis], stride = shape.stride(axis);
+    for (int j = -1; j <= shape.cells[b]; ++j) {
+      for (int i = -1; i <= shape.cells[a]; ++i) {
+        T* const line = field + shape.first + i * shape.stride(a) + j * shape.stride(b);
+        line[-stride] = line[(n - 1) * stride];
+        line[n * stride] = line[0];
+      }
+    }
+  }
+}
+
+// Where a coordinate lies between two points of the grid.
+struct AxisPlace {
+  int base;
+  float fraction;
+};
+// Along one axis: between faces, and between centres, where a particle closer to a wall than the last centre counts as on it: beyond the wall
+// there is a mirror image.
+struct AxisPlaces {
+  float inverse_edge = 0.0f, edge = 0.0f;
+  int last_face = 0, low = 0, last_center = 0;
+
+  AxisPlaces() = default;
+  AxisPlaces(const GasBox& box, int axis) {
+    const int n = box.cells[axis];
+    const bool flat = n == 1, wraps = box.periodic(axis) && !flat;
+    edge = part_along(box.cell, axis);
+    inverse_edge = 1.0f / edge;
+    last_face = n - 1;
+    low = wraps ? -1 : 0;
+    last_center = wraps ? n - 1 : flat ? 0 : n - 2;
+  }
+  AxisPlace face(float at) const {
+    const float s = at * inverse_edge;
+    int base = int(s);
+    base = base < last_face ? base : last_face;
+    return {base, s - float(base)};
+  }
+  AxisPlace center(float at) const {
+    float s = at * inverse_edge - 0.5f;
+    const float lowest = float(low), highest = float(last_center + (last_face > 0 ? 1 : 0));
+    s = s > lowest ? s : lowest;
+    s = s < highest ? s : highest;
+    int base = int(s - lowest) + low;
+    base = base < last_center ? base : last_center;
+    return {base, s - float(base)};
+  }
+};
+
+}  // namespace gyre

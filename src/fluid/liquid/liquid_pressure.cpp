@@ -1,0 +1,200 @@
+// Projection of a liquid.
+#include "fluid/liquid/liquid_pressure.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int kX = 0, kRight = 1, kP = 2, kQ = 3, kZ = 4, kOther = 5;  // scratch
+
+// Of the room that is too full or not full enough this share is made up for in a sub-step: all at once would overshoot where particles lie unevenly.
+constexpr float kSpreadShare = 0.25f;
+constexpr float kSpreadTolerance = 0.02f;  // of a full cell: what is left alone
+constexpr float kMaxSpread = 0.5f;         // of a full cell, that counts
+
+PressureVectors vectors_of(const LiquidPass& pass) {
+  PressureVectors vectors;
+  vectors.x = pass.scratch(kX);
+  vectors.r = pass.scratch(kRight);
+  vectors.p = pass.scratch(kP);
+  vectors.q = pass.scratch(kQ);
+  vectors.z = pass.scratch(kZ);
+  vectors.other = pass.scratch(kOther);
+  for (float* vector : {vectors.x, vectors.r, vectors.p, vectors.z, vectors.other})
+    clear_ghosts(pass.shape(), vector);
+  return vectors;
+}
+
+// The net inflow of liquid cells over their volume, without what solids bring.
+void find_open_inflow(const LiquidPass& pass, float* to) {
+  const GridShape& shape = pass.shape();
+  const float* const active = pass.memory.matrix.levels[0].inverse_diagonal.data();
+  const float *const ox = pass.memory.open[0].data(), *const oy = pass.memory.open[1].data(),
+                     *const oz = pass.memory.open[2].data();
+  const float *const u = pass.grid.velocity[0].data(), *const v = pass.grid.velocity[1].data(),
+                     *const w = pass.grid.velocity[2].data();
+  const float ix = 1.0f / pass.edge(0), iy = 1.0f / pass.edge(1), iz = 1.0f / pass.edge(2);
+  const int py = shape.pitch, pz = shape.plane;
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      const float sum = ix * (ox[i] * u[i] - ox[i + 1] * u[i + 1]) +
+                        iy * (oy[i] * v[i] - oy[i + py] * v[i + py]) +
+                        iz * (oz[i] * w[i] - oz[i + pz] * w[i + pz]);
+      to[i] = active[i] > 0.0f ? sum : 0.0f;
+    }
+  });
+}
+
+void add_solid_inflow(const LiquidPass& pass, float* to) {
+  const BodyCoupling& coupling = pass.memory.coupling;
+  for (const CutFace& face : coupling.faces) {
+    const float inflow = face.share * coupling.velocity_of(face);
+    if (face.upper >= 0) to[face.upper] += inflow;
+    if (face.lower >= 0) to[face.lower] -= inflow;
+  }
+}
+
+// field on faces -= scale times the gradient of x.
+void subtract_liquid_gradient(const LiquidPass& pass, float* x, float scale, Array<float> (&fields)[3]) {
+  wrap_points(pass, x);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    const float* const steepness = pass.memory.steepness[axis].data();
+    float* const field = fields[axis].data();
+    const int step = pass.shape().stride(axis);
+    const float factor = scale / pass.edge(axis);
+    each_row(pass, axis, [&](int c, int, int) {
+      for (int f = c; f < c + pass.shape().cells[0] + (axis == 0 ? 1 : 0); ++f)
+        field[f] -= factor * steepness[f] * (x[f] - x[f - step]);
+    });
+  }
+}
+
+float largest_cell(const LiquidPass& pass, const float* field) {
+  return largest_of(rows_of(pass.shape(), -1), field, pass.kernels, pass.tasks);
+}
+
+// Faces that are closed beside liquid move as the wall or the solid does.
+void set_closed_faces(const LiquidPass& pass, Array<float> (&fields)[3]) {
+  const GridShape& shape = pass.shape();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    const float* const open = pass.memory.open[axis].data();
+    float* const field = fields[axis].data();
+    each_row(pass, axis, [&](int c, int, int) {
+      for (int f = c; f < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++f)
+        field[f] = open[f] > 0.0f ? field[f] : 0.0f;
+    });
+  }
+  const BodyCoupling& coupling = pass.memory.coupling;
+  for (const CutFace& face : coupling.faces) {
+    if (!(pass.memory.open[face.axis][face.face] > 0.0f))
+      fields[face.axis][face.face] = coupling.velocity_of(face);
+  }
+}
+
+}  // namespace
+
+PressureReport project_liquid(const LiquidPass& pass, const ProjectionSettings& settings, float density,
+                              Vec3 gravity, std::span<GasImpulse> impulses) {
+  LiquidGrid& grid = pass.grid;
+  LiquidMemory& memory = pass.memory;
+  const GridShape& shape = pass.shape();
+  PressureVectors vectors = vectors_of(pass);
+  const float* const active = memory.matrix.levels[0].inverse_diagonal.data();
+  const float* const velocity[3] = {grid.velocity[0].data(), grid.velocity[1].data(),
+                                    grid.velocity[2].data()};
+  const bool solids = pass.solids.present();
+  if (solids) {
+    const CouplingGrid coupling{
+        pass.box(),  shape,
+        pass.solids, {memory.open[0].data(), memory.open[1].data(), memory.open[2].data()},
+        active,      density};
+    find_cut_faces(coupling, true, memory.coupling);
+    predict_motions(pass.bodies, pass.step, velocity, memory.coupling);
+  }
+  find_open_inflow(pass, vectors.r);
+  if (solids) add_solid_inflow(pass, vectors.r);
+  float before = largest_cell(pass, vectors.r);
+  for (int axis = 0; axis < 3; ++axis) {
+    // A liquid that only rests moves by this until pressure holds it.
+    const float fall = absolute(part_along(gravity, axis)) * pass.step / pass.edge(axis);
+    if (!pass.flat(axis) && fall > before) before = fall;
+  }
+  // From the pressure of the step before.
+  float* const pressure = grid.pressure.data();
+  const float step = pass.step;
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      pressure[i] = active[i] > 0.0f ? pressure[i] : 0.0f;
+      vectors.x[i] = step * pressure[i];
+    }
+  });
+  subtract_liquid_gradient(pass, vectors.x, 1.0f, grid.velocity);
+  if (solids) push_bodies(vectors.x, memory.coupling);
+  find_open_inflow(pass, vectors.r);
+  if (solids) add_solid_inflow(pass, vectors.r);
+  const float allowed = settings.divergence / pass.step, reduced = settings.reduction * before;
+  const float target = allowed < reduced ? allowed : reduced;
+  PressureReport report = solve_pressure(memory.matrix, vectors, target, settings.max_iterations,
+                                         pass.kernels, pass.tasks, solids ? &memory.coupling : nullptr);
+  report.first = before;
+  subtract_liquid_gradient(pass, vectors.x, 1.0f, grid.velocity);
+  const float inverse_step = 1.0f / pass.step;
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) pressure[i] += inverse_step * vectors.x[i];
+  });
+  wrap_points(pass, pressure);
+  if (solids) {
+    push_bodies(vectors.x, memory.coupling);
+    if (!impulses.empty()) add_body_impulses(velocity, memory.coupling, impulses);
+  }
+  set_closed_faces(pass, grid.velocity);
+  return report;
+}
+
+PressureReport find_carrier(const LiquidPass& pass) {
+  LiquidMemory& memory = pass.memory;
+  const GridShape& shape = pass.shape();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    const float* const from = pass.grid.velocity[axis].data();
+    float* const to = memory.drift[axis].data();
+    each_row(pass, axis, [&](int c, int, int) {
+      for (int f = c; f < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++f) to[f] = from[f];
+    });
+  }
+  PressureVectors vectors = vectors_of(pass);
+  const float* const active = memory.matrix.levels[0].inverse_diagonal.data();
+  const LiquidCell* const cell = memory.cell.data();
+  const float* const filled = memory.filled.data();
+  const int py = shape.pitch, pz = shape.plane;
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      const bool deep = cell[i - 1] != LiquidCell::air && cell[i + 1] != LiquidCell::air &&
+                        cell[i - py] != LiquidCell::air && cell[i + py] != LiquidCell::air &&
+                        cell[i - pz] != LiquidCell::air && cell[i + pz] != LiquidCell::air;
+      float excess = filled[i] - 1.0f;
+      excess = excess < kMaxSpread ? excess : kMaxSpread;
+      const bool counts =
+          active[i] > 0.0f && (excess > kSpreadTolerance || (deep && excess < -kSpreadTolerance));
+      vectors.r[i] = counts ? kSpreadShare * excess : 0.0f;
+    }
+  });
+  const float largest = largest_cell(pass, vectors.r);
+  if (!(largest > 0.0f)) return {};
+  const PressureReport report =
+      solve_pressure(memory.matrix, vectors, 0.1f * largest, 8, pass.kernels, pass.tasks, nullptr);
+  subtract_liquid_gradient(pass, vectors.x, 1.0f / pass.step, memory.drift);
+  set_closed_faces(pass, memory.drift);
+  return report;
+}
+
+float largest_liquid_divergence(const LiquidPass& pass) {
+  float* const scratch = pass.scratch(kRight);
+  find_open_inflow(pass, scratch);
+  if (pass.solids.present()) add_solid_inflow(pass, scratch);
+  return largest_cell(pass, scratch);
+}
+
+}  // namespace gyre

@@ -1,0 +1,110 @@
+// Volume, energies, momenta and probes of a liquid.
+#include "fluid/liquid/liquid_reading.h"
+
+#include "fluid/liquid/liquid_pass.h"
+
+namespace gyre {
+
+double liquid_volume(const LiquidGrid& grid, const GasSolids& solids) {
+  const GridShape& shape = grid.shape;
+  const double cell = double(grid.box.cell.x) * double(grid.box.cell.y) * double(grid.box.cell.z);
+  const float inverse = 1.0f / grid.box.cell.x;
+  const float* const distance =
+      solids.present() && !solids.distance.empty() ? solids.distance.data() : nullptr;
+  const std::uint8_t* const solid = solids.present() ? solids.solid.data() : nullptr;
+  const float* const surface = grid.surface.data();
+  double sum = 0.0;
+  for (int row = 0; row < shape.rows(); ++row) {
+    const int c = shape.row(row % shape.cells[1], row / shape.cells[1]);
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      const float depth = -surface[i] * inverse;
+      float full = depth >= 0.0f ? 1.0f - 0.5f * (1.0f - depth) * (1.0f - depth)
+                                 : 0.5f * (1.0f + depth) * (1.0f + depth);
+      bool deep = depth >= 0.0f;
+      for (const int step : {1, shape.pitch, shape.plane})
+        deep = deep && surface[i - step] <= 0.0f && surface[i + step] <= 0.0f;
+      if (deep) full = 1.0f;
+      if (distance != nullptr) {
+        full *= clamp(0.5f + distance[i] * inverse, 0.0f, 1.0f);
+      } else if (solid != nullptr && solid[i] != 0) {
+        full = 0.0f;
+      }
+      sum += double(full);
+    }
+  }
+  return cell * sum;
+}
+
+LiquidTotals liquid_totals(const LiquidGrid& grid, float density, Vec3 gravity) {
+  LiquidTotals totals;
+  const DVec3 g{double(gravity.x), double(gravity.y), double(gravity.z)};
+  for (int p = 0; p < grid.particles(); ++p) {
+    const double mass = double(density) * double(grid.volume[p]);
+    const DVec3 at = grid.box.corner + Vec3{grid.position[0][p], grid.position[1][p], grid.position[2][p]};
+    const DVec3 velocity{double(grid.motion[0][p]), double(grid.motion[1][p]), double(grid.motion[2][p])};
+    totals.mass += mass;
+    totals.kinetic_energy += 0.5 * mass * dot(velocity, velocity);
+    totals.potential_energy -= mass * dot(g, at);
+    totals.momentum += mass * velocity;
+    totals.angular_momentum += mass * cross(at, velocity);
+  }
+  return totals;
+}
+
+LiquidProbe probe_liquid(const LiquidGrid& grid, DVec3 point, float density) {
+  const GasBox& box = grid.box;
+  const GridShape& shape = grid.shape;
+  const Vec3 local = difference(point, box.corner);
+  LiquidProbe probe;
+  const float depth = -sample_field(box, shape, grid.surface.data(), -1, local);
+  probe.inside = depth > 0.0f;
+  if (probe.inside) {
+    probe.velocity.x = sample_field(box, shape, grid.velocity[0].data(), 0, local);
+    probe.velocity.y = sample_field(box, shape, grid.velocity[1].data(), 1, local);
+    probe.velocity.z = sample_field(box, shape, grid.velocity[2].data(), 2, local);
+    // Outside the pressure is zero. Between centres of which some are outside it grows from the surface on, so it is taken from the centres within.
+    float sum = 0.0f, weights = 0.0f;
+    int base[3];
+    float fraction[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const AxisPlace place = AxisPlaces(box, axis).center(part_along(local, axis));
+      base[axis] = place.base, fraction[axis] = place.fraction;
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      float weight = 1.0f;
+      int at = shape.first;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int up = corner >> axis & 1;
+        weight *= up != 0 ? fraction[axis] : 1.0f - fraction[axis];
+        at += (base[axis] + up) * shape.stride(axis);
+      }
+      if (weight <= 0.0f || !(grid.surface[at] <= 0.0f)) continue;
+      sum += weight * grid.pressure[at];
+      weights += weight;
+    }
+    probe.pressure = weights > 0.0f ? density * sum / weights : 0.0f;
+  }
+  // The column, from above.
+  const float top = (float(shape.cells[1]) - 0.5f) * box.cell.y;
+  const auto distance_at = [&](float y) {
+    return sample_field(box, shape, grid.surface.data(), -1, {local.x, y, local.z});
+  };
+  float above = distance_at(top);
+  if (above <= 0.0f) {
+    probe.has_surface = true;
+    probe.surface = box.corner.y + double(float(shape.cells[1]) * box.cell.y);
+    return probe;
+  }
+  for (int j = shape.cells[1] - 2; j >= 0; --j) {
+    const float y = (float(j) + 0.5f) * box.cell.y, here = distance_at(y);
+    if (here <= 0.0f) {
+      probe.has_surface = true;
+      probe.surface = box.corner.y + double(y + box.cell.y * (here / (here - above)));
+      return probe;
+    }
+    above = here;
+  }
+  return probe;
+}
+
+}  // namespace gyre

@@ -1,0 +1,31 @@
+// Readings of a liquid.
+#pragma once
+
+#include "fluid/liquid/liquid_grid.h"
+
+namespace gyre {
+
+// m^3: cells within the surface are full, however many particles they have; those at it, and those of drops and films too thin to be
+// liquid cells, count as full as the distance from the surface says.
+double liquid_volume(const LiquidGrid& grid, const GasSolids& solids);
+
+struct LiquidTotals {
+  double mass = 0.0;              // kg
+  double kinetic_energy = 0.0;    // J
+  double potential_energy = 0.0;  // J, -m g x, x from the origin of the world
+  DVec3 momentum{};               // kg m/s
+  DVec3 angular_momentum{};       // kg m^2/s, about the origin of the world
+};
+LiquidTotals liquid_totals(const LiquidGrid& grid, float density, Vec3 gravity);
+
+struct LiquidProbe {
+  Vec3 velocity{};
+  float pressure = 0.0f;  // Pa, relative to the open surface; 0 outside
+  bool inside = false;
+  bool has_surface = false;  // in the column of the point
+  double surface = 0.0;      // m, height in the world of the highest surface in the column
+};
+// At a point of the world.
+LiquidProbe probe_liquid(const LiquidGrid& grid, DVec3 point, float density);
+
+}  // namespace gyre

@@ -1,0 +1,36 @@
+// Keeps particles within walls and outside solids. Solids stand as given at the beginning of the step and move on with their bodies; a
+// particle's path is seen from the solid nearest to it, so that a thin wall that moves by more than its thickness still takes along what
+// stands before it.
+#pragma once
+
+#include "fluid/liquid/liquid_pass.h"
+
+namespace gyre {
+
+class ParticleCollision {
+ public:
+  explicit ParticleCollision(const LiquidPass& pass);
+  // Moves a point of a path to the nearest one within closed walls, or round periodic ones.
+  void keep_inside(float (&at)[3]) const;
+  // The particle's way from `from` to `to`, shortened where something is in the way: sets its position.
+  void finish(int particle, const float (&from)[3], float (&to)[3]) const;
+
+ private:
+  struct Motion {
+    Vec3 center{}, velocity{}, spin{};
+  };
+  Vec3 velocity_at(int label, Vec3 point) const;
+  void avoid_solids(int particle, const float (&from)[3], float (&to)[3]) const;
+  float distance_at(Vec3 point) const;
+
+  const LiquidPass& pass_;
+  float length_[3];
+  bool holds_[3][2];  // the lower and the upper side
+  bool has_solids_;
+  float edge_ = 0.0f;  // the shortest of a cell
+  Array<Motion> motions_;
+  Array<float> derived_;  // distances where none are given
+  const float* distance_ = nullptr;
+};
+
+}  // namespace gyre

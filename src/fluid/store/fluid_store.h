@@ -1,0 +1,60 @@
+// FluidStore: all gases and liquids of a world, by the index of their ids. An entry is rebuilt from its definition when a state is loaded;
+// only what changes is saved.
+#pragma once
+
+#include "base/container/array.h"
+#include "base/container/slot_map.h"
+#include "fluid/gas/gas_step.h"
+
+#include <gyre/fluid.h>
+
+#include <memory>
+#include <variant>
+#include <vector>
+
+namespace gyre {
+
+using FluidDef = std::variant<GasDef>;
+
+// The force of a fluid on a body in the last step in which the body was awake. A body that sleeps wakes when it changes.
+struct FluidPush {
+  std::uint32_t body = 0;
+  Vec3 force{}, torque{};  // N, N m about the centre of mass
+};
+
+struct FluidEntry {
+  std::shared_ptr<const FluidDef> def;  // null: the slot is free
+  GasGrid gas;
+  Array<GasEmitter> emitters;
+  Array<FluidPush> pushes;  // ascending by body
+
+  FluidKind kind() const { return FluidKind::gas; }
+  const GasDef& gas_def() const { return std::get<GasDef>(*def); }
+};
+
+struct FluidStore {
+  IdPool ids;
+  std::vector<FluidEntry> entries;
+
+  bool empty() const { return ids.size() == 0; }
+  void clear() {
+    ids = {};
+    entries.clear();
+  }
+  template <class Fn>
+  void for_each(Fn&& fn) const {
+    for (const FluidEntry& entry : entries)
+      if (entry.def != nullptr) fn(entry);
+  }
+};
+
+// Calls visit(array) for every array of an entry that a step or a command changes: with the definition they are its state.
+template <class Entry, class Visitor>
+void for_each_fluid_array(Entry& entry, Visitor&& visit) {
+  for (auto& faces : entry.gas.velocity) visit(faces);
+  visit(entry.gas.density), visit(entry.gas.temperature), visit(entry.gas.pressure);
+  visit(entry.emitters);
+  visit(entry.pushes);
+}
+
+}  // namespace gyre

@@ -1,0 +1,47 @@
+#include "io/codec/fluid_codec.h"
+
+#include "fluid/store/fluid_builder.h"
+#include "io/codec/array_codec.h"
+#include "io/codec/command_codec.h"
+
+namespace gyre {
+
+namespace {
+
+// Fields are as long as those that were built.
+bool fits(const FluidEntry& entry) {
+  const GasGrid& gas = entry.gas;
+  const std::size_t size = std::size_t(gas.shape.size);
+  bool good = gas.density.size() == size && gas.temperature.size() == size && gas.pressure.size() == size;
+  for (const Array<float>& faces : gas.velocity) good = good && faces.size() == size;
+  return good;
+}
+
+}  // namespace
+
+void write_fluids(ByteWriter& out, const FluidStore& fluids) {
+  out.put_all(fluids.ids.generations());
+  fluids.for_each([&](const FluidEntry& entry) {
+    write_fluid_def(out, *entry.def);
+    for_each_fluid_array(entry, [&](const auto& array) { write_array(out, array); });
+  });
+}
+
+bool read_fluids(ByteReader& in, FluidStore& fluids) {
+  const std::vector<std::uint32_t> generations = in.get_all<std::uint32_t>();
+  if (in.failed() || !fluids.ids.restore(generations)) return false;
+  fluids.entries.clear();
+  fluids.entries.resize(generations.size());
+  for (std::uint32_t slot = 0; slot < generations.size(); ++slot) {
+    if (!fluids.ids.live(slot)) continue;
+    std::shared_ptr<const FluidDef> def = read_fluid_def(in);
+    if (in.failed() || std::visit([](const auto& one) { return check_fluid(one); }, *def)) return false;
+    FluidEntry& entry = fluids.entries[slot] = build_fluid(std::move(def));
+    bool good = true;
+    for_each_fluid_array(entry, [&](auto& array) { good = good && read_array(in, array); });
+    if (!good || !fits(entry)) return false;
+  }
+  return true;
+}
+
+}  // namespace gyre

@@ -1,0 +1,92 @@
+#include "world/fluid_commands.h"
+
+#include "fluid/store/fluid_builder.h"
+#include "rigid/sleep/island.h"
+#include "world/refusal.h"
+#include "world/world_state.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr std::size_t kMaxFluids = 1u << 12;
+
+Error check_id(const WorldState& s, FluidId id, const char* what) {
+  if (is_fluid(s, id)) return {};
+  return make_error(ErrorCode::stale_id, "%s: fluid %u (generation %u) does not exist in this world", what,
+                    id.index, unsigned(id.generation));
+}
+
+}  // namespace
+
+bool is_fluid(const WorldState& s, FluidId id) {
+  return id && id.world == s.number && s.fluids.ids.live(id.index) &&
+         std::uint16_t(s.fluids.ids.generation(id.index)) == id.generation;
+}
+
+Error check(const WorldState& s, const AddFluid& c) {
+  if (s.fluids.ids.size() >= kMaxFluids) return refuse("a world has at most %d fluids", int(kMaxFluids));
+  return std::visit([](const auto& def) { return check_fluid(def); }, *c.def);
+}
+Error check(const WorldState& s, const RemoveFluid& c) { return check_id(s, c.fluid, "remove_fluid"); }
+Error check(const WorldState& s, const SetEmitters& c) {
+  const Error e = check_id(s, c.fluid, "set_emitters");
+  if (e) return e;
+  const FluidEntry& entry = s.fluids.entries[c.fluid.index];
+  return std::visit([&](const auto& def) { return check_emitters(c.emitters, def.lower, def.upper); },
+                    *entry.def);
+}
+
+CommandResult execute(WorldState& s, const AddFluid& c) {
+  const IdPool::Slot slot = s.fluids.ids.acquire();
+  if (s.fluids.entries.size() < s.fluids.ids.capacity()) s.fluids.entries.resize(s.fluids.ids.capacity());
+  s.fluids.entries[slot.index] = build_fluid(c.def);
+  if (slot.index < s.fluid_scratch.size()) s.fluid_scratch[slot.index] = {};
+  CommandResult out;
+  out.done = true;
+  out.fluid = {slot.index, std::uint16_t(slot.generation), s.number};
+  return out;
+}
+CommandResult execute(WorldState& s, const RemoveFluid& c) {
+  // What the fluid held may fall.
+  for (const FluidPush& push : s.fluids.entries[c.fluid.index].pushes)
+    if (s.rigid.bodies.ids.live(push.body)) wake(s.rigid, push.body);
+  s.fluids.entries[c.fluid.index] = {};
+  s.fluids.ids.release(c.fluid.index);
+  if (c.fluid.index < s.fluid_scratch.size()) s.fluid_scratch[c.fluid.index] = {};
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetEmitters& c) {
+  FluidEntry& entry = s.fluids.entries[c.fluid.index];
+  entry.emitters.clear();
+  for (const FluidEmitter& emitter : c.emitters) entry.emitters.push_back(make_emitter(emitter));
+  return {true, {}, {}, {}};
+}
+
+// ------------------------------------------------------------------------------------------------------ loaded columns
+
+Error check_fluid_columns(const RigidWorld& w, const FluidStore& fluids) {
+  const auto bad = [](const char* what) {
+    return make_error(ErrorCode::invalid_data, "the state does not hang together: %s", what);
+  };
+  if (fluids.ids.capacity() != fluids.entries.size())
+    return bad("ids and entries of fluids differ in length");
+  for (std::uint32_t slot = 0; slot < fluids.entries.size(); ++slot) {
+    const FluidEntry& entry = fluids.entries[slot];
+    if (fluids.ids.live(slot) != (entry.def != nullptr)) return bad("a fluid without an id");
+    if (entry.def == nullptr) continue;
+    for (const FluidPush& push : entry.pushes) {
+      if (push.body >= w.bodies.ids.capacity()) return bad("a fluid pushes a body that is not there");
+      if (!is_finite(push.force) || !is_finite(push.torque))
+        return bad("the force of a fluid that is not finite");
+    }
+    Array<FluidEmitter> emitters;
+    for (const GasEmitter& emitter : entry.emitters) emitters.push_back(emitter_def(emitter));
+    const Error e = std::visit(
+        [&](const auto& def) { return check_emitters(emitters.view(), def.lower, def.upper); }, *entry.def);
+    if (e) return bad("an emitter out of range");
+  }
+  return {};
+}
+
+}  // namespace gyre

@@ -1,0 +1,21 @@
+// Commands on gases and liquids: checked and executed like those of command.h.
+#pragma once
+
+#include "world/command.h"
+
+#include <gyre/world.h>
+
+namespace gyre {
+
+Error check(const WorldState& state, const AddFluid& c);
+Error check(const WorldState& state, const RemoveFluid& c);
+Error check(const WorldState& state, const SetEmitters& c);
+
+CommandResult execute(WorldState& state, const AddFluid& c);
+CommandResult execute(WorldState& state, const RemoveFluid& c);
+CommandResult execute(WorldState& state, const SetEmitters& c);
+
+// True if what the id names exists.
+bool is_fluid(const WorldState& state, FluidId id);
+
+}  // namespace gyre
