@@ -161,6 +161,8 @@ class World {
   // A joint that is not enabled does nothing, but keeps its bodies from colliding as before.
   bool set_joint_enabled(JointId joint, bool enabled);
   bool set_sleeping(bool enabled);
+  bool set_sleep_share(float share);               // WorldDef::sleep_share
+  bool set_sleep_speed(BodyId body, float speed);  // BodyDef::sleep_speed
   bool set_awake(BodyId body, bool awake);  // false puts the body's whole island to sleep
   bool set_substeps(int substeps);
   // The settings of Stepping (stepping.h); they hold from the next step on. Poses and velocities stay as they are.
@@ -217,6 +219,7 @@ class World {
   Vec3 velocity_at(BodyId body, DVec3 point) const;  // m/s, of the body's material at a world point
   BodyType type(BodyId body) const;
   bool is_awake(BodyId body) const;
+  float sleep_speed(BodyId body) const;  // m/s, as it was set: 0 = by sleep_share()
   std::uint64_t user_data(BodyId body) const;
   MassProperties mass_properties(BodyId body) const;  // body frame; mass 0 unless dynamic
   std::span<const ShapeId> shapes(BodyId body) const;
@@ -355,6 +358,7 @@ class World {
   std::uint64_t step_count() const;
   Vec3 gravity() const;
   int substeps() const;
+  float sleep_share() const;
   // The current settings as a WorldDef, to create a world like this one.
   WorldDef def() const;
   Energy energy() const;

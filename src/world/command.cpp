@@ -379,6 +379,18 @@ CommandResult execute(WorldState& s, const SetSleeping& c) {
   s.rigid.settings.sleeping = c.enabled ? 1 : 0;
   return {true, {}, {}, {}};
 }
+CommandResult execute(WorldState& s, const SetSleepShare& c) {
+  s.rigid.sleep_settings.clear();
+  if (c.share != kSleepSpeedShare) s.rigid.sleep_settings.push_back({c.share});
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetSleepSpeed& c) {
+  BodyStore& bodies = s.rigid.bodies;
+  if (c.speed == sleep_speed_of(bodies, c.body.index)) return {true, {}, {}, {}};
+  if (c.body.index >= bodies.sleep_speeds.size()) bodies.sleep_speeds.resize(c.body.index + 1);
+  bodies.sleep_speeds[c.body.index].speed = c.speed;
+  return {true, {}, {}, {}};
+}
 CommandResult execute(WorldState& s, const SetAwake& c) {
   if (c.awake) {
     wake_if_movable(s.rigid, c.body.index);

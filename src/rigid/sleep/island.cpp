@@ -58,8 +58,9 @@ float radius_for_sleep(const BodyMass& mass) {
   return max(mass.bounding_radius, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
 }
 
-float full_sleep_speed(float gravity, float radius) {
-  return kSleepSpeedShare * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * radius);
+float full_sleep_speed(const RigidWorld& w, std::uint32_t body, float gravity, float radius) {
+  const float own = sleep_speed_of(w.bodies, body);
+  return own > 0.0f ? own : sleep_share(w) * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * radius);
 }
 
 SleepTest test_at_first_sight(const RigidWorld& w, std::uint32_t body, float gravity, float radius,
@@ -79,11 +80,11 @@ SleepTest test_at_first_sight(const RigidWorld& w, std::uint32_t body, float gra
   const float pushout =
       min(motion.pushout, length(motion.delta_position) + radius * length(motion.delta_rotation));
   test.motion = test.speed + kPushoutWeight * pushout / seconds;
-  test.rest_speed = full_sleep_speed(gravity, radius);
+  test.rest_speed = full_sleep_speed(w, body, gravity, radius);
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
     // A body in a field may be slow for a moment at a turning point, so its velocity must be constant, too.
     const FieldRest& field = w.field_rest[body];
-    if (field.acts == kFieldsOnly) test.rest_speed *= kFloatingSpeedShare;
+    if (field.acts == kFieldsOnly && sleep_speed_of(w.bodies, body) == 0.0f) test.rest_speed *= kFloatingSpeedShare;
     const float change = length(motion.linear_velocity - field.linear) +
                          radius * length(motion.angular_velocity - field.angular);
     const float max_change = test.rest_speed * w.settings.last_step / kTimeToSleep;
@@ -95,11 +96,14 @@ SleepTest test_at_first_sight(const RigidWorld& w, std::uint32_t body, float gra
 // Looks at what may keep a body moving that is slow now.
 void look_closer(const RigidWorld& w, std::uint32_t body, float radius, float seconds, SleepTest& test) {
   const float free_speed =
-      min(test.rest_speed, kFreeSpeedShare * full_sleep_speed(length(w.settings.gravity), radius));
+      min(test.rest_speed, kFreeSpeedShare * full_sleep_speed(w, body, length(w.settings.gravity), radius));
   if (!joints_of(w.bodies, body).empty()) {
     const BodyMotion& motion = w.bodies.motion[body];
     const float displacement = length(motion.delta_position) + radius * length(motion.delta_rotation);
     test.motion = max(test.motion, displacement / seconds);
+  }
+  if (sleep_speed_of(w.bodies, body) > 0.0f) return;
+  if (!joints_of(w.bodies, body).empty()) {
     const JointDrives drives = find_joint_drives(w, body, radius);
     if (drives.any) test.rest_speed = min(free_speed, kHeldUpShare * drives.slowest);
   }
@@ -245,7 +249,8 @@ void mark_drifting(const RigidWorld& w, Islands& islands, Arena& arena, std::spa
     const BodyMotion& motion = w.bodies.motion[i];
     const float radius = radius_for_sleep(w.bodies.masses[i]);
     const float speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
-    if (speed > kDriftSpeedShare * full_sleep_speed(0.0f, radius)) is_restless[islands.root(i)] = 1;
+    const float share = sleep_speed_of(w.bodies, i) > 0.0f ? 1.0f : kDriftSpeedShare;
+    if (speed > share * full_sleep_speed(w, i, 0.0f, radius)) is_restless[islands.root(i)] = 1;
   }
 }
 

@@ -17,8 +17,6 @@ constexpr float kTimeToSleep = 0.5f;  // s
 constexpr float kStillBeforeCloserLook = 0.5f * kTimeToSleep;  // s
 // The upper bound of still time. It limits how long a body that moves again may still count as still.
 constexpr float kMaxStillTime = 2.0f * kTimeToSleep;
-// The sleep speed as a share of sqrt(gravity * bounding radius), the natural speed of the body.
-constexpr float kSleepSpeedShare = 0.015f;
 // The share of its sleep speed that is left to a body that no friction holds, or that springs, motors or fields move. It bounds what
 // such a body may lose when it is stopped: for most scenes a fraction of a millimetre.
 constexpr float kFreeSpeedShare = 1.0f / 20.0f;
