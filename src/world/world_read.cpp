@@ -96,6 +96,9 @@ bool World::is_awake(BodyId body) const {
   if (!exists(body)) return false;
   return is_simulated(state_->rigid.bodies.flags[body.index]);
 }
+float World::sleep_speed(BodyId body) const {
+  return exists(body) ? sleep_speed_of(state_->rigid.bodies, body.index) : 0.0f;
+}
 std::uint64_t World::user_data(BodyId body) const {
   return exists(body) ? state_->rigid.bodies.user_data[body.index] : 0;
 }
@@ -240,6 +243,7 @@ SolverStats World::solver_stats() const {
 double World::time() const { return state_->time; }
 std::uint64_t World::step_count() const { return state_->step_count; }
 Vec3 World::gravity() const { return state_->rigid.settings.gravity; }
+float World::sleep_share() const { return gyre::sleep_share(state_->rigid); }
 WorldDef World::def() const {
   const RigidSettings& settings = state_->rigid.settings;
   WorldDef def = state_->def;
@@ -259,6 +263,7 @@ WorldDef World::def() const {
     def.stepping.solver_options = solver.options;
   }
   def.sleeping = settings.sleeping != 0;
+  def.sleep_share = gyre::sleep_share(state_->rigid);
   def.friction_rule = settings.friction_rule;
   def.restitution_rule = settings.restitution_rule;
   return def;
