@@ -7,6 +7,7 @@
 #include <gyre/decomposition.h>
 #include <gyre/defs.h>
 #include <gyre/fields.h>
+#include <gyre/fluid.h>
 #include <gyre/joints.h>
 #include <gyre/soft.h>
 
@@ -31,6 +32,7 @@ struct SceneWorld {
   float tolerance = 1.0e-5f;  // m; of steps that are not fixed
   int max_impacts = 128;      // times of impact in a step; adaptive
   bool sleeping = true;
+  float sleep_share = WorldDef{}.sleep_share;
 };
 
 // What of it a world takes as its Stepping, and back.
@@ -185,6 +187,24 @@ struct SceneSoftBody : SceneSoft {
   std::optional<FieldBounds> pinned_region;  // vertices in this box of the world at the start stay where they are
 };
 
+// A point at which a fluid is read in every traced step.
+struct SceneProbe {
+  std::string name;  // unique within the fluid
+  DVec3 position;    // m, in the world
+};
+// Data that gases and liquids have in common beside their definitions.
+struct SceneFluid {
+  std::string name;
+  std::optional<SceneColor> color;
+  std::vector<SceneProbe> probes;
+};
+struct SceneGas : SceneFluid {
+  GasDef def;
+};
+struct SceneLiquid : SceneFluid {
+  LiquidDef def;
+};
+
 // Goes off in the first step that begins at `start` or later.
 struct SceneExplosion {
   ExplosionDef def;
@@ -203,6 +223,8 @@ struct Scene {
   std::vector<SceneRope> ropes;
   std::vector<SceneCloth> cloths;
   std::vector<SceneSoftBody> soft_bodies;
+  std::vector<SceneGas> gases;
+  std::vector<SceneLiquid> liquids;
   std::vector<FieldDef> fields;
   std::vector<SceneExplosion> explosions;
   std::vector<std::string> notes;  // what whoever runs it should know; never written

@@ -15,6 +15,7 @@ struct SceneLimits {
   std::size_t triangles = 20'000'000;  // of one mesh
   std::size_t vertices = 20'000'000;   // of one mesh
   std::size_t soft_vertices = 8'000'000;  // of ropes, cloths and soft bodies, all together
+  std::size_t fluid_cells = std::size_t(1) << 25;  // of gases and liquids, all together
   std::size_t name_bytes = 1024;
 };
 

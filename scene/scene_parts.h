@@ -18,8 +18,9 @@ struct SceneReading {
   Scene scene;
   NameTable materials, meshes, bodies, joints;
   std::size_t shape_count = 0;
-  NameTable matter = {};  // names of what is not a body: ropes, cloths, soft bodies
+  NameTable matter = {};  // names of all that is not a body: ropes, cloths, soft bodies, gases, liquids
   std::size_t soft_vertices = 0;
+  std::size_t fluid_cells = 0;
 };
 
 // The index behind a name; `what` names the kind: "a material".
@@ -33,6 +34,8 @@ void read_field(SceneReading& reading, const Field& field);
 void read_rope(SceneReading& reading, const Field& field);
 void read_cloth(SceneReading& reading, const Field& field);
 void read_soft_body(SceneReading& reading, const Field& field);
+void read_gas(SceneReading& reading, const Field& field);
+void read_liquid(SceneReading& reading, const Field& field);
 
 // Two corners of a box in the world, the lower one first.
 FieldBounds read_bounds(const Field& field);

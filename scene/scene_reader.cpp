@@ -1,4 +1,4 @@
-// The scene as a whole: version, world, materials, meshes, bodies, joints, then soft matter and fields. See scene_reader.h and, for the format,
+// The scene as a whole: version, world, materials, meshes, bodies, joints, then soft matter, fluids and fields. See scene_reader.h and, for the format,
 // scene_schema.cpp.
 #include "scene/scene_reader.h"
 
@@ -92,6 +92,7 @@ void read_world(const Field& field, SceneWorld& world) {
   members.read("tolerance", world.tolerance, Range::between(1.0e-9, 1));
   if (const auto impacts = members.find("max_impacts")) world.max_impacts = int(impacts->integer(1, 4096));
   members.read("sleeping", world.sleeping);
+  members.read("sleep_share", world.sleep_share, Range::between(0, 1000));
   members.finish();
 }
 
@@ -170,14 +171,6 @@ void read_material_pairs(SceneReading& reading, const Field& field) {
   }
 }
 
-// Sections for matter that this version does not have: their names are known, and having nothing in them asks for nothing.
-void refuse_section(Members& members, const char* key, const char* what) {
-  const std::optional<Field> field = members.find(key);
-  if (!field) return;
-  const std::size_t count = field->array((std::string("an array of ") + what).c_str());
-  if (count > 0) field->element(0).not_supported(std::string("a scene with ") + what);
-}
-
 void read_each(SceneReading& reading, Members& members, const char* key, const char* what,
                void (*read)(SceneReading&, const Field&)) {
   const std::optional<Field> section = members.find(key);
@@ -238,8 +231,8 @@ void read_scene_object(SceneReading& reading, const Field& root) {
   read_each(reading, members, "ropes", "an array of ropes", read_rope);
   read_each(reading, members, "cloths", "an array of cloths", read_cloth);
   read_each(reading, members, "soft_bodies", "an array of soft bodies", read_soft_body);
-  refuse_section(members, "gases", "gases");
-  refuse_section(members, "liquids", "liquids");
+  read_each(reading, members, "gases", "an array of gases", read_gas);
+  read_each(reading, members, "liquids", "an array of liquids", read_liquid);
   if (const auto fields = members.find("force_fields")) {
     const std::size_t count = fields->array("an array of force fields");
     constexpr std::size_t kMaxFields = 10000;

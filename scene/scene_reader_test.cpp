@@ -346,11 +346,9 @@ TEST(SceneReader, RefusesWhatIsWrongInAJoint) {
   for (const BadScene& bad : table) expect_refused(bad);
 }
 
-TEST(SceneReader, RefusesMatterThatThisVersionDoesNotHave) {
-  for (const char* section : {"gases", "liquids"}) {
+TEST(SceneReader, SectionsOfMatterAreArraysThatMayBeEmpty) {
+  for (const char* section : {"ropes", "cloths", "soft_bodies", "gases", "liquids"}) {
     const std::string quoted = std::string("\"") + section + "\": ";
-    expect_refused(
-        {scene_with(quoted + R"([{"name": "x"}])"), std::string("/") + section + "/0", {"not supported"}});
     expect_refused({scene_with(quoted + "3"), std::string("/") + section, {"found 3, expected an array"}});
     EXPECT_TRUE(read_scene(scene_with(quoted + "[]"))) << section;
   }

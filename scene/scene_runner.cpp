@@ -20,6 +20,7 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
   def.simd_width = simd_width;
   def.stepping = stepping_of(settings);
   def.sleeping = settings.sleeping;
+  def.sleep_share = settings.sleep_share;
   Result<World> world = World::create(def);
   if (!world) return SceneError{file, 0, 0, "/world", world.error().message};
 
@@ -31,6 +32,8 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
   runner.ropes_ = builder.take_ropes();
   runner.cloths_ = builder.take_cloths();
   runner.soft_bodies_ = builder.take_soft_bodies();
+  runner.gases_ = builder.take_gases();
+  runner.liquids_ = builder.take_liquids();
   runner.region_pins_ = builder.take_region_pins();
   for (std::size_t i = 0; i < runner.scene_.bodies.size(); ++i) {
     const SceneBody& body = runner.scene_.bodies[i];
@@ -237,6 +240,36 @@ void SceneRunner::put_present_softs(Scene& out, const std::vector<int>& places) 
   });
 }
 
+std::vector<FluidEmitter> SceneRunner::present_emitters(const std::vector<FluidEmitter>& emitters) const {
+  std::vector<FluidEmitter> left;
+  for (FluidEmitter emitter : emitters) {
+    emitter.start = max(emitter.start - time(), min(emitter.start, 0.0));
+    emitter.end -= time();
+    if (emitter.end > 0.0) left.push_back(emitter);
+  }
+  return left;
+}
+
+// Definitions stay those of the scene. The state is the fields of a gas and the particles of a liquid.
+void SceneRunner::put_present_fluids(Scene& out) const {
+  out.gases.clear();
+  for (std::size_t i = 0; i < gases_.size(); ++i) {
+    if (!world_.exists(gases_[i])) continue;
+    SceneGas& gas = out.gases.emplace_back(scene_.gases[i]);
+    GasDef present = world_.gas_def(gases_[i]);
+    gas.def.emitters = present_emitters(present.emitters);
+    gas.def.fields = std::move(present.fields);
+  }
+  out.liquids.clear();
+  for (std::size_t i = 0; i < liquids_.size(); ++i) {
+    if (!world_.exists(liquids_[i])) continue;
+    SceneLiquid& liquid = out.liquids.emplace_back(scene_.liquids[i]);
+    LiquidDef present = world_.liquid_def(liquids_[i]);
+    liquid.def.emitters = present_emitters(present.emitters);
+    liquid.def.particles = std::move(present.particles);
+  }
+}
+
 Scene SceneRunner::final_scene() const {
   Scene out = scene_;
   out.world.gravity = world_.gravity();
@@ -258,6 +291,7 @@ Scene SceneRunner::final_scene() const {
     out.joints.push_back(std::move(joint));
   }
   put_present_softs(out, places);
+  put_present_fluids(out);
   out.fields.clear();
   std::vector<FieldId> fields(world_.fields({}));
   world_.fields(fields);

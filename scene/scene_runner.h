@@ -51,11 +51,24 @@ class SceneRunner {
     each(scene_.cloths, cloths_);
     each(scene_.soft_bodies, soft_bodies_);
   }
+  std::span<const FluidId> gases() const { return gases_; }
+  std::span<const FluidId> liquids() const { return liquids_; }
+  // Calls visit(fluid, id) for each gas and liquid that is left, in this order.
+  template <class Visit>
+  void for_each_fluid(Visit visit) const {
+    const auto each = [&](const auto& fluids, const std::vector<FluidId>& ids) {
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        if (world_.exists(ids[i])) visit(static_cast<const SceneFluid&>(fluids[i]), ids[i]);
+      }
+    };
+    each(scene_.gases, gases_);
+    each(scene_.liquids, liquids_);
+  }
   // Null for the world or a body that is not of this scene.
   const SceneBody* body_of(BodyId id) const;
 
-  // The scene as it stands now, to be simulated on: poses, velocities, the vertices of soft matter, what is left of the forces
-  // and of the joints, gravity and sub-steps. What was removed is left out.
+  // The scene as it stands now, to be simulated on: poses, velocities, the vertices of soft matter, the fields
+  // and particles of fluids, what is left of the forces, emitters and joints, gravity and sub-steps. What was removed is left out.
   // Meshes stand in it, so that it can lie in another folder.
   Scene final_scene() const;
 
@@ -67,6 +80,8 @@ class SceneRunner {
   void put_present_state(SceneSoft& soft, SoftSettings& settings, SoftId id,
                          const std::vector<int>& places) const;
   void put_present_softs(Scene& out, const std::vector<int>& places) const;
+  std::vector<FluidEmitter> present_emitters(const std::vector<FluidEmitter>& emitters) const;
+  void put_present_fluids(Scene& out) const;
   double present_length(const SceneJoint& joint) const;
   SceneJoint final_joint(std::size_t index) const;
   void put_present_state(SceneBody& body, BodyId id) const;
@@ -76,6 +91,7 @@ class SceneRunner {
   std::vector<BodyId> bodies_;
   std::vector<JointId> joints_;
   std::vector<SoftId> ropes_, cloths_, soft_bodies_;
+  std::vector<FluidId> gases_, liquids_;
   std::vector<std::vector<int>> region_pins_;  // of each soft body: vertices that its region alone pins
   std::vector<std::size_t> forced_;  // bodies with forces
   std::vector<double> lengths_;      // of distance joints at the start

@@ -1,7 +1,7 @@
-// The JSON Schema (draft 2020-12) of a scene: the whole format, what this version of Gyre does not have yet included.
-// scenes/scene.schema.json is the same text; a test compares them.
+// The JSON Schema (draft 2020-12) of a scene. scenes/scene.schema.json is the same text; a test compares them.
 #include "scene/scene_schema.h"
 
+#include "scene/scene_schema_fluid.h"
 #include "scene/scene_schema_joints.h"
 #include "scene/scene_schema_soft.h"
 
@@ -44,7 +44,6 @@ constexpr char kPart0[] = R"json({
     "vector_or_null": { "type": ["array", "null"], "items": { "type": "number" }, "minItems": 3, "maxItems": 3 },
     "box": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "minItems": 2, "maxItems": 2, "description": "[lowest corner, highest corner]" },
     "truth_values": { "type": "array", "items": { "type": "boolean" }, "minItems": 3, "maxItems": 3 },
-    "cells": { "type": "array", "items": { "type": "integer", "minimum": 1 }, "minItems": 3, "maxItems": 3 },
     "index": { "type": "integer", "minimum": 0 },
     "color": { "type": ["string", "null"], "pattern": "^#[0-9a-fA-F]{6}$", "description": "sRGB, #rrggbb, for pictures only" },
     "orientation": {
@@ -105,7 +104,8 @@ constexpr char kPart0[] = R"json({
         },
         "tolerance": { "type": "number", "minimum": 1e-9, "maximum": 1, "default": 1e-5, "description": "m, of a step that is not fixed" },
         "max_impacts": { "type": "integer", "minimum": 1, "maximum": 4096, "default": 128, "description": "in a step, adaptive" },
-        "sleeping": { "type": "boolean", "default": true }
+        "sleeping": { "type": "boolean", "default": true },
+        "sleep_share": { "type": "number", "minimum": 0, "maximum": 1000, "default": 0.015, "description": "speed below which bodies are still, as a share of sqrt(gravity x radius)" }
       }
     },
     "view": {
@@ -195,6 +195,7 @@ constexpr char kPart0[] = R"json({
         "gravity_scale": { "type": "number", "minimum": -1e6, "maximum": 1e6, "default": 1 },
         "continuous": { "type": "boolean", "default": false, "description": "swept against moving bodies too" },
         "can_sleep": { "type": "boolean", "default": true },
+        "sleep_speed": { "type": "number", "minimum": 0, "maximum": 1e6, "default": 0, "description": "m/s below which the body is still; 0: by the world's sleep_share" },
         "locked": {
           "type": "object",
           "additionalProperties": false,
@@ -365,58 +366,7 @@ constexpr char kPart1[] = R"json(            "group": { "type": "integer", "mini
     },
 )json";
 
-constexpr char kPart2[] = R"json(    "gas": {
-      "type": "object",
-      "required": ["name", "bounds", "cells"],
-      "additionalProperties": false,
-      "properties": {
-        "name": { "$ref": "#/$defs/name" },
-        "bounds": { "$ref": "#/$defs/box" },
-        "cells": { "$ref": "#/$defs/cells" },
-        "buoyancy": { "type": "number" },
-        "vorticity": { "$ref": "#/$defs/not_negative" },
-        "viscosity": { "$ref": "#/$defs/not_negative" },
-        "boundary": { "enum": ["open", "closed"] },
-        "emitters": {
-          "type": "array",
-          "items": {
-            "type": "object",
-            "required": ["position", "radius"],
-            "additionalProperties": false,
-            "properties": {
-              "position": { "$ref": "#/$defs/vector" },
-              "radius": { "$ref": "#/$defs/positive" },
-              "density": { "$ref": "#/$defs/not_negative" },
-              "temperature": { "$ref": "#/$defs/not_negative" },
-              "velocity": { "$ref": "#/$defs/vector" }
-            }
-          }
-        }
-      }
-    },
-    "liquid": {
-      "type": "object",
-      "required": ["name", "bounds", "cell_size"],
-      "additionalProperties": false,
-      "properties": {
-        "name": { "$ref": "#/$defs/name" },
-        "bounds": { "$ref": "#/$defs/box" },
-        "cell_size": { "$ref": "#/$defs/positive" },
-        "density": { "$ref": "#/$defs/positive" },
-        "viscosity": { "$ref": "#/$defs/not_negative" },
-        "surface_tension": { "$ref": "#/$defs/not_negative" },
-        "fill": {
-          "type": "array",
-          "items": {
-            "type": "object",
-            "required": ["box"],
-            "additionalProperties": false,
-            "properties": { "box": { "$ref": "#/$defs/box" } }
-          }
-        }
-      }
-    },
-    "force_field": {
+constexpr char kPart2[] = R"json(    "force_field": {
       "type": "object",
       "required": ["type"],
       "additionalProperties": false,
@@ -453,7 +403,8 @@ constexpr char kPart2[] = R"json(    "gas": {
 std::string scene_schema() {
   std::string out;
   for (const char* part :
-       {kPart0, kPart1, kSchemaOfJoints, kSchemaOfRopes, kSchemaOfCloths, kSchemaOfSoftBodies, kPart2}) {
+       {kPart0, kPart1, kSchemaOfJoints, kSchemaOfRopes, kSchemaOfCloths, kSchemaOfSoftBodies,
+                           kSchemaOfGases, kSchemaOfLiquids, kPart2}) {
     out += part;
   }
   return out;

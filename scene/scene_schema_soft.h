@@ -40,7 +40,7 @@ inline constexpr char kSchemaOfRopes[] = R"json(    "factor_or_null": { "type": 
       "required": ["name", "points"],
       "additionalProperties": false,
       "properties": {
-        "name": { "$ref": "#/$defs/name", "description": "unique over bodies, ropes, cloths and soft bodies" },
+        "name": { "$ref": "#/$defs/name", "description": "unique over bodies, ropes, cloths, soft bodies, gases and liquids" },
         "points": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "minItems": 2, "description": "m, in the world" },
         "segments": {
           "type": ["integer", "null"], "minimum": 1, "maximum": 1048575,
@@ -79,7 +79,7 @@ inline constexpr char kSchemaOfCloths[] = R"json(    "cloth": {
       "anyOf": [{ "required": ["mesh"] }, { "required": ["grid"] }],
       "additionalProperties": false,
       "properties": {
-        "name": { "$ref": "#/$defs/name", "description": "unique over bodies, ropes, cloths and soft bodies" },
+        "name": { "$ref": "#/$defs/name", "description": "unique over bodies, ropes, cloths, soft bodies, gases and liquids" },
         "mesh": { "type": ["string", "null"], "description": "a mesh of the scene; its vertices keep their numbers" },
         "grid": {
           "type": ["object", "null"],
@@ -122,7 +122,7 @@ inline constexpr char kSchemaOfSoftBodies[] = R"json(    "soft_body": {
       "additionalProperties": false,
       "description": "Given by mesh, by box, or by vertices and tetrahedra.",
       "properties": {
-        "name": { "$ref": "#/$defs/name", "description": "unique over bodies, ropes, cloths and soft bodies" },
+        "name": { "$ref": "#/$defs/name", "description": "unique over bodies, ropes, cloths, soft bodies, gases and liquids" },
         "mesh": { "type": ["string", "null"], "description": "a closed mesh of the scene, filled with tetrahedra" },
         "resolution": {
           "type": ["integer", "null"], "minimum": 2, "maximum": 128, "default": 16,

@@ -271,7 +271,7 @@ int read_solid(SceneReading& reading, const Field& field, Members& members, Scen
 std::string read_unique_name(SceneReading& reading, const Field& field) {
   std::string name = field.name(reading.options.limits.name_bytes);
   if (reading.bodies.contains(name) || !reading.matter.emplace(name, 0).second)
-    field.expected("a name that no body, rope, cloth or soft body of this scene has");
+    field.expected("a name that no body, rope, cloth, soft body, gas or liquid of this scene has");
   return name;
 }
 

@@ -25,7 +25,8 @@ Overloaded(Ts...) -> Overloaded<Ts...>;
 bool WorldBuilder::build() {
   mesh_cache_.resize(scene_.meshes.size());
   hull_cache_.resize(scene_.meshes.size());
-  return add_pairs() && add_bodies() && add_joints() && add_soft_matter() && add_fields();
+  return add_pairs() && add_bodies() && add_joints() && add_soft_matter() && add_fluids() &&
+         add_fields();
 }
 
 bool WorldBuilder::fail(std::string pointer, std::string message) {

@@ -23,6 +23,8 @@ class WorldBuilder {
   std::vector<SoftId> take_ropes() { return std::move(ropes_); }
   std::vector<SoftId> take_cloths() { return std::move(cloths_); }
   std::vector<SoftId> take_soft_bodies() { return std::move(soft_bodies_); }
+  std::vector<FluidId> take_gases() { return std::move(gases_); }
+  std::vector<FluidId> take_liquids() { return std::move(liquids_); }
   std::vector<std::vector<int>> take_region_pins() { return std::move(region_pins_); }
 
  private:
@@ -36,6 +38,7 @@ class WorldBuilder {
   bool hold(const SceneSoft& soft, SoftId id, const std::string& pointer);
   bool pin_region(const SceneSoftBody& solid, SoftId id, const std::string& pointer);
   bool blame_soft(const std::string& pointer, const SceneSoft& soft);
+  bool add_fluids();
   bool make_shape(std::size_t body, std::size_t shape, ShapeDef& out);
   bool cook(const SceneHull& hull, const std::string& pointer, Geometry& out);
   bool cook(const SceneTriangles& mesh, const std::string& pointer, Geometry& out);
@@ -51,6 +54,7 @@ class WorldBuilder {
   std::vector<BodyId> bodies_;
   std::vector<JointId> joints_;
   std::vector<SoftId> ropes_, cloths_, soft_bodies_;
+  std::vector<FluidId> gases_, liquids_;
   std::vector<std::vector<int>> region_pins_;
   std::vector<Geometry> mesh_cache_, hull_cache_;  // by mesh
 };

@@ -33,5 +33,7 @@ void write_points(JsonWriter& json, const char* key, const std::vector<V>& point
 
 // Writes the members ropes, cloths and soft_bodies of a scene, those that are not empty.
 void write_soft_matter(JsonWriter& json, const Scene& scene);
+// Writes the members gases and liquids.
+void write_fluids(JsonWriter& json, const Scene& scene);
 
 }  // namespace gyre

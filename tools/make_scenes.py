@@ -12,6 +12,7 @@ import random
 import sys
 from pathlib import Path
 
+import fluid_scenes
 import joint_scenes
 import soft_scenes
 
@@ -580,6 +581,7 @@ def main():
     files = {SCENES / f"{make.__name__}.gyre.json": text(tidy(make())) + "\n" for make in ALL}
     files.update({SCENES / "joints" / f"{make.__name__}.gyre.json": text(tidy(make())) + "\n" for make in joint_scenes.ALL})
     files.update({SCENES / "soft" / f"{make.__name__}.gyre.json": text(tidy(make())) + "\n" for make in soft_scenes.ALL})
+    files.update({SCENES / "fluid" / f"{make.__name__}.gyre.json": text(tidy(make())) + "\n" for make in fluid_scenes.ALL})
     files[SCENES / "meshes" / "hills.obj"] = terrain_obj(40, 0.4, hill)
     files[SCENES / "meshes" / "small_hills.obj"] = terrain_obj(24, 0.4, hill)
     different = 0

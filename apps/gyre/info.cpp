@@ -72,6 +72,16 @@ std::string listed(const std::array<int, N>& counts, const char* const* words) {
   return std::to_string(total) + parts;
 }
 
+std::string fluid_text(const SceneFluid& fluid, const FluidInfo& info) {
+  std::string out = std::string("\n") + to_string(info.kind) + " \"" + fluid.name + "\", ";
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    out += (axis > 0 ? " x " : "") + std::to_string(info.cells[axis]);
+  out += " cells of " + vector(info.cell) + " m";
+  if (info.kind == FluidKind::liquid)
+    out += ", " + std::to_string(info.particles) + " particles, " + rounded(info.volume) + " m^3";
+  return out + "\n";
+}
+
 void print_text(const SceneRunner& runner) {
   const Scene& scene = runner.scene();
   const Counts counts = count(scene);
@@ -84,6 +94,10 @@ void print_text(const SceneRunner& runner) {
   if (softs > 0) {
     out += "soft    " + std::to_string(scene.ropes.size()) + " ropes, " + std::to_string(scene.cloths.size()) +
            " cloths, " + std::to_string(scene.soft_bodies.size()) + " soft bodies\n";
+  }
+  if (!scene.gases.empty() || !scene.liquids.empty()) {
+    out += "fluids  " + std::to_string(scene.gases.size()) + " gases, " +
+           std::to_string(scene.liquids.size()) + " liquids\n";
   }
   out += "step    " + rounded(scene.world.time_step) + " s in " + std::to_string(scene.world.substeps) +
          " sub-steps, gravity " + vector(scene.world.gravity) + " m/s^2\n";
@@ -109,6 +123,9 @@ void print_text(const SceneRunner& runner) {
     const SoftInfo info = runner.world().soft_info(id);
     out += std::string("\n") + (info.kind == SoftKind::solid ? "soft body" : to_string(info.kind)) + " \"" +
            soft.name + "\", " + std::to_string(info.vertices) + " vertices, " + rounded(info.mass) + " kg\n";
+  });
+  runner.for_each_fluid([&](const SceneFluid& fluid, FluidId id) {
+    out += fluid_text(fluid, runner.world().fluid_info(id));
   });
   for (const SceneMesh& mesh : scene.meshes) append_mesh_bounds(out, mesh);
   std::fwrite(out.data(), 1, out.size(), stdout);
@@ -164,6 +181,27 @@ void write_softs(JsonWriter& json, const char* key, const World& world, const st
   json.end_array();
 }
 
+// Gases or liquids with their cells, and how many particles each liquid has.
+template <class Fluid>
+void write_fluids(JsonWriter& json, const char* key, const World& world, const std::vector<Fluid>& fluids,
+                  std::span<const FluidId> ids) {
+  json.key(key).begin_array();
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const FluidInfo info = world.fluid_info(ids[i]);
+    json.begin_object(JsonLayout::one_line);
+    json.field("name", fluids[i].name);
+    json.key("cells").begin_array(JsonLayout::one_line);
+    for (const int cells : info.cells) json.value(cells);
+    json.end_array();
+    if (info.kind == FluidKind::liquid) {
+      json.field("particles", info.particles);
+      json.field("volume", info.volume);
+    }
+    json.end_object();
+  }
+  json.end_array();
+}
+
 void print_json(const SceneRunner& runner) {
   const Scene& scene = runner.scene();
   const Counts counts = count(scene);
@@ -188,6 +226,8 @@ void print_json(const SceneRunner& runner) {
   write_softs(json, "ropes", runner.world(), scene.ropes, runner.ropes());
   write_softs(json, "cloths", runner.world(), scene.cloths, runner.cloths());
   write_softs(json, "soft_bodies", runner.world(), scene.soft_bodies, runner.soft_bodies());
+  write_fluids(json, "gases", runner.world(), scene.gases, runner.gases());
+  write_fluids(json, "liquids", runner.world(), scene.liquids, runner.liquids());
   json.key("meshes").begin_array();
   for (const SceneMesh& mesh : scene.meshes) write_mesh_bounds(json, mesh);
   json.end_array();

@@ -37,6 +37,7 @@ class FileSink : public ByteSink {
 std::string find_clash(const SimulateOptions& options) {
   const std::pair<const char*, const std::string*> outputs[] = {{"--record", &options.record},
                                                                 {"--trace", &options.trace},
+                                                                {"--probes", &options.probes},
                                                                 {"--stats", &options.stats},
                                                                 {"--final", &options.final}};
   const auto place = [](const std::string& path) {
@@ -88,6 +89,7 @@ class Simulation {
   const SimulateOptions& options_;
   SceneRunner runner_;
   TraceTable trace_;
+  ProbeTable probes_;
   StatsTable stats_;
   OutputFile record_, final_;
   FileSink sink_{record_};
@@ -108,7 +110,11 @@ bool Simulation::open_outputs() {
     if (!opened) say(file.message());
     return opened;
   };
-  if (!options_.trace.empty() && !check(trace_.open(options_.trace), trace_.file())) return false;
+  if (!options_.trace.empty() &&
+      !check(trace_.open(options_.trace, options_.trace_liquids), trace_.file())) {
+    return false;
+  }
+  if (!options_.probes.empty() && !check(probes_.open(options_.probes), probes_.file())) return false;
   if (!options_.stats.empty() && !check(stats_.open(options_.stats), stats_.file())) return false;
   if (!options_.final.empty() && !check(final_.open(options_.final), final_)) return false;
   if (!options_.record.empty()) {
@@ -126,9 +132,11 @@ bool Simulation::open_outputs() {
 }
 
 bool Simulation::record_step(double step_ms) {
-  if (trace_.file().is_open() && runner_.steps() % options_.trace_every == 0 && !trace_.add_rows(runner_)) {
+  const bool is_traced = runner_.steps() % options_.trace_every == 0;
+  if (is_traced && trace_.file().is_open() && !trace_.add_rows(runner_))
     return fail(trace_.file()) == kExitGood;
-  }
+  if (is_traced && probes_.file().is_open() && !probes_.add_rows(runner_))
+    return fail(probes_.file()) == kExitGood;
   if (stats_.file().is_open() && runner_.steps() > 0 && !stats_.add_row(runner_, step_ms, options_.count_crossings)) {
     return fail(stats_.file()) == kExitGood;
   }
@@ -182,7 +190,7 @@ bool Simulation::finish_outputs(int ended) {
       return false;
     }
   }
-  for (OutputFile* file : {&trace_.file(), &stats_.file()}) {
+  for (OutputFile* file : {&trace_.file(), &probes_.file(), &stats_.file()}) {
     if (file->is_open() && !file->commit()) return fail(*file) == kExitGood;
   }
   // A state that is not finite is not a scene.

@@ -127,9 +127,15 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
       ->type_name("N")
       ->check(number_between(1, false, 1e9, "an integer from 1 to 1e9"))
       ->needs(record);
-  command.add_option("--trace", options.trace, "Write a table of the motion of every body and every vertex of soft matter")
+  CLI::Option* trace = command
+                           .add_option("--trace", options.trace,
+                                       "Write a table of the motion of every body and every vertex of soft matter")
+                           ->type_name("FILE.csv");
+  command.add_flag("--trace-liquids", options.trace_liquids, "In --trace, the particles of liquids too")
+      ->needs(trace);
+  command.add_option("--probes", options.probes, "Write a table of gases and liquids at the scene's probes")
       ->type_name("FILE.csv");
-  command.add_option("--trace-every", options.trace_every, "Trace only every Nth step")
+  command.add_option("--trace-every", options.trace_every, "Trace and probe only every Nth step")
       ->type_name("N")
       ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"));
   CLI::Option* stats = command.add_option("--stats", options.stats, "Write a table of figures of each step")

@@ -1,6 +1,7 @@
 // What gyre simulate prints at the end. See summary.h.
 #include "summary.h"
 
+#include "fluid_figures.h"
 #include "scene/json_writer.h"
 #include "scene/number_text.h"
 
@@ -30,6 +31,18 @@ std::string counted(long long count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
+// ", 1 gas, 2 liquids (9000 particles)"; empty without fluids.
+std::string fluids_text(const SceneRunner& runner) {
+  std::string out;
+  if (!runner.gases().empty())
+    out += ", " + counted(static_cast<long long>(runner.gases().size()), "gas", "gases");
+  if (!runner.liquids().empty()) {
+    out += ", " + counted(static_cast<long long>(runner.liquids().size()), "liquid", "liquids") + " (" +
+           counted(fluid_figures(runner).liquid_particles, "particle", "particles") + ")";
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string hash_text(const World& world) {
@@ -55,7 +68,7 @@ std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
     add(runner.soft_bodies().size(), "soft body", "soft bodies");
     out += " (" + counted(counts.soft_vertices, "vertex", "vertices") + ")";
   }
-  out += "\n";
+  out += fluids_text(runner) + "\n";
   out += counted(static_cast<long long>(runner.steps()), "step", "steps") + ", " + rounded(runner.time(), 4) +
          " s simulated in " + rounded(figures.wall_seconds, 3) + " s";
   if (figures.wall_seconds > 0 && runner.steps() > 0) {
@@ -112,6 +125,12 @@ std::string summary_json(const SceneRunner& runner, const RunFigures& figures) {
   json.field("cloths", std::int64_t(runner.cloths().size()));
   json.field("soft_bodies", std::int64_t(runner.soft_bodies().size()));
   json.field("particles", counts.soft_vertices);
+  const FluidFigures fluids = fluid_figures(runner);
+  json.field("gases", std::int64_t(runner.gases().size()));
+  json.field("liquids", std::int64_t(runner.liquids().size()));
+  json.field("liquid_particles", std::int64_t(fluids.liquid_particles));
+  json.field("liquid_volume", fluids.liquid_volume);
+  json.field("smoke_mass", fluids.smoke_mass);
   json.field("pairs", counts.pairs);
   json.field("contacts", counts.contact_points);
   json.field("max_penetration", world.max_penetration());

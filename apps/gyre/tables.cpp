@@ -1,6 +1,7 @@
-// The two tables that a simulation writes. See tables.h.
+// The tables that a simulation writes. See tables.h.
 #include "tables.h"
 
+#include "fluid_figures.h"
 #include "scene/number_text.h"
 
 namespace gyre {
@@ -38,7 +39,8 @@ void add_text(std::string& row, const std::string& text) {
 
 }  // namespace
 
-bool TraceTable::open(const std::string& path) {
+bool TraceTable::open(const std::string& path, bool with_liquids) {
+  with_liquids_ = with_liquids;
   return file_.open(path) && file_.write("step,time,body,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,awake\n");
 }
 
@@ -53,6 +55,25 @@ bool TraceTable::add_vertices(const std::string& begin, const std::string& name,
     row_ += ",0,0,0,1";
     add_vector(row_, vertices.velocity(i));
     row_ += end;
+    if (!file_.write(row_)) return false;
+  }
+  return true;
+}
+
+// Their number changes where a liquid leaves the box or comes from an emitter.
+bool TraceTable::add_particles(const std::string& begin, const std::string& name, const World& world,
+                               FluidId id) {
+  const std::size_t count = world.liquid_particles(id, {}, {});
+  positions_.resize(count);
+  velocities_.resize(count);
+  world.liquid_particles(id, positions_, velocities_);
+  for (std::size_t i = 0; i < count; ++i) {
+    row_ = begin;
+    add_text(row_, name + "[" + std::to_string(i) + "]");
+    add_vector(row_, positions_[i]);
+    row_ += ",0,0,0,1";
+    add_vector(row_, velocities_[i]);
+    row_ += ",0,0,0,1\n";
     if (!file_.write(row_)) return false;
   }
   return true;
@@ -77,6 +98,37 @@ bool TraceTable::add_rows(const SceneRunner& runner) {
   bool written = true;
   runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
     written = written && add_vertices(begin, soft.name, world.vertices(id), world.soft_info(id).awake);
+  });
+  if (!with_liquids_) return written;
+  runner.for_each_fluid([&](const SceneFluid& fluid, FluidId id) {
+    const bool is_liquid = world.fluid_info(id).kind == FluidKind::liquid;
+    written = written && (!is_liquid || add_particles(begin, fluid.name, world, id));
+  });
+  return written;
+}
+
+bool ProbeTable::open(const std::string& path) {
+  return file_.open(path) &&
+         file_.write("step,time,domain,probe,vx,vy,vz,pressure,density,temperature,surface\n");
+}
+
+bool ProbeTable::add_rows(const SceneRunner& runner) {
+  std::string begin = std::to_string(runner.steps());
+  add_number(begin, runner.time());
+  bool written = true;
+  runner.for_each_fluid([&](const SceneFluid& fluid, FluidId id) {
+    for (const SceneProbe& probe : fluid.probes) {
+      if (!written) return;
+      const FluidProbe found = runner.world().probe(id, probe.position);
+      row_ = begin;
+      add_text(row_, fluid.name);
+      add_text(row_, probe.name);
+      add_vector(row_, found.velocity);
+      for (const float number : {found.pressure, found.density, found.temperature, found.surface})
+        add_number(row_, double(number));
+      row_ += '\n';
+      written = file_.write(row_);
+    }
   });
   return written;
 }
@@ -109,7 +161,13 @@ bool StatsTable::add_row(const SceneRunner& runner, double step_ms, bool count_c
   add_vector(row_, momentum.angular);
   add_number(row_, energy.soft_elastic);
   add_count(row_, count_crossings ? static_cast<long long>(world.cloth_crossings()) : 0);
-  row_ += ",0,0,0,0,0\n";  // what only fluids have
+  const FluidFigures fluids = fluid_figures(runner);
+  add_number(row_, fluids.liquid_volume);
+  add_count(row_, fluids.liquid_particles);
+  add_number(row_, fluids.smoke_mass);
+  add_number(row_, fluids.divergence);
+  add_number(row_, fluids.residual);
+  row_ += '\n';
   return file_.write(row_);
 }
 

@@ -193,6 +193,11 @@ void build(const GasDef& def, FluidEntry& entry) {
                    [&](int c, int, int, int) { entry.gas.velocity[axis][std::size_t(c)] = velocity[axis]; });
     }
   }
+  // As at the end of a step, so that a reading before the first one is right at periodic sides too.
+  const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
+  for (Array<float>* const field : {&entry.gas.density, &entry.gas.temperature, &entry.gas.pressure})
+    wrap_ghosts(shape, periodic, field->data());
+  for (Array<float>& field : entry.gas.velocity) wrap_ghosts(shape, periodic, field.data());
 }
 
 void build(const LiquidDef& def, FluidEntry& entry) {
