@@ -131,6 +131,37 @@ void find_surface_in_solids(const LiquidPass& pass) {
   });
 }
 
+// How strongly cells are tied to the air around them, and which are air.
+void find_ground(const LiquidPass& pass, PressureGrid& finest) {
+  const GridShape& shape = pass.shape();
+  const LiquidCell* const cell = pass.memory.cell.data();
+  float inner[3];
+  for (int axis = 0; axis < 3; ++axis)
+    inner[axis] = pass.flat(axis) ? 0.0f : 1.0f / (pass.edge(axis) * pass.edge(axis));
+  each_row(pass, -1, [&](int c, int j, int k) {
+    const bool dry = is_dry(pass, -1, j, k);
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      if (dry) {
+        finest.ground[i] = 0.0f;
+        finest.is_air[i] = cell[i] == LiquidCell::air ? 1 : 0;
+        continue;
+      }
+      float ground = 0.0f;
+      if (cell[i] == LiquidCell::liquid) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const int step = shape.stride(axis);
+          const float *const open = pass.memory.open[axis].data(), *const steep =
+                                                                       pass.memory.steepness[axis].data();
+          if (cell[i - step] != LiquidCell::liquid) ground += inner[axis] * open[i] * steep[i];
+          if (cell[i + step] != LiquidCell::liquid) ground += inner[axis] * open[i + step] * steep[i + step];
+        }
+      }
+      finest.ground[i] = ground;
+      finest.is_air[i] = cell[i] == LiquidCell::air ? 1 : 0;
+    }
+  });
+}
+
 }  // namespace
 
 void find_open_faces(const LiquidPass& pass) {
@@ -266,31 +297,7 @@ void build_liquid_matrix(const LiquidPass& pass) {
     });
   }
   finest.full_face = axes > 0 ? full / float(axes) : 0.0f;
-  float inner[3];
-  for (int axis = 0; axis < 3; ++axis)
-    inner[axis] = pass.flat(axis) ? 0.0f : 1.0f / (pass.edge(axis) * pass.edge(axis));
-  each_row(pass, -1, [&](int c, int j, int k) {
-    const bool dry = is_dry(pass, -1, j, k);
-    for (int i = c; i < c + shape.cells[0]; ++i) {
-      if (dry) {
-        finest.ground[i] = 0.0f;
-        finest.is_air[i] = cell[i] == LiquidCell::air ? 1 : 0;
-        continue;
-      }
-      float ground = 0.0f;
-      if (cell[i] == LiquidCell::liquid) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const int step = shape.stride(axis);
-          const float *const open = pass.memory.open[axis].data(), *const steep =
-                                                                       pass.memory.steepness[axis].data();
-          if (cell[i - step] != LiquidCell::liquid) ground += inner[axis] * open[i] * steep[i];
-          if (cell[i + step] != LiquidCell::liquid) ground += inner[axis] * open[i + step] * steep[i + step];
-        }
-      }
-      finest.ground[i] = ground;
-      finest.is_air[i] = cell[i] == LiquidCell::air ? 1 : 0;
-    }
-  });
+  find_ground(pass, finest);
   build_pressure_levels(pass.kernels, pass.tasks, matrix);
   // Solids may enclose liquid that no air touches; without them all of the liquid touches air or none.
   matrix.has_pockets = pass.solids.present();
