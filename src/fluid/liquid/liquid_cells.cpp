@@ -168,7 +168,12 @@ void find_open_faces(const LiquidPass& pass) {
   const GridShape& shape = pass.shape();
   const GasSolids& solids = pass.solids;
   const bool has_distance = solids.present() && !solids.distance.empty();
-  if (pass.memory.has_open && !solids.present()) return;
+  bool same_sides = true;
+  for (int side = 0; side < 6; ++side) {
+    same_sides = same_sides && pass.memory.open_side[side] == pass.box().side[side];
+    pass.memory.open_side[side] = pass.box().side[side];
+  }
+  if (pass.memory.has_open && same_sides && !solids.present()) return;
   pass.memory.has_open = !solids.present();
   for (int axis = 0; axis < 3; ++axis) {
     float* const to = pass.memory.open[axis].data();
