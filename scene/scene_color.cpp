@@ -53,4 +53,8 @@ SceneColor resolved_soft_color(const Scene& scene, SoftKind kind, std::size_t in
   return given.value_or(automatic_color(BodyType::dynamic, place));
 }
 
+SceneColor resolved_fluid_color(const SceneFluid& fluid, FluidKind kind) {
+  return fluid.color.value_or(kind == FluidKind::gas ? kSmokeColor : kWaterColor);
+}
+
 }  // namespace gyre

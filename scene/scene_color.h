@@ -21,5 +21,8 @@ constexpr SceneColor kGroundColor{214, 216, 220};
 SceneColor resolved_color(const Scene& scene, std::size_t body, std::size_t shape);
 // Of rope, cloth or soft body number `index` of the scene: the colour that is given, else the automatic one.
 SceneColor resolved_soft_color(const Scene& scene, SoftKind kind, std::size_t index);
+// Of a fluid: the colour that is given, else that of pale smoke or of water.
+SceneColor resolved_fluid_color(const SceneFluid& fluid, FluidKind kind);
+constexpr SceneColor kSmokeColor{226, 224, 218}, kWaterColor{62, 134, 176};
 
 }  // namespace gyre

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -425,6 +426,63 @@ TEST_F(Render, AShapeCastsItsShadowAndGlassDoesNotHide) {
   const Pixels through = read_png(folder_ / "b.png");
   const std::size_t at = 3 * (32 * 64 + 32);
   EXPECT_GT(through.bytes[at], through.bytes[at + 2]);  // more of the box behind than of the wall before it
+}
+
+// Mean of the red, green and blue of a square of 8 pixels around a place.
+std::array<double, 3> color_around(const Pixels& picture, int x, int y) {
+  std::array<double, 3> sum{};
+  for (int row = y - 4; row < y + 4; ++row) {
+    for (int column = x - 4; column < x + 4; ++column) {
+      for (std::size_t k = 0; k < 3; ++k)
+        sum[k] += picture.bytes[3 * (std::size_t(row) * picture.width + std::size_t(column)) + k] / 64.0;
+    }
+  }
+  return sum;
+}
+
+// Dark smoke before a pale background; behind a body it is not seen.
+TEST_F(Render, SmokeTakesLightWhereItIs) {
+  const auto scene = [](const char* more) {
+    return std::string(R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0]}, "bodies": [)") + more +
+           R"(], "gases": [{"name": "room", "bounds": [[-1, -1, -1], [1, 1, 1]], "cells": [20, 20, 20], "color": "#202020",
+        "emitters": [{"position": [0, 0, 0], "radius": 0.4, "temperature": 293.15}]}]})";
+  };
+  write("smoke.gyre.json", scene(""));
+  write("wall.gyre.json",
+        scene(R"({"name": "wall", "type": "static", "position": [0, 0, 1.5], "color": "#ffffff",
+               "shapes": [{"type": "box", "half_extents": [0.5, 0.5, 0.1]}]})"));
+  for (const char* name : {"smoke", "wall"}) {
+    ASSERT_EQ(draw({std::string(name) + ".gyre.json", "--out", std::string(name) + ".png", "--at", "0.1",
+                    "--size", "96x96", "--samples", "4", "--camera", "0,0,6", "--look-at", "0,0,0"})
+                  .code,
+              0);
+  }
+  const Pixels smoke = read_png(folder_ / "smoke.png"), wall = read_png(folder_ / "wall.png");
+  EXPECT_LT(color_around(smoke, 48, 48)[0], 120.0);
+  EXPECT_GT(color_around(smoke, 86, 48)[0], 200.0);
+  EXPECT_GT(color_around(wall, 48, 48)[0], 150.0);
+}
+
+TEST_F(Render, AFlatGasIsAPictureAndALiquidASurface) {
+  write("flat.gyre.json", R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0]}, "gases": [
+    {"name": "sheet", "bounds": [[-1, -1, 0], [1, 1, 0.1]], "cells": [24, 24, 1], "color": "#ff0000",
+     "emitters": [{"position": [-0.5, 0, 0.05], "radius": 0.3, "temperature": 293.15}]}]})");
+  write("pool.gyre.json", R"({"gyre_scene": 1, "liquids": [
+    {"name": "pool", "bounds": [[-1, -1, -1], [1, 1, 1]], "cell_size": 0.1, "color": "#0000ff",
+     "fill": [{"box": [[-1, -1, -1], [1, 0, 1]]}]}]})");
+  for (const char* name : {"flat", "pool"}) {
+    ASSERT_EQ(draw({std::string(name) + ".gyre.json", "--out", std::string(name) + ".png", "--at", "0.1",
+                    "--size", "96x96", "--samples", "8", "--camera", "0,0,6", "--look-at", "0,0,0"})
+                  .code,
+              0);
+  }
+  const Pixels flat = read_png(folder_ / "flat.png"), pool = read_png(folder_ / "pool.png");
+  const std::array<double, 3> smoke = color_around(flat, 34, 48), clear = color_around(flat, 65, 48);
+  EXPECT_GT(smoke[0], smoke[2] + 100.0);
+  EXPECT_LT(clear[0], 60.0);
+  const std::array<double, 3> water = color_around(pool, 48, 60), air = color_around(pool, 48, 30);
+  EXPECT_GT(water[2], water[0] + 40.0);
+  EXPECT_LT(air[2], air[0] + 40.0);
 }
 
 TEST_F(Render, EverySceneOfTheRepositoryIsAPicture) {

@@ -153,6 +153,24 @@ EMSCRIPTEN_KEEPALIVE int gyre_scene_softs(Host* host) {
   return answer.done();
 }
 
+// Gases and liquids, in this order: how many, their ids, and of each its name and its colour as 0xrrggbb.
+EMSCRIPTEN_KEEPALIVE int gyre_scene_fluids(Host* host) {
+  Answer answer(host, 0);
+  const SceneRunner& runner = scene_of(host).runner;
+  std::vector<FluidId> ids;
+  for (const std::span<const FluidId> some : {runner.gases(), runner.liquids()})
+    ids.insert(ids.end(), some.begin(), some.end());
+  put_array(answer, std::span<const FluidId>(ids));
+  const auto put_looks = [&](const SceneFluid& fluid, FluidKind kind) {
+    put_text(answer, std::string_view(fluid.name));
+    const SceneColor color = resolved_fluid_color(fluid, kind);
+    answer.number(double(color.red << 16 | color.green << 8 | color.blue));
+  };
+  for (const SceneGas& gas : runner.scene().gases) put_looks(gas, FluidKind::gas);
+  for (const SceneLiquid& liquid : runner.scene().liquids) put_looks(liquid, FluidKind::liquid);
+  return answer.done();
+}
+
 // One step of the scene with its timed forces.
 EMSCRIPTEN_KEEPALIVE int gyre_scene_step(Host* host) {
   Answer answer(host, 0);

@@ -44,6 +44,8 @@ interface SceneJson {
   ropes?: unknown[];
   cloths?: unknown[];
   soft_bodies?: unknown[];
+  gases?: unknown[];
+  liquids?: unknown[];
 }
 
 const pictureOf = (file: string): string => file.replace(/\.gyre\.json$/, '.webp');
@@ -60,6 +62,8 @@ function list(): string {
       ropes: scene.ropes?.length ?? 0,
       cloths: scene.cloths?.length ?? 0,
       softBodies: scene.soft_bodies?.length ?? 0,
+      gases: scene.gases?.length ?? 0,
+      liquids: scene.liquids?.length ?? 0,
     };
   });
   return `${JSON.stringify({ scenes: entries }, null, 1)}\n`;

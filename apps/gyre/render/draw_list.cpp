@@ -1,6 +1,7 @@
 // A world as coloured triangles. See draw_list.h.
 #include "render/draw_list.h"
 
+#include "render/fluid_draw.h"
 #include "render/soft_mesh.h"
 #include "render/tube.h"
 #include "render/turning.h"
@@ -179,6 +180,7 @@ DrawList DrawListMaker::make(const Sight& sight, const Camera& camera, const Sub
   }
   for (const SeenLink& link : sight.links) add_link(link, sight.down, subject, list);
   for (const SeenSoft& soft : sight.softs) add_soft(sight, soft, subject, list);
+  for (const SeenFluid& fluid : sight.fluids) add_fluid(fluid, subject, list);
   if (subject.floor && list.ground.empty()) {
     add_plane(subject, {subject.origin.x, *subject.floor, subject.origin.z}, {0, 1, 0}, kGroundColor,
               Paint::floor, list);

@@ -1,10 +1,11 @@
-// Everything to draw at one moment: all shapes, links, ropes, cloths and solids as coloured triangles, placed relative to an origin near
+// Everything to draw at one moment: all shapes, links, ropes, cloths, solids and fluids as coloured triangles and smoke, placed relative to an origin near
 // the subject.
 #pragma once
 
 #include "render/camera.h"
 #include "render/shape_mesh.h"
 #include "render/sight.h"
+#include "render/smoke.h"
 
 #include <cstdint>
 #include <map>
@@ -18,10 +19,12 @@ namespace gyre {
 
 // How a vertex is painted.
 enum class Paint : std::uint8_t {
-  matter,  // shaded, casts shadows
-  ground,  // a plane of the world: with a grid, fading into the background
-  floor,   // put under a scene that has no plane: without a grid
-  sheet,   // one side of a cloth: as matter, but dull, and not to be seen from behind
+  matter,   // shaded, casts shadows
+  ground,   // a plane of the world: with a grid, fading into the background
+  floor,    // put under a scene that has no plane: without a grid
+  sheet,    // one side of a cloth: as matter, but dull, and not to be seen from behind
+  picture,  // shown as it is, whatever the light
+  water,    // the surface of a liquid: more or less to be seen through, the less the flatter it is looked at
 };
 
 struct DrawVertex {
@@ -33,8 +36,9 @@ struct DrawVertex {
 
 struct DrawList {
   std::vector<DrawVertex> vertices;
-  // Three a triangle. `glass` is what can be seen through; it casts no shadow, and neither does the ground.
-  std::vector<std::uint32_t> solid, glass, ground;
+  // Three a triangle. Only what is solid casts a shadow. `glass` is what can be seen through; `shadowless` are pictures and water.
+  std::vector<std::uint32_t> solid, glass, ground, shadowless;
+  std::vector<SmokeVolume> smoke;
 };
 
 // What the picture is of, which decides how fine shapes are and how far the ground reaches.

@@ -1,8 +1,10 @@
 // Draws a list of triangles. See renderer.h.
 #include "render/renderer.h"
 
+#include "render/gl_program.h"
 #include "render/light_samples.h"
 #include "render/shaders.h"
+#include "render/smoke_painter.h"
 #include "render/turning.h"
 
 #include <epoxy/gl.h>
@@ -25,31 +27,6 @@ constexpr float kGlassShare = 0.22f;  // of the samples show what can be seen th
 
 Vec3 light_of(const std::uint8_t (&color)[3]) {
   return {linear_light(color[0]), linear_light(color[1]), linear_light(color[2])};
-}
-
-std::string compile(GLuint program, GLenum kind, const char* text) {
-  const GLuint shader = glCreateShader(kind);
-  glShaderSource(shader, 1, &text, nullptr);
-  glCompileShader(shader);
-  GLint good = 0;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-  char log[512] = {};
-  if (!good) glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-  glAttachShader(program, shader);
-  glDeleteShader(shader);
-  return good ? std::string() : std::string("a shader is refused: ") + log;
-}
-
-GLuint make_program(const char* vertex, const char* pixel, std::string& error) {
-  const GLuint program = glCreateProgram();
-  error = compile(program, GL_VERTEX_SHADER, vertex);
-  if (error.empty()) error = compile(program, GL_FRAGMENT_SHADER, pixel);
-  if (!error.empty()) return program;
-  glLinkProgram(program);
-  GLint good = 0;
-  glGetProgramiv(program, GL_LINK_STATUS, &good);
-  if (!good) error = "the shaders cannot be linked";
-  return program;
 }
 
 // A depth texture to draw into and to compare with.
@@ -127,6 +104,7 @@ struct Renderer::Gl {
   GLuint vertex_array = 0, vertices = 0, indices = 0;
   ShadowMap sun_map, sky_map;
   std::optional<Vec3> sun;
+  SmokePainter smoke;
   std::vector<float> sums, sample;
 
   std::string create();
@@ -134,6 +112,8 @@ struct Renderer::Gl {
   void draw_shadows(const ShadowMap& map, const LightView& view, std::size_t solid) const;
   void set_scene(const Camera& camera, const Subject& subject) const;
   void draw_scene(const Mat4& clip, const LightView& sun_view, const LightView& sky_view) const;
+  void draw_smoke(const Mat4& clip, const Camera& camera, const Subject& subject, const LightView& sun_view,
+                  float chance) const;
   void add_sample();
   GLint place(const char* name) const { return glGetUniformLocation(scene_program, name); }
   void set(const char* name, float value) const { glUniform1f(place(name), value); }
@@ -151,6 +131,7 @@ std::string Renderer::Gl::create() {
   std::string error;
   shadow_program = make_program(kShadowVertexShader, kShadowPixelShader, error);
   if (error.empty()) scene_program = make_program(kSceneVertexShader, kScenePixelShader, error);
+  if (error.empty()) error = smoke.create();
   if (!error.empty()) return error;
   const bool large = std::int64_t(width) * height > 300'000;
   sun_map.create(large ? 2048 : 1024);
@@ -191,6 +172,7 @@ void Renderer::Gl::upload(const DrawList& list) {
                GL_STREAM_DRAW);
   std::vector<std::uint32_t> all = list.solid;
   all.insert(all.end(), list.ground.begin(), list.ground.end());
+  all.insert(all.end(), list.shadowless.begin(), list.shadowless.end());
   all.insert(all.end(), list.glass.begin(), list.glass.end());
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(all.size() * sizeof all[0]), all.data(), GL_STREAM_DRAW);
 }
@@ -242,16 +224,27 @@ void Renderer::Gl::draw_scene(const Mat4& clip, const LightView& sun_view, const
   glBindTexture(GL_TEXTURE_2D, sky_map.texture);
 }
 
-// Where nothing was drawn there is the background, from the bottom to the top of the picture as in the shader.
+// The more samples a picture has, the fewer slices each of them needs, as they lie elsewhere in each.
+void Renderer::Gl::draw_smoke(const Mat4& clip, const Camera& camera, const Subject& subject,
+                              const LightView& sun_view, float chance) const {
+  const SmokeLight light{0.8f * kSunColor, kSkyColor + 0.5f * kBounceColor, sun_view.map_from_world,
+                         sun_map.texture};
+  const int slices = std::clamp(256 / samples, 20, 96);
+  smoke.draw(clip, difference(camera.eye, subject.origin), -axes_of(camera).back, light, slices, chance);
+  glBindVertexArray(vertex_array);
+  glBindBuffer(GL_ARRAY_BUFFER, vertices);
+}
+
+// Where nothing was drawn, and behind smoke, there is the background, from the bottom to the top of the picture as in the shader.
 void Renderer::Gl::add_sample() {
   const Vec3 low = light_of(kBackgroundLow), high = light_of(kBackgroundHigh);
   for (int row = 0; row < height; ++row) {
     const Vec3 background = lerp(low, high, (float(row) + 0.5f) / float(height));
     const std::size_t first = 4 * std::size_t(row) * std::size_t(width);
     for (std::size_t k = first; k < first + 4 * std::size_t(width); k += 4) {
-      const bool drawn = sample[k + 3] > 0.0f;
+      const float clear = 1.0f - sample[k + 3];
       for (int part = 0; part < 3; ++part)
-        sums[k + std::size_t(part)] += drawn ? sample[k + std::size_t(part)] : background[part];
+        sums[k + std::size_t(part)] += sample[k + std::size_t(part)] + clear * background[part];
     }
   }
 }
@@ -296,6 +289,7 @@ Picture Renderer::draw(const DrawList& list, const Camera& camera, const Subject
   const float away = float(length(camera.eye - subject.origin));
   const ClipRange range{0.02f * away, away + 100.0f * subject.radius};
   gl.set_scene(camera, subject);
+  gl.smoke.set(list.smoke, *gl.sun);
   std::fill(gl.sums.begin(), gl.sums.end(), 0.0f);
   for (int i = 0; i < gl.samples; ++i) {
     const LightSample light = light_sample(i, gl.samples, *gl.sun);
@@ -306,10 +300,13 @@ Picture Renderer::draw(const DrawList& list, const Camera& camera, const Subject
     glBindFramebuffer(GL_FRAMEBUFFER, gl.target);
     glViewport(0, 0, gl.width, gl.height);
     glClear(GL_DEPTH_BUFFER_BIT | GL_COLOR_BUFFER_BIT);
-    gl.draw_scene(clip_matrix(camera, subject.origin, range, light.pixel_x, light.pixel_y), sun, sky);
-    std::size_t count = list.solid.size() + list.ground.size();
+    const Mat4 clip = clip_matrix(camera, subject.origin, range, light.pixel_x, light.pixel_y);
+    gl.draw_scene(clip, sun, sky);
+    gl.set("chance", light.chance);
+    std::size_t count = list.solid.size() + list.ground.size() + list.shadowless.size();
     if (light.chance < kGlassShare) count += list.glass.size();
     glDrawElements(GL_TRIANGLES, GLsizei(count), GL_UNSIGNED_INT, nullptr);
+    if (!gl.smoke.empty()) gl.draw_smoke(clip, camera, subject, sun, light.chance);
     glReadPixels(0, 0, gl.width, gl.height, GL_RGBA, GL_FLOAT, gl.sample.data());
     gl.add_sample();
   }

@@ -65,6 +65,7 @@ uniform float fade_near;  // m from the centre: where the ground begins to go ov
 uniform float fade_far;
 uniform vec3 grid_shift;  // of the world's grid against the origin, m
 uniform float grid_cell;  // m
+uniform float chance;     // 0 to 1, of this sample: what is to be seen through is drawn in some samples only
 
 // How much of a light reaches the place. The place is moved off its surface by more than a cell of the map, so that no
 // surface shadows itself. The maps of the samples are shifted against each other, which smooths the edges of their cells.
@@ -98,6 +99,10 @@ void main() {
     if (painted == 3u) discard;
     normal = -normal;
   }
+  if (painted == 4u) {
+    result = vec4(albedo, 1.0);
+    return;
+  }
   float towards_sun = max(dot(normal, sun_direction), 0.0);
   float towards_sky = max(dot(normal, sky_direction), 0.0);
   float sun = towards_sun > 0.0 ? towards_sun * reaches(sun_map, sun_from_world, sun_texel, normal, sun_direction) : 0.0;
@@ -105,13 +110,19 @@ void main() {
   float sky = towards_sky > 0.0 ? 2.0 * towards_sky * reaches(sky_map, sky_from_world, sky_texel, normal, sky_direction) : 0.0;
   vec3 light = sun * sun_color + sky * sky_color + (0.5 - 0.5 * normal.y) * bounce_color;
   vec3 color = albedo * light;
-  if (painted == 0u || painted == 3u) {
+  vec3 background = mix(background_low, background_high, gl_FragCoord.y / picture_height);
+  if (painted == 5u) {
+    // Reflected light by C. Schlick, "An inexpensive BRDF model for physically-based rendering", 1994.
+    float slant = pow(1.0 - clamp(dot(normal, normalize(eye - world_position)), 0.0, 1.0), 5.0);
+    if (chance > mix(0.68, 1.0, slant)) discard;
+    color = mix(color, background_high, 0.6 * slant);
+  }
+  if (painted == 0u || painted == 3u || painted == 5u) {
     vec3 half_way = normalize(sun_direction + normalize(eye - world_position));
     float gloss = pow(max(dot(normal, half_way), 0.0), 60.0);
     color += (painted == 3u ? 0.05 : 0.25) * gloss * (towards_sun > 0.0 ? sun / towards_sun : 0.0) * sun_color;
   } else {
     if (painted == 1u) color *= 1.0 - grid(world_position + grid_shift, normal);
-    vec3 background = mix(background_low, background_high, gl_FragCoord.y / picture_height);
     color = mix(color, background, smoothstep(fade_near, fade_far, distance(world_position, fade_center)));
   }
   result = vec4(color, 1.0);

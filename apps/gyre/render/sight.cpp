@@ -85,6 +85,7 @@ void look_at(const World& world, const Scene* scene, std::span<const BodyId> bod
   }
   look_at_links(world, scene, out);
   look_at_softs(world, scene, out);
+  out.fluids = look_at_fluids(world, scene);
 }
 
 }  // namespace gyre

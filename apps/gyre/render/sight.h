@@ -1,6 +1,7 @@
 // What there is to see at one moment, whether it comes from a world that is simulated or from a file.
 #pragma once
 
+#include "render/fluid_sight.h"
 #include "scene/scene.h"
 
 #include <gyre/geometry.h>
@@ -52,6 +53,7 @@ struct Sight {
   std::vector<SeenLink> links;
   std::vector<SeenSoft> softs;
   std::vector<DVec3> vertices;  // of the softs
+  std::vector<SeenFluid> fluids;
   Vec3 down{0, -1, 0};  // unit
 
   std::span<const SeenShape> shapes_of(const SeenBody& body) const {

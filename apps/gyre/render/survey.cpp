@@ -97,6 +97,7 @@ void Survey::look_at_moving(const Sight& sight) {
     }
   }
   for (const SeenSoft& soft : sight.softs) look_at_soft(soft, sight.vertices_of(soft));
+  for (const SeenFluid& fluid : sight.fluids) look_at_fluid(fluid);
   ends_.push_back(moving_.size());
   if (ends_.size() > kMaxMoments) thin_out();
 }
@@ -121,6 +122,16 @@ void Survey::look_at_soft(const SeenSoft& soft, std::span<const DVec3> vertices)
       lowest_ = min(lowest_, vertex->y - double(soft.radius));
     }
   }
+}
+
+// The corners of its box.
+void Survey::look_at_fluid(const SeenFluid& fluid) {
+  const DVec3 low = fluid.lower, high = fluid.upper();
+  for (int corner = 0; corner < 8; ++corner) {
+    moving_.push_back(
+        {{corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z}, 0.0f});
+  }
+  lowest_ = min(lowest_, low.y);
 }
 
 // Every other moment goes.

@@ -57,10 +57,11 @@ class Survey {
   void look_at_still(const Sight& sight);
   void look_at_moving(const Sight& sight);
   void look_at_soft(const SeenSoft& soft, std::span<const DVec3> vertices);
+  void look_at_fluid(const SeenFluid& fluid);
   void thin_out();
   std::vector<Ball> important() const;
 
-  std::vector<Ball> moving_;       // all bodies that move and ends of soft matter, at up to kMaxMoments moments
+  std::vector<Ball> moving_;  // all bodies that move and ends of soft matter, at up to kMaxMoments moments
   std::vector<std::size_t> ends_;  // of each moment, in moving_
   std::uint64_t every_ = 1;        // each so-manieth frame is kept
   std::vector<Ball> still_;

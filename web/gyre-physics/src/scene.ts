@@ -1,5 +1,5 @@
 // Scene files: the engine's own reader and runner.
-import { type BodyId, type JointId, type RecordOptions, type SoftId, type SteppingInput, type Vec3, writeStepping } from './generated.js';
+import { type BodyId, type FluidId, type JointId, type RecordOptions, type SoftId, type SteppingInput, type Vec3, writeStepping } from './generated.js';
 import type { Runtime } from './runtime.js';
 import type { Bytes, VectorInput } from './stream.js';
 import { type Recorder, World } from './world.js';
@@ -61,6 +61,11 @@ export class Scene extends World {
   readonly softColors: readonly number[];
   /** Of each of them: the vertices that it is held by. */
   readonly softHolds: readonly (readonly SceneHold[])[];
+  /** Gases and liquids, in this order; ids stay in their places when one is removed. */
+  readonly sceneFluids: readonly FluidId[];
+  readonly fluidNames: readonly string[];
+  /** Of each of them: its colour as 0xrrggbb. */
+  readonly fluidColors: readonly number[];
   /** Of each shape of each body, in the order of the scene: the name of its material, empty if it has none. */
   readonly materialNames: readonly (readonly string[])[];
   /** Of each shape of each body: its colour as 0xrrggbb. What the scene leaves open has a colour from a fixed cycle. */
@@ -108,6 +113,12 @@ export class Scene extends World {
     this.softNames = all.map(({ name }) => name);
     this.softColors = all.map(({ color }) => color);
     this.softHolds = all.map(({ holds }) => holds);
+    runtime.begin();
+    const fluids = runtime.call('gyre_scene_fluids', pointer);
+    this.sceneFluids = Array.from(fluids.array(Float64Array, 1));
+    const looksOfFluids = this.sceneFluids.map(() => ({ name: fluids.text(), color: fluids.number() }));
+    this.fluidNames = looksOfFluids.map(({ name }) => name);
+    this.fluidColors = looksOfFluids.map(({ color }) => color);
   }
 
   /** @internal */

@@ -61,6 +61,33 @@ export interface SoftDescription {
   color: number | null; // sRGB, 0xrrggbb; null: the page picks one
 }
 
+export type FluidKind = 'gas' | 'liquid';
+
+// A gas or a liquid: fields in a box of cells.
+export interface FluidDescription {
+  key: number; // another count than that of bodies, never used twice while the scene is open
+  name: string;
+  kind: FluidKind;
+  cells: Vec3;
+  box: Box; // relative to origin
+  flat: 0 | 1 | 2 | null; // the axis with one cell
+  color: number | null; // sRGB, 0xrrggbb, of smoke or liquid; null: the page picks one
+  smoky: boolean; // a gas in which there may be smoke or heat to see
+  extinction: number; // 1/m, of the thickest smoke
+}
+
+// The state of a fluid in a frame.
+export interface FluidState {
+  // Of a gas, 4 numbers a cell, x fastest, then y, then z: smoke, heat, light of the sun that is left, and speed where it is shown. 255 is the
+  // thickest smoke, the hottest emitter, all light, and `fastest`.
+  voxels: Uint8Array;
+  fastest: number; // m/s
+  // The surface of a liquid.
+  vertices: Float32Array; // 3 a vertex
+  normals: Float32Array; // 3 a vertex
+  indices: Uint32Array; // 3 a triangle, counter-clockwise seen from outside
+}
+
 // Those that commands change in the course of a run, and that are others again in its past.
 export interface RunSettings {
   gravity: Vec3;
@@ -103,13 +130,14 @@ export interface SceneDescription {
 }
 
 // Sent whenever bodies or soft matter came or went. Row i of every frame with this number belongs to keys[i], and the frame's
-// softVertices are those of softs[0], then those of softs[1], and so on.
+// softVertices are those of softs[0], then those of softs[1], and so on; its fluids are those of the structure.
 export interface Structure {
   number: number;
   keys: Uint32Array;
   added: BodyDescription[]; // those the page does not know yet, or knows differently
   surfaces: Surface[]; // likewise
   softs: SoftDescription[]; // all that there are
+  fluids: FluidDescription[]; // likewise
 }
 
 // --------------------------------------------------------------------------------------------------------------- what happens
@@ -132,6 +160,7 @@ export interface Stats {
   maxPenetration: number; // m
   softs: number; // ropes, cloths and solids
   softVertices: number;
+  fluids: number; // gases and liquids
 }
 
 export type OverlayName =
@@ -143,7 +172,10 @@ export type OverlayName =
   | 'mass'
   | 'joints'
   | 'velocities'
-  | 'hulls';
+  | 'hulls'
+  | 'flow'
+  | 'speed'
+  | 'particles';
 
 // Overlay data that only the engine knows, flat as the engine's tables are ("3 a point"), in the frame's coordinates. Present
 // when its switch is on.
@@ -165,12 +197,20 @@ export interface JointData {
   positions: Float32Array; // 1 a joint: rad or m
   motors: Float32Array; // 1 a joint: where its motor drives it, rad/s, m/s or the way that is left; 0 without
 }
+// The velocity of a fluid on a slice through its middle.
+export interface FlowData {
+  points: Float32Array; // 3 a point
+  velocities: Float32Array; // 3 a point: m/s
+  spacing: number; // m, between two points
+}
 export interface OverlayData {
   contacts?: ContactData;
   bounds?: Float32Array; // 6 a box: lower and upper corner
   tree?: { corners: Float32Array; depths: Uint8Array }; // 6 a box, 1 a box
   islands?: Int32Array; // one a body: its island or sleeping group, -1 if it has none
   joints?: JointData;
+  flow?: FlowData[]; // one a fluid
+  particles?: Float32Array; // 3 a particle, of all liquids
 }
 
 export interface Frame {
@@ -182,6 +222,7 @@ export interface Frame {
   velocities: Float32Array; // 6 a row: linear of the centre of mass, angular
   flags: Uint8Array; // BodyFlag a row
   softVertices: Float32Array; // 3 a vertex
+  fluids: FluidState[];
   stats: Stats;
   measured: boolean; // whether a world stands behind the numbers; without, only bodies are counted
   links: Float32Array; // rods, ropes and springs: 6 each, the anchors on a and on b
@@ -231,6 +272,8 @@ export type Command =
   | { do: 'grab_soft'; key: number; at: Vec3 } // its vertex that is nearest
   | { do: 'pull'; to: Vec3 }
   | { do: 'release' }
+  | { do: 'stir'; key: number; at: Vec3; velocity: Vec3 } // a gas around a place moves so, until the next command about it
+  | { do: 'still'; key: number } // nobody stirs it any more
   | { do: 'throw'; what: Throwable; size: number; density: number; from: Vec3; velocity: Vec3 }
   | { do: 'remove'; key: number }
   | { do: 'remove_soft'; key: number }

@@ -5,6 +5,7 @@ import { Box3, Vector3 } from 'three';
 import { Bodies } from './draw/bodies';
 import { BodyPainter } from './draw/body_painter';
 import { CameraRig } from './draw/camera_rig';
+import { Fluids } from './draw/fluids';
 import { Links } from './draw/links';
 import { Picker } from './draw/picker';
 import { Selection } from './draw/selection';
@@ -27,6 +28,7 @@ export class Viewer {
   readonly stage: Stage;
   readonly bodies: Bodies;
   readonly softs = new Softs(preferences.quality.peek());
+  readonly fluids: Fluids;
   readonly picker: Picker;
   readonly rig: CameraRig;
   readonly thrower: Thrower;
@@ -50,7 +52,8 @@ export class Viewer {
     this.stage = new Stage(holder);
     this.painter = new BodyPainter(this.stage.colors);
     this.bodies = new Bodies(this.stage.ground, this.painter, preferences.quality.peek());
-    this.stage.scene.add(this.bodies.group, this.softs.group, this.links.object);
+    this.fluids = new Fluids(preferences.quality.peek(), this.stage.colors);
+    this.stage.scene.add(this.bodies.group, this.softs.group, this.fluids.group, this.links.object);
     this.picker = new Picker(this.stage.camera, this.stage.renderer.domElement);
     this.selection = new Selection(this.bodies);
     this.stage.scene.add(this.selection.object);
@@ -73,6 +76,7 @@ export class Viewer {
       this.painter.theme = this.stage.colors;
       this.selection.setColor(this.stage.colors.selection);
       this.links.setColor(this.stage.colors.link);
+      this.fluids.setTheme(this.stage.colors);
       this.repaint();
     });
     effect(() => {
@@ -80,6 +84,7 @@ export class Viewer {
       this.stage.setQuality(quality);
       this.bodies.setQuality(quality);
       this.softs.setQuality(quality);
+      this.fluids.setQuality(quality);
       this.repaint();
     });
     effect(() => {
@@ -101,6 +106,7 @@ export class Viewer {
       overlay.clear();
     }
     this.painter.islands = names.has('islands');
+    this.fluids.setLook(names.has('speed'), !names.has('particles'));
     this.playback.overlays([...names]);
     this.repaint();
   }
@@ -117,6 +123,7 @@ export class Viewer {
     const scene = store.scene.peek()!;
     this.bodies.clear();
     this.softs.clear();
+    this.fluids.clear();
     this.history.clear();
     this.bounds = new Box3(new Vector3(...scene.bounds.low), new Vector3(...scene.bounds.high));
     this.bounds.getCenter(this.center);
@@ -132,6 +139,7 @@ export class Viewer {
     if (structure) {
       this.bodies.restructure(structure);
       this.softs.restructure(structure);
+      this.fluids.restructure(structure);
       this.selection.show(store.selected.peek());
       this.painted = false;
     }
@@ -158,6 +166,7 @@ export class Viewer {
     if (between && scene) {
       this.bodies.place(between.from, between.to, between.part);
       this.softs.place(between.from, between.to, between.part);
+      this.fluids.show(between.to);
       if (!this.painted) {
         this.painted = true;
         this.bodies.paint(between.to);

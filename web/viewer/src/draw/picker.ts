@@ -1,6 +1,7 @@
 // What lies under the pointer: a ray from the camera against what is drawn.
-import { type PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from 'three';
+import { Box3, type PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from 'three';
 import type { Bodies } from './bodies';
+import type { Fluids } from './fluids';
 import type { DrawnSoft, Softs } from './softs';
 
 const NEAR_A_ROPE = 0.012; // rad: a rope may be this far from the ray, for it is thin
@@ -16,6 +17,10 @@ export interface PickedSoft {
   key: number;
   point: Vector3;
   distance: number;
+}
+
+export interface PickedGas extends PickedSoft {
+  flat: boolean;
 }
 
 export class Picker {
@@ -55,6 +60,28 @@ export class Picker {
     for (const drawn of softs.toPick) {
       const hit = drawn.soft.kind === 'rope' ? this.onRope(drawn) : this.caster.intersectObject(drawn.mesh, false)[0];
       if (hit && hit.distance < (best?.distance ?? limit)) best = { key: drawn.soft.key, point: hit.point.clone(), distance: hit.distance };
+    }
+    return best;
+  }
+
+  // A gas whose box begins nearer than `limit`: in the middle of what the ray goes through of it, on the plane of a flat one.
+  pickGas(fluids: Fluids, x: number, y: number, limit = Infinity): PickedGas | null {
+    this.aim(x, y);
+    const { ray } = this.caster;
+    const [entry, exit] = [new Vector3(), new Vector3()];
+    let best: PickedGas | null = null;
+    for (const { kind, key, box, flat } of fluids.known) {
+      const solid = new Box3(new Vector3(...box.low), new Vector3(...box.high));
+      if (kind !== 'gas' || !ray.intersectBox(solid, entry)) continue;
+      const inside = solid.containsPoint(ray.origin);
+      const distance = inside ? 0 : entry.distanceTo(ray.origin);
+      if (distance >= (best?.distance ?? limit)) continue;
+      // The far side: from beyond it back.
+      const back = ray.clone();
+      back.origin.copy(ray.at(distance + 4 * solid.getSize(new Vector3()).length(), new Vector3()));
+      back.direction.negate();
+      if (!back.intersectBox(solid, exit)) continue;
+      best = { key, flat: flat !== null, point: (inside ? ray.origin : entry).clone().lerp(exit, 0.5), distance };
     }
     return best;
   }

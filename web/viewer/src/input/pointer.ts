@@ -1,10 +1,11 @@
-// The hand. On a body that can move, and on ropes, cloths and solids, it pulls; a click without moving selects; everywhere else it is the
-// camera's.
+// The hand. On a body that can move, and on ropes, cloths and solids, it pulls; a flat gas it stirs, with Alt any gas; a click without moving
+// selects; everywhere else it is the camera's.
 import { Vector3 } from 'three';
 import { BodyFlag, type Command } from '../protocol';
 import * as store from '../state/store';
 import type { Surroundings } from './surroundings';
 
+const PAUSE = 80; // ms without motion, after which nothing is stirred
 const CLICK = 5; // pixels that a click may move
 
 interface Press {
@@ -14,6 +15,7 @@ interface Press {
   key: number | null; // of a body
   soft: number | null;
   grabbed: Vector3 | null; // where in the scene something was taken hold of
+  stirred: { key: number; at: Vector3; since: number; moving: boolean } | null; // a gas: where and when (ms) the hand was last
 }
 
 export class Pointer {
@@ -46,13 +48,45 @@ export class Pointer {
     if (this.touches.size > 1) return this.letGo();
     if (event.button !== 0 || !frame) return;
     const { key, soft, hold } = this.under(event.clientX, event.clientY);
-    this.press = { id: event.pointerId, x: event.clientX, y: event.clientY, key, soft, grabbed: null };
+    this.press = { id: event.pointerId, x: event.clientX, y: event.clientY, key, soft, grabbed: null, stirred: null };
+    if (!hold && !event.shiftKey && !event.ctrlKey && !event.metaKey && this.beginStirring(event)) return;
     if (!hold || event.ctrlKey || event.metaKey || event.shiftKey) return;
     this.press.grabbed = new Vector3(...hold.at);
     viewer.rig.controls.enabled = false;
     viewer.stage.renderer.domElement.setPointerCapture(event.pointerId);
     viewer.stage.renderer.domElement.style.cursor = 'grabbing';
     viewer.playback.command(hold);
+  }
+
+  // True if there is a gas to be stirred.
+  private beginStirring(event: PointerEvent): boolean {
+    const { viewer } = this;
+    if (store.scene.peek()?.live !== true || viewer.fluids.known.length === 0) return false;
+    const body = viewer.picker.pick(viewer.bodies, event.clientX, event.clientY);
+    const gas = viewer.picker.pickGas(viewer.fluids, event.clientX, event.clientY, body?.distance);
+    if (!gas || !(gas.flat || event.altKey)) return false;
+    this.press!.stirred = { key: gas.key, at: gas.point, since: performance.now(), moving: false };
+    viewer.rig.controls.enabled = false;
+    viewer.stage.renderer.domElement.setPointerCapture(event.pointerId);
+    return true;
+  }
+
+  // The gas moves as the hand does.
+  private stir(stirred: NonNullable<Press['stirred']>): void {
+    const now = performance.now();
+    const to = this.viewer.picker.onPlaneThrough(stirred.at, this.at.x, this.at.y);
+    const seconds = (now - stirred.since) / 1000;
+    if (!to || !(seconds > 0)) return;
+    const velocity = to.clone().sub(stirred.at).divideScalar(Math.max(seconds, 1 / 60));
+    this.viewer.playback.command({ do: 'stir', key: stirred.key, at: to.toArray(), velocity: velocity.toArray() });
+    Object.assign(stirred, { at: to, since: now, moving: true });
+  }
+
+  private stopStirring(): void {
+    const stirred = this.press?.stirred;
+    if (!stirred?.moving) return;
+    stirred.moving = false;
+    this.viewer.playback.command({ do: 'still', key: stirred.key });
   }
 
   // The body or soft matter under the pointer, and how to take hold of it.
@@ -92,6 +126,7 @@ export class Pointer {
 
   private letGo(): void {
     if (this.press?.grabbed) this.viewer.playback.command({ do: 'release' });
+    this.stopStirring();
     this.press = null;
     this.viewer.rig.controls.enabled = true;
     this.viewer.stage.renderer.domElement.style.cursor = '';
@@ -99,12 +134,16 @@ export class Pointer {
 
   // Once a picture: the body follows the pointer in the plane in which it was taken, whatever the camera does meanwhile.
   update(): void {
+    const stirred = this.press?.stirred;
+    if (stirred && !this.at.fresh && performance.now() - stirred.since > PAUSE) this.stopStirring();
     if (!this.at.fresh) return;
     this.at.fresh = false;
     const { viewer } = this;
     if (this.press?.grabbed) {
       const to = viewer.picker.onPlaneThrough(this.press.grabbed, this.at.x, this.at.y);
       if (to) viewer.playback.command({ do: 'pull', to: to.toArray() });
+    } else if (stirred) {
+      this.stir(stirred);
     } else if (this.touches.size === 0) {
       this.hover();
     }

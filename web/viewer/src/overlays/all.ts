@@ -1,12 +1,15 @@
 // Every overlay there is, in the order of the panel.
 import { Bounds } from './bounds';
 import { Contacts } from './contacts';
+import { Flow } from './flow';
 import { Friction } from './friction';
 import { Hulls } from './hulls';
 import { Islands } from './islands';
 import { Joints } from './joints';
 import { Mass } from './mass';
 import type { OverlayKind } from './overlay';
+import { Particles } from './particles';
+import { Speed } from './speed';
 import { Tree } from './tree';
 import { Velocities } from './velocities';
 
@@ -20,4 +23,7 @@ export const overlayKinds: readonly OverlayKind[] = [
   { name: 'joints', label: 'Joint frames', hint: 'anchors, axes, and gaps in pink', key: '7', make: () => new Joints() },
   { name: 'velocities', label: 'Velocities', hint: 'linear (blue), angular (pink)', key: '8', make: () => new Velocities() },
   { name: 'hulls', label: 'Collision shapes', hint: 'what really collides, as wire', key: '9', make: () => new Hulls() },
+  { name: 'flow', label: 'Flow', hint: 'velocity of fluids on a slice', key: 'v', fluid: true, make: () => new Flow() },
+  { name: 'speed', label: 'Speed of gases', hint: 'on a slice, from still (blue) to fast (red)', key: 'x', fluid: true, make: () => new Speed() },
+  { name: 'particles', label: 'Particles of liquids', hint: 'instead of the surface', key: 'l', fluid: true, make: () => new Particles() },
 ];

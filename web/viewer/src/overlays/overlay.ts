@@ -23,5 +23,6 @@ export interface OverlayKind {
   label: string;
   hint: string;
   key: string; // on the keyboard
+  fluid?: boolean; // only of use where there are gases or liquids
   make: () => Overlay;
 }

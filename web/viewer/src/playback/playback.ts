@@ -167,9 +167,9 @@ export class Playback {
     await this.sendAndWait(() => this.client.request('seek', { step }), true);
   }
 
-  // While a body is pulled, only the newest place matters.
+  // While a body is pulled or a gas stirred, only the newest place matters.
   command(command: Command): void {
-    if (command.do === 'pull' && this.commands.at(-1)?.do === 'pull') this.commands.pop();
+    if ((command.do === 'pull' || command.do === 'stir') && this.commands.at(-1)?.do === command.do) this.commands.pop();
     this.commands.push(command);
     this.pump();
   }

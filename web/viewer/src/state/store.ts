@@ -17,6 +17,8 @@ export interface SceneEntry {
   ropes: number;
   cloths: number;
   softBodies: number;
+  gases: number;
+  liquids: number;
 }
 
 export interface Notice {

@@ -7,6 +7,7 @@ import { IconButton } from './parts';
 
 const HAND: [string, string][] = [
   ['Drag a body', 'pull it, as with a spring'],
+  ['Drag in a flat gas', 'stir it; with Alt any gas'],
   ['Drag beside it', 'turn the view (right button or two fingers: shift it)'],
   ['Wheel or pinch', 'nearer, farther'],
   ['Click', 'select a body and ask why it is awake'],

@@ -1,6 +1,7 @@
 // What to draw over the scene, how to colour it, how well to draw it.
 import type { JSX } from 'preact';
 import { overlayKinds } from '../overlays/all';
+import type { OverlayKind } from '../overlays/overlay';
 import * as preferences from '../state/preferences';
 import * as store from '../state/store';
 import { Section, Segments, Switch } from './parts';
@@ -8,13 +9,15 @@ import { Section, Segments, Switch } from './parts';
 // What poses alone are enough for.
 const OF_POSES = new Set(['hulls']);
 
+const shown = ({ fluid }: OverlayKind): boolean => !fluid || (store.stats.value?.fluids ?? 0) > 0;
+
 export function OverlaysPanel(): JSX.Element {
   const { overlays, colorBy, quality } = preferences;
   const missing = store.scene.value?.posesOnly ?? '';
   return (
     <>
       <Section title="Draw" {...(missing ? { note: `Only poses are known (${missing}). Contacts, trees and forces need a recording with commands, or the scene itself.` } : {})}>
-        {overlayKinds.map(({ name, label, hint, key }) => (
+        {overlayKinds.filter(shown).map(({ name, label, hint, key }) => (
           <Switch
             key={name}
             label={label}

@@ -71,12 +71,14 @@ export function SceneDrawer({ viewer }: { viewer: Viewer }): JSX.Element | null 
 }
 
 // "3 bodies, 1 rope": the bodies, and whatever else there is.
-function contents({ bodies, joints, ropes, cloths, softBodies }: store.SceneEntry): string {
+function contents({ bodies, joints, ropes, cloths, softBodies, gases, liquids }: store.SceneEntry): string {
   const told = [
     joints > 0 && plural(joints, 'joint'),
     ropes > 0 && plural(ropes, 'rope'),
     cloths > 0 && plural(cloths, 'cloth'),
     softBodies > 0 && plural(softBodies, 'soft body', 'soft bodies'),
+    gases > 0 && plural(gases, 'gas', 'gases'),
+    liquids > 0 && plural(liquids, 'liquid'),
   ].filter((words) => words !== false);
   return [plural(bodies, 'body', 'bodies'), ...told].join(', ');
 }

@@ -1,10 +1,11 @@
 // A scene that is simulated here: steps, commands, the way back, settings, and what the page is told after each.
-import { BroadPhaseKind, type Gyre, IntegratorKind, type Scene, SolverKind, type BodyId, type SoftId } from 'gyre-physics';
+import { BroadPhaseKind, type Gyre, IntegratorKind, type Scene, SolverKind, type BodyId, type FluidId, type SoftId } from 'gyre-physics';
 import type {
   BodyDescription,
   BodyReport,
   Box,
   Command,
+  FluidDescription,
   FrameMessage,
   NewWorldSettings,
   OverlayName,
@@ -19,6 +20,7 @@ import type {
 import { Describer } from './describe';
 import { engineWords } from './engine';
 import { extent } from './extent';
+import { corners, FluidReader } from './fluids';
 import { Hand } from './hand';
 import { Keys, worldPart } from './keys';
 import { Looks } from './looks';
@@ -53,6 +55,7 @@ export class LiveSession implements Session {
   private readonly looks: Looks;
   private readonly keys = new Keys();
   private readonly softKeys = new Keys();
+  private readonly fluidKeys = new Keys();
   private readonly past = new Past();
   private readonly hand = new Hand();
   private readonly describer: Describer;
@@ -61,6 +64,8 @@ export class LiveSession implements Session {
   private ids = new Float64Array(0);
   private types = new Uint8Array(0);
   private softIds = new Float64Array(0);
+  private fluidIds = new Float64Array(0);
+  private readonly fluids: FluidReader;
   private structure = 0;
   private readonly sent = new Set<number>(); // keys of bodies that the page knows
   private appliedHere = 0; // how many of the commands at this step have been done
@@ -79,9 +84,11 @@ export class LiveSession implements Session {
     this.looks = new Looks(source.json, this.scene);
     this.describer = new Describer(gyre);
     this.origin = this.middle();
+    this.fluids = new FluidReader(this.origin);
     this.settings = this.readSettings(threads, asked.simdWidth ?? 0);
     this.scene.sceneBodies.forEach((id) => this.keys.key(id));
     this.scene.sceneSofts.forEach((id) => this.softKeys.key(id));
+    this.scene.sceneFluids.forEach((id) => this.fluidKeys.key(id));
     this.past.keep({ step: 0, bytes: this.scene.saveSnapshot(), hand: null });
   }
 
@@ -160,7 +167,8 @@ export class LiveSession implements Session {
     const { ids, poses } = readRows(this.scene, this.origin);
     const bodies = Array.from(ids, (id) => this.describer.body(this.scene, id, 0, ''));
     const soft = readSoftVertices(this.scene, this.scene.softs(), this.origin);
-    return extent(bodies, poses, (surface) => this.describer.vertices(surface), soft);
+    const fluids = Array.from(this.scene.fluids().slice(), (id) => this.describeFluid(id).box);
+    return extent(bodies, poses, (surface) => this.describer.vertices(surface), Float32Array.from([...soft, ...corners(fluids)]));
   }
 
   // -------------------------------------------------------------------------------------------------------------- going on
@@ -186,6 +194,7 @@ export class LiveSession implements Session {
     this.past.cut(this.step);
     this.keys.keepOnly(this.scene.bodies().ids);
     this.softKeys.keepOnly(this.scene.softs());
+    this.fluidKeys.keepOnly(this.scene.fluids());
     for (const key of this.thrown.keys()) {
       if (!this.keys.has(key)) this.thrown.delete(key);
     }
@@ -237,6 +246,9 @@ export class LiveSession implements Session {
           return this.hand.pull(scene, this.inWorld(command.to));
         case 'release':
           return this.hand.release(scene);
+        case 'stir':
+        case 'still':
+          return this.stir(this.fluidKeys.id(command.key, world), command);
         case 'throw':
           return this.throw(command);
         case 'remove':
@@ -263,7 +275,7 @@ export class LiveSession implements Session {
 
   // As ids of this world carry it; 0 if there is nothing in the world.
   private worldNumber(): number {
-    return worldPart(this.scene.bodies().ids[0] ?? this.scene.softs()[0] ?? 0);
+    return worldPart(this.scene.bodies().ids[0] ?? this.scene.softs()[0] ?? this.scene.fluids()[0] ?? 0);
   }
 
   // Vertices that the scene holds stay held; the hand is strong enough for the bodies that hang there.
@@ -274,6 +286,12 @@ export class LiveSession implements Session {
     const loads = new Set(holds.map(({ body }) => body).filter((body) => body >= 0));
     const load = [...loads].reduce((sum, body) => sum + scene.massProperties(scene.sceneBodies[body]!).mass, 0);
     this.hand.grabSoft(scene, id, this.inWorld(at), new Set(holds.map(({ vertex }) => vertex)), load);
+  }
+
+  private stir(id: FluidId, command: Extract<Command, { do: 'stir' | 'still' }>): void {
+    if (!id || !this.scene.fluidExists(id)) return;
+    if (command.do === 'stir') this.fluids.stir(this.scene, id, this.inWorld(command.at), command.velocity);
+    else this.fluids.still(this.scene, id);
   }
 
   // What sleeps does not feel gravity change by itself.
@@ -315,7 +333,8 @@ export class LiveSession implements Session {
     const { scene } = this;
     const rows = readRows(scene, this.origin);
     const softIds = scene.softs().slice();
-    const structure = this.restructure(rows.ids, softIds, fresh);
+    const fluidIds = scene.fluids().slice();
+    const structure = this.restructure(rows.ids, softIds, fluidIds, fresh);
     return {
       frame: {
         step: this.step,
@@ -326,6 +345,7 @@ export class LiveSession implements Session {
         velocities: rows.velocities,
         flags: readFlags(scene, rows.ids, this.types),
         softVertices: readSoftVertices(scene, softIds, this.origin),
+        fluids: Array.from(fluidIds, (id) => this.fluids.read(scene, id, this.overlays.has('speed'))),
         stats: readStats(scene, this.stepMs),
         measured: true,
         links: readLinks(scene, this.origin),
@@ -337,11 +357,12 @@ export class LiveSession implements Session {
     };
   }
 
-  private restructure(ids: Float64Array, softIds: Float64Array, fresh: boolean): Structure | null {
-    if (equal(ids, this.ids) && equal(softIds, this.softIds) && !fresh) return null;
+  private restructure(ids: Float64Array, softIds: Float64Array, fluidIds: Float64Array, fresh: boolean): Structure | null {
+    if (equal(ids, this.ids) && equal(softIds, this.softIds) && equal(fluidIds, this.fluidIds) && !fresh) return null;
     if (fresh) this.sent.clear();
     this.ids = ids as Float64Array<ArrayBuffer>;
     this.softIds = softIds as Float64Array<ArrayBuffer>;
+    this.fluidIds = fluidIds as Float64Array<ArrayBuffer>;
     this.types = Uint8Array.from(ids, (id) => this.scene.type(id));
     this.structure++;
     const keys = Uint32Array.from(ids, (id) => this.keys.key(id));
@@ -352,12 +373,18 @@ export class LiveSession implements Session {
       added.push(this.describeBody(ids[row]!, key));
     });
     const softs = Array.from(softIds, (id) => this.describeSoft(id));
-    return { number: this.structure, keys, added, surfaces: this.describer.takeSurfaces(), softs };
+    return { number: this.structure, keys, added, surfaces: this.describer.takeSurfaces(), softs, fluids: Array.from(fluidIds, (id) => this.describeFluid(id)) };
   }
 
   private describeSoft(id: SoftId): SoftDescription {
     const key = this.softKeys.key(id);
     return describeSoft(this.scene, id, { key, name: this.softName(id, key), color: this.scene.softColors[key] ?? null });
+  }
+
+  private describeFluid(id: FluidId): FluidDescription {
+    const key = this.fluidKeys.key(id);
+    const color = this.scene.fluidColors[key] ?? null;
+    return this.fluids.describe(this.scene, id, { key, name: this.scene.fluidNames[key] ?? `fluid ${key + 1}`, color });
   }
 
   private softName(id: SoftId, key: number): string {

@@ -1,8 +1,9 @@
 // The world of a recording, for what its poses do not tell: contacts, forces, trees, islands, joints, masses, energies. A recording
 // that also holds commands is simulated again beside its track, to the last bit; one that holds poses only has no such world.
 import type { Gyre, Replay, World } from 'gyre-physics';
-import type { BodyDescription, BodyReport, OverlayData, OverlayName, SoftReport, Stats, Vec3 } from '../protocol';
-import { placeOf, worldPart } from './keys';
+import type { BodyDescription, BodyReport, FluidDescription, FluidState, OverlayData, OverlayName, SoftReport, Stats, Vec3 } from '../protocol';
+import { FluidReader } from './fluids';
+import { placeOf, slotOf, worldPart } from './keys';
 import type { PoseFrame } from './poses';
 import { reportOnSoft } from './softs';
 import type { WorldAtFrame, WorldBehind } from './world_behind';
@@ -25,6 +26,7 @@ export class ReplayedWorld implements WorldBehind {
   private readonly firstStep: number;
   private readonly world: World;
   private stepMs = 0; // of the last way here, a step
+  private readonly fluids: FluidReader;
 
   private constructor(
     private readonly gyre: Gyre,
@@ -32,6 +34,7 @@ export class ReplayedWorld implements WorldBehind {
     private readonly origin: Vec3,
   ) {
     this.world = replay.world();
+    this.fluids = new FluidReader(origin);
     this.world.setTiming(true);
     this.firstStep = Number(this.world.stepCount());
   }
@@ -58,7 +61,7 @@ export class ReplayedWorld implements WorldBehind {
     const own = world?.bodies().ids;
     if (!world || !own || own.length !== frame.ids.length) return null;
     if (!own.every((id, row) => placeOf(id) === frame.ids[row])) return null;
-    return new WorldAtStep(this.gyre, world, this.origin, frame.ids, this.stepMs);
+    return new WorldAtStep(this.gyre, world, this.origin, frame.ids, this.stepMs, this.fluids);
   }
 
   // The world after so many steps (as it counts them itself); null where the commands end before, or the way there is long and
@@ -95,6 +98,7 @@ class WorldAtStep implements WorldAtFrame {
     private readonly origin: Vec3,
     private readonly ids: ArrayLike<number>,
     private readonly stepMs: number,
+    private readonly fluidReader: FluidReader,
   ) {}
 
   velocities(): Float32Array {
@@ -111,6 +115,16 @@ class WorldAtStep implements WorldAtFrame {
 
   overlays(names: ReadonlySet<OverlayName>): OverlayData {
     return readOverlays(this.world, names, this.origin);
+  }
+
+  fluids(): FluidDescription[] {
+    const describe = (id: number): FluidDescription =>
+      this.fluidReader.describe(this.world, id, { key: placeOf(id), name: `fluid ${slotOf(id) + 1}`, color: null });
+    return Array.from(this.world.fluids().slice(), describe);
+  }
+
+  fluidStates(speeds: boolean): FluidState[] {
+    return Array.from(this.world.fluids().slice(), (id) => this.fluidReader.read(this.world, id, speeds));
   }
 
   mass(id: number): Pick<BodyDescription, 'mass' | 'centerOfMass' | 'inertia'> {

@@ -7,6 +7,7 @@ import {
   type Box,
   type Command,
   type DoubleVec3,
+  type FluidDescription,
   type FrameMessage,
   type NewWorldSettings,
   type OverlayName,
@@ -26,10 +27,10 @@ import type { WorldAtFrame, WorldBehind } from './world_behind';
 
 const NO_STATS: Stats = {
   stepMs: 0, stageMs: [], bodies: 0, awake: 0, pairs: 0, touching: 0, contactPoints: 0, kinetic: 0, potential: 0, elastic: 0,
-  linear: [0, 0, 0], angular: [0, 0, 0], maxPenetration: 0, softs: 0, softVertices: 0,
+  linear: [0, 0, 0], angular: [0, 0, 0], maxPenetration: 0, softs: 0, softVertices: 0, fluids: 0,
 };
 
-const NEEDS_WORLD: ReadonlySet<OverlayName> = new Set<OverlayName>(['contacts', 'friction', 'bounds', 'tree', 'islands', 'mass', 'joints', 'velocities']);
+const NEEDS_WORLD: ReadonlySet<OverlayName> = new Set<OverlayName>(['contacts', 'friction', 'bounds', 'tree', 'islands', 'mass', 'joints', 'velocities', 'flow', 'speed', 'particles']);
 
 // What `gyre simulate` writes down beside the poses.
 interface SceneNote {
@@ -44,6 +45,7 @@ export class TrackSession implements Session {
   private readonly sent = new Map<number, number>(); // key to model, as the page knows it
   private set = -1;
   private structure = 0;
+  private fluids: FluidDescription[] = []; // as the world behind had them last
   private overlays: ReadonlySet<OverlayName> = new Set();
   private weighed = false; // whether the page has been told the masses
 
@@ -127,6 +129,7 @@ export class TrackSession implements Session {
         velocities: world ? world.velocities() : new Float32Array(6 * count),
         flags,
         softVertices: softVertices.slice(),
+        fluids: world ? world.fluidStates(this.overlays.has('speed')) : [],
         stats: world ? world.stats() : { ...NO_STATS, bodies: count, awake: awakeCount, softs: softIds.length, softVertices: softVertices.length / 3 },
         measured: world !== null,
         links: world ? world.links() : new Float32Array(0),
@@ -145,7 +148,10 @@ export class TrackSession implements Session {
   private restructure(world: WorldAtFrame | null, fresh: boolean): Structure | null {
     const { ids, models, set } = this.at;
     const weigh = world !== null && !this.weighed;
-    if (set === this.set && !fresh && !weigh) return null;
+    const fluids = world ? world.fluids() : this.fluids;
+    const sameFluids = fluids.length === this.fluids.length && fluids.every(({ key }, i) => key === this.fluids[i]!.key);
+    if (set === this.set && !fresh && !weigh && sameFluids) return null;
+    this.fluids = fluids;
     this.set = set;
     if (fresh || weigh) this.sent.clear();
     this.weighed = world !== null;
@@ -157,7 +163,7 @@ export class TrackSession implements Session {
       this.sent.set(key, model);
       added.push({ ...this.describeBody(ids[row]!, key, model), ...(world ? world.mass(ids[row]!) : {}) });
     });
-    return { number: ++this.structure, keys, added, surfaces: this.source.takeSurfaces(), softs: this.describeSofts() };
+    return { number: ++this.structure, keys, added, surfaces: this.source.takeSurfaces(), softs: this.describeSofts(), fluids };
   }
 
   private describeSofts(): SoftDescription[] {

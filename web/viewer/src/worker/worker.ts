@@ -40,7 +40,9 @@ const handlers: Handlers = {
 function handedOver(answer: unknown): Transferable[] {
   const message = (answer as { frame?: unknown } | null)?.frame;
   const frame = (message && typeof message === 'object' && 'frame' in message ? (message as FrameMessage).frame : message) as FrameMessage['frame'] | undefined;
-  return frame?.poses ? ([frame.poses, frame.velocities, frame.flags, frame.softVertices].map(({ buffer }) => buffer) as ArrayBuffer[]) : [];
+  if (!frame?.poses) return [];
+  const fluids = frame.fluids.flatMap(({ voxels, vertices, normals, indices }) => [voxels, vertices, normals, indices]);
+  return [frame.poses, frame.velocities, frame.flags, frame.softVertices, ...fluids].map(({ buffer }) => buffer) as ArrayBuffer[];
 }
 
 let last: Promise<void> = Promise.resolve();

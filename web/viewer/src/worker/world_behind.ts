@@ -1,6 +1,6 @@
 // What stands behind the poses of a recording, for what they do not tell: contacts, forces, trees, islands, joints, masses, energies.
 // The engine in the page has it where the file holds commands (replayed_world.ts); otherwise there is none, and a word why.
-import type { BodyDescription, BodyReport, OverlayData, OverlayName, SoftReport, Stats } from '../protocol';
+import type { BodyDescription, BodyReport, FluidDescription, FluidState, OverlayData, OverlayName, SoftReport, Stats } from '../protocol';
 import type { PoseFrame } from './poses';
 
 // The world at one frame, good until the next one is asked for.
@@ -9,6 +9,8 @@ export interface WorldAtFrame {
   stats(): Stats;
   links(): Float32Array;
   overlays(names: ReadonlySet<OverlayName>): OverlayData;
+  fluids(): FluidDescription[];
+  fluidStates(speeds: boolean): FluidState[]; // of fluids(); `speeds`: wanted beside the smoke
   mass(id: number): Pick<BodyDescription, 'mass' | 'centerOfMass' | 'inertia'>;
   report(row: number, key: number, nameOf: (id: number) => string): BodyReport;
   softReport(id: number, key: number, name: string): SoftReport | null; // null if it is not there

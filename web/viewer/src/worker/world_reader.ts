@@ -3,6 +3,7 @@
 import { BodyType, BoxKind, ContactState, type Gyre, JointKind, kNoIsland, type BodyId, type World } from 'gyre-physics';
 import { BodyFlag, type BodyReport, type DoubleVec3, type OverlayData, type OverlayName, type Quat, type Stats, type Vec3 } from '../protocol';
 import { typeName } from './describe';
+import { readFlow, readParticles } from './fluids';
 import { slotOf } from './keys';
 
 export interface Rows {
@@ -61,6 +62,7 @@ export function readStats(world: World, stepMs: number): Stats {
     maxPenetration: world.maxPenetration(),
     softs: counts.softs,
     softVertices: counts.softVertices,
+    fluids: world.fluids().length,
   };
 }
 
@@ -120,6 +122,8 @@ export function readOverlays(world: World, names: ReadonlySet<OverlayName>, orig
       ),
     };
   }
+  if (names.has('flow')) data.flow = readFlow(world, origin);
+  if (names.has('particles')) data.particles = readParticles(world, origin);
   return data;
 }
 

@@ -1,0 +1,106 @@
+// Gases and liquids as they are seen. See fluid_sight.h.
+#include "render/fluid_sight.h"
+
+#include "scene/scene_color.h"
+
+#include <algorithm>
+
+namespace gyre {
+namespace {
+
+// What 255 stands for.
+struct VoxelScales {
+  float smoke = 0.0f;    // kg/m^3
+  float ambient = 0.0f;  // K
+  float heat = 0.0f;     // K above it
+};
+
+// Nothing in a gas is thicker or hotter than what it began with and what its emitters give.
+VoxelScales scales_of(const GasDef& gas) {
+  constexpr float kRounding = 1e-3f;  // K
+  VoxelScales out;
+  out.ambient = gas.ambient_temperature;
+  float hottest = out.ambient;
+  for (const FluidEmitter& emitter : gas.emitters) {
+    out.smoke = max(out.smoke, emitter.density);
+    hottest = max(hottest, emitter.temperature);
+  }
+  if (gas.fields) {
+    for (const float density : gas.fields->density) out.smoke = max(out.smoke, density);
+    for (const float temperature : gas.fields->temperature) hottest = max(hottest, temperature);
+  }
+  if (hottest - out.ambient > kRounding) out.heat = hottest - out.ambient;
+  return out;
+}
+
+std::vector<float> read_field(const World& world, FluidId id, FluidField field) {
+  std::vector<float> out(world.fluid_field(id, field, {}));
+  world.fluid_field(id, field, out);
+  return out;
+}
+
+void put_field(const std::vector<float>& field, float zero, float full, std::uint8_t Voxel::*part,
+               std::vector<Voxel>& voxels) {
+  for (std::size_t i = 0; i < min(field.size(), voxels.size()); ++i) {
+    voxels[i].*part = std::uint8_t(255.0f * std::clamp((field[i] - zero) / full, 0.0f, 1.0f) + 0.5f);
+  }
+}
+
+void look_at_gas(const World& world, FluidId id, const VoxelScales& scales, SeenFluid& out) {
+  out.smoky = scales.smoke > 0.0f || scales.heat > 0.0f;
+  out.voxels.resize(std::size_t(out.cells[0]) * std::size_t(out.cells[1]) * std::size_t(out.cells[2]));
+  if (scales.smoke > 0.0f)
+    put_field(read_field(world, id, FluidField::smoke), 0.0f, scales.smoke, &Voxel::smoke, out.voxels);
+  if (scales.heat > 0.0f) {
+    put_field(read_field(world, id, FluidField::temperature), scales.ambient, scales.heat, &Voxel::heat,
+              out.voxels);
+  }
+  if (out.smoky || out.flat_axis() < 0) return;
+  const std::vector<float> speeds = read_field(world, id, FluidField::speed);
+  float fastest = 1e-6f;
+  for (const float speed : speeds) fastest = max(fastest, speed);
+  put_field(speeds, 0.0f, fastest, &Voxel::speed, out.voxels);
+}
+
+void look_at_liquid(const World& world, FluidId id, SeenFluid& out) {
+  const FluidSurfaceSize size = world.liquid_surface(id, {}, {});
+  out.vertices.resize(size.vertices);
+  out.indices.resize(size.indices);
+  world.liquid_surface(id, out.vertices, out.indices);
+}
+
+}  // namespace
+
+int SeenFluid::flat_axis() const {
+  for (int axis = 0; axis < 3; ++axis)
+    if (cells[std::size_t(axis)] == 1) return axis;
+  return -1;
+}
+
+// Fluids of a scene carry their number among their kind as user data.
+std::vector<SeenFluid> look_at_fluids(const World& world, const Scene* scene) {
+  std::vector<FluidId> ids(world.fluids({}));
+  world.fluids(ids);
+  std::vector<SeenFluid> out;
+  for (const FluidId id : ids) {
+    const FluidInfo info = world.fluid_info(id);
+    const auto index = std::size_t(info.user_data);
+    SeenFluid& seen = out.emplace_back();
+    seen.kind = info.kind;
+    seen.cells = info.cells;
+    seen.lower = info.lower;
+    seen.cell = info.cell;
+    if (info.kind == FluidKind::gas) {
+      const bool known = scene && index < scene->gases.size();
+      seen.color = known ? resolved_fluid_color(scene->gases[index], info.kind) : kSmokeColor;
+      look_at_gas(world, id, scales_of(known ? scene->gases[index].def : world.gas_def(id)), seen);
+    } else {
+      const bool known = scene && index < scene->liquids.size();
+      seen.color = known ? resolved_fluid_color(scene->liquids[index], info.kind) : kWaterColor;
+      look_at_liquid(world, id, seen);
+    }
+  }
+  return out;
+}
+
+}  // namespace gyre
