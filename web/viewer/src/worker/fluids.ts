@@ -4,8 +4,8 @@ import type { Box, FlowData, FluidDescription, FluidState, Vec3 } from '../proto
 import { placeOf } from './keys';
 
 const SUN: Vec3 = normalized([0.45, 1, 0.62]); // as on the page
-const THICKNESS = 9; // optical thickness of the thickest smoke along the shortest side of its box
-const STIRRED = 0.5; // radius of what a pointer stirs, in parts of the shortest side times THICKNESS
+const THICKNESS = 14; // optical thickness of the thickest smoke along the shortest side of its box
+const STIRRED = 0.8; // radius of what a pointer stirs, in parts of the shortest side times THICKNESS
 const ARROWS = 26; // along the longer side of a slice
 const NONE = { bytes: new Uint8Array(0), floats: new Float32Array(0), indices: new Uint32Array(0) };
 
