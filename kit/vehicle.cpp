@@ -3,7 +3,12 @@
 //
 // The drive line is stiff: a wheel's spin follows the ground within milliseconds, and faster at low speed. So each spin is integrated
 // linearly implicitly in its own slip. Clutch and differentials are dampers, as stiff as is stable in a short step.
+//
+// Slip says nothing about a wheel that stands: there the foot of the tyre sticks to the ground and is stretched like a spring, up to the
+// grip (Pacejka, chapter 7: at rest a tyre is a spring).
 #include <gyre/kit/vehicle.h>
+
+#include <gyre/debug.h>
 
 namespace gyre::kit {
 
@@ -12,6 +17,11 @@ namespace {
 constexpr int kShortSteps = 8;
 // Least ground speed in the computation of slips, so that these stay finite at rest.
 constexpr float kSlowest = 0.5f;  // m/s
+// A tyre begins to stick below the first speed of its contact, and no longer does above the second.
+constexpr float kSticks = 0.05f, kLetsGo = 0.2f;  // m/s
+// A parked vehicle is still below these speeds, and falls asleep after this time.
+constexpr float kParkedSpeed = 2.0e-3f, kParkedSpin = 2.0e-3f;  // m/s, rad/s
+constexpr float kTimeToPark = 0.5f;                             // s
 
 float clamp_to(float value, float most) { return value > most ? most : value < -most ? -most : value; }
 
@@ -39,6 +49,7 @@ struct Rolling {
   float side = 0.0f;       // m/s across
   float inertia = 0.0f;    // kg m^2, with the resistance of the ground to spin in a short step
   Vec3 sum{};              // sum of forces over the short steps
+  float torque = 0.0f;     // N m, of the drive line in the last short step
 };
 
 class Drive {
@@ -64,12 +75,97 @@ class Drive {
     shift();
     const float h = seconds_ / float(kShortSteps);
     for (int k = 0; k < kShortSteps; ++k) turn_on(h);
+    for (std::size_t i = 0; i < count(); ++i) stand(i);
+    if (falls_asleep()) return;
     push();
     s_.lean_torque = 0.0f;
     if (def_.lean.frequency > 0.0f) lean();
   }
 
+  // True if the vehicle is parked and nothing asks it to move; otherwise a parked one wakes.
+  bool stays_asleep() {
+    if (world_.is_awake(body_) || s_.parked < kTimeToPark) return false;
+    steering_ = in_.steer * steering_limit();
+    bool stays = in_.throttle == 0.0f && (def_.tracks.empty() || in_.steer == 0.0f);
+    for (std::size_t i = 0; i < count() && stays; ++i) {
+      const WheelState before = s_.wheels[i];
+      find_ground(i);
+      const WheelState& w = s_.wheels[i];
+      stays = w.on_ground && w.ground == before.ground && is_still(w.ground) && is_braked(i, before.force) &&
+              absolute(w.compression - before.compression) < 1.0e-3f &&
+              absolute(w.steer - before.steer) < 1.0e-3f;
+      s_.wheels[i] = before;
+    }
+    if (!stays) world_.set_awake(body_, true);
+    return stays;
+  }
+
  private:
+  bool is_still(BodyId ground) const {
+    return world_.type(ground) == BodyType::fixed ||
+           (world_.type(ground) == BodyType::dynamic && !world_.is_awake(ground)) ||
+           (world_.type(ground) == BodyType::kinematic && world_.linear_velocity(ground) == Vec3{} &&
+            world_.angular_velocity(ground) == Vec3{});
+  }
+  // True if the brakes hold a wheel against a force.
+  bool is_braked(std::size_t i, Vec3 force) const {
+    return brake_torque(i) > def_.wheels[i].radius * length(force);
+  }
+  float brake_torque(std::size_t i) const {
+    return in_.brake * def_.wheels[i].brake + in_.handbrake * def_.wheels[i].handbrake;
+  }
+
+  // The spring of the foot replaces the force of slip: across the wheel, and along it if the wheel is locked.
+  void stand(std::size_t i) {
+    const WheelDef& d = def_.wheels[i];
+    WheelState& w = s_.wheels[i];
+    const Rolling& r = rolling_[i];
+    const float speed = max(absolute(r.speed), absolute(r.side));
+    const bool was_standing = w.stands;
+    w.stands = w.on_ground && w.load > 0.0f && speed < (was_standing ? kLetsGo : kSticks) &&
+               absolute(w.angular_velocity) * d.radius < kLetsGo;
+    if (!w.stands) {
+      w.stretch_along = w.stretch_across = 0.0f;
+      return;
+    }
+    const float share = mass_ / float(count());
+    const float stiffness = 0.25f * share / square(seconds_), damping = 0.5f * share / seconds_;
+    const Vec3 mean = (1.0f / float(kShortSteps)) * r.sum;
+    float along = dot(mean, r.along), across = dot(mean, r.across);
+    const bool locked = w.angular_velocity == 0.0f && brake_torque(i) > absolute(r.torque);
+    // A tyre that begins to stick has the force that it had.
+    if (was_standing) {
+      w.stretch_across += seconds_ * r.side;
+      w.stretch_along += seconds_ * r.speed;
+      across = -stiffness * w.stretch_across - damping * r.side;
+      if (locked) along = -stiffness * w.stretch_along - damping * r.speed;
+    }
+    const float holds = (brake_torque(i) - absolute(r.torque)) / d.radius;
+    if (locked) along = clamp_to(along, holds);
+    const float force = std::sqrt(square(along) + square(across)), most = d.tyre.grip * w.load;
+    if (force > most) along *= most / force, across *= most / force;
+    w.stretch_across = -(across + damping * r.side) / stiffness;
+    w.stretch_along = locked ? -(along + damping * r.speed) / stiffness : 0.0f;
+    rolling_[i].sum = float(kShortSteps) * (along * r.along + across * r.across);
+  }
+
+  // Puts a vehicle to sleep that stands still with locked wheels, on ground that does not move, touching nothing else.
+  bool falls_asleep() {
+    bool still = in_.throttle == 0.0f && length(world_.linear_velocity(body_)) < kParkedSpeed &&
+                 length(world_.angular_velocity(body_)) < kParkedSpin;
+    for (std::size_t i = 0; i < count(); ++i) {
+      const WheelState& w = s_.wheels[i];
+      still = still && w.stands && w.angular_velocity == 0.0f && is_still(w.ground) && is_braked(i, w.force);
+    }
+    s_.parked = still ? min(s_.parked + seconds_, 2.0f * kTimeToPark) : 0.0f;
+    if (s_.parked < kTimeToPark) return false;
+    const Explanation why = explain(world_, body_);
+    const bool may = why.reason != AwakeReason::sleeping_off && why.reason != AwakeReason::may_not_sleep;
+    if (may && why.island_bodies <= 1) return world_.set_awake(body_, false);
+    s_.parked = 0.0f;  // asks again later
+    return false;
+  }
+
   // The steering angle of full lock; at speed it is limited to what the lean can follow.
   float steering_limit() const {
     if (!(def_.lean.frequency > 0.0f)) return def_.steer_angle;
@@ -205,7 +301,8 @@ class Drive {
   // The speed of the engine without clutch slip.
   float driven_speed() const {
     float driven = 0.0f;
-    for (std::size_t i = 0; i < count(); ++i) driven += def_.wheels[i].drive * s_.wheels[i].angular_velocity * ratio();
+    for (std::size_t i = 0; i < count(); ++i)
+      driven += def_.wheels[i].drive * s_.wheels[i].angular_velocity * ratio();
     return driven;
   }
 
@@ -256,7 +353,10 @@ class Drive {
       const float each = -track.side * in_.steer * track.steering / float(track.wheels.size());
       for (const int wheel : track.wheels) torque[wheel] += each;
     }
-    for (std::size_t i = 0; i < count(); ++i) turn_wheel(i, torque[i], h);
+    for (std::size_t i = 0; i < count(); ++i) {
+      rolling_[i].torque = torque[i];
+      turn_wheel(i, torque[i], h);
+    }
     for (const TrackDef& track : def_.tracks) bind(track);
     turn_engine(h, clutch);
   }
@@ -304,7 +404,8 @@ class Drive {
     // A force stops the mass on the wheel within the step at most.
     const float bears = w.load / 9.81f / seconds_;
     side_ = clamp_to(most * share * y, absolute(r.side) * bears);
-    return clamp_to(most * share * x, absolute(w.angular_velocity * d.radius - r.speed) * bears + most * 0.02f);
+    return clamp_to(most * share * x,
+                    absolute(w.angular_velocity * d.radius - r.speed) * bears + most * 0.02f);
   }
 
   void push() {
@@ -410,7 +511,8 @@ Error drive_vehicle(World& world, const VehicleDef& def, BodyId body, VehicleSta
       !is_share(input.clutch, 0.0f) || !is_share(input.steer, -1.0f)) {
     return refuse("an input (throttle among them)", double(input.throttle));
   }
-  Drive(world, def, body, state, input, seconds).run();
+  Drive drive(world, def, body, state, input, seconds);
+  if (!drive.stays_asleep()) drive.run();
   return {};
 }
 

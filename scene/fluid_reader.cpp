@@ -231,12 +231,12 @@ void read_numbers(Members& members, const char* key, std::size_t count, const ch
 
 void read_velocity_of_faces(const Field& field, const std::array<int, 3>& cells, GasFields& out) {
   Members members(field, "velocities of faces, x, y and z");
-  std::vector<float>* const fields[] = {&out.velocity_x, &out.velocity_y, &out.velocity_z};
+  std::vector<float>* const velocities[3] = {&out.velocity_x, &out.velocity_y, &out.velocity_z};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::size_t count = 1;
     for (std::size_t other = 0; other < 3; ++other)
       count *= std::size_t(cells[other]) + (other == axis ? 1 : 0);
-    read_numbers(members, kAxisKeys[axis], count, "face", 0.0f, *fields[axis]);
+    read_numbers(members, kAxisKeys[axis], count, "face", 0.0f, *velocities[axis]);
   }
   members.finish();
 }
@@ -298,6 +298,8 @@ LiquidParticles read_liquid_state(const Field& field) {
     one.array("an array of 9 numbers, a matrix row by row", 9);
     for (std::size_t k = 0; k < 9; ++k) all.push_back(one.element(k).real());
   });
+  read_particles(members, "volumes", count, out.volumes,
+                 [](const Field& one, std::vector<float>& all) { all.push_back(one.real(kAboveZero)); });
   members.finish();
   return out;
 }

@@ -118,9 +118,9 @@ void write_floats(JsonWriter& json, const char* key, const std::vector<float>& n
 void write_gas_state(JsonWriter& json, const GasFields& fields) {
   json.key("state").begin_object();
   json.key("velocity").begin_object();
-  write_floats(json, kAxisKeys[0], fields.velocity_x);
-  write_floats(json, kAxisKeys[1], fields.velocity_y);
-  write_floats(json, kAxisKeys[2], fields.velocity_z);
+  write_floats(json, "x", fields.velocity_x);
+  write_floats(json, "y", fields.velocity_y);
+  write_floats(json, "z", fields.velocity_z);
   json.end_object();
   write_floats(json, "density", fields.density);
   write_floats(json, "temperature", fields.temperature);
@@ -159,6 +159,7 @@ void write_liquid_state(JsonWriter& json, const LiquidParticles& particles) {
     }
     json.end_array();
   }
+  if (!particles.volumes.empty()) write_floats(json, "volumes", particles.volumes);
   json.end_object();
 }
 

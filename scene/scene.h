@@ -32,6 +32,7 @@ struct SceneWorld {
   float tolerance = 1.0e-5f;  // m; of steps that are not fixed
   int max_impacts = 128;      // times of impact in a step; adaptive
   bool sleeping = true;
+  float sleep_share = WorldDef{}.sleep_share;
 };
 
 // What of it a world takes as its Stepping, and back.

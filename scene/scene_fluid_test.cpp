@@ -287,7 +287,7 @@ const std::string kAllLiquids = kStart + R"("name": "all", "liquids": [
        "probes": [{"name": "p", "position": [1, 0.25, 0.5]}], "color": "#3060a0"},
       {"name": "b", "bounds": [[5, 0, 0], [6, 1, 1]], "cell_size": 0.25,
        "state": {"positions": [[5.5, 0.1, 0.5], [5.625, 0.1, 0.123456789012345]], "velocities": [[0, 1, 0], [0, 0, 2]],
-                 "affine": [[1,2,3,4,5,6,7,8,9],[0,0,0,0,0,0,0,0,0.5]]}}]})";
+                 "affine": [[1,2,3,4,5,6,7,8,9],[0,0,0,0,0,0,0,0,0.5]], "volumes": [0.001, 0.002]}}]})";
 
 TEST(SceneFluid, WritesTheLiquidsThatItRead) {
   const SceneResult<Scene> first = read_scene(kAllLiquids);
@@ -318,6 +318,7 @@ TEST(SceneFluid, WritesTheLiquidsThatItRead) {
   EXPECT_EQ(b.def.particles->positions[1].z, 0.123456789012345);
   EXPECT_EQ(b.def.particles->velocities[1], (Vec3{0, 0, 2}));
   EXPECT_EQ(b.def.particles->affine[17], 0.5f);
+  EXPECT_EQ(b.def.particles->volumes, (std::vector<float>{0.001f, 0.002f}));
 }
 
 TEST(SceneFluid, AGasBecomesWhatItSaysInTheWorld) {
@@ -375,9 +376,9 @@ TEST(SceneFluid, AGasGoesOnFromAFinalScene) {
     const GasFields a = *whole.world().gas_def(whole.gases()[i]).fields,
                     b = *rest.world().gas_def(rest.gases()[i]).fields;
     float largest = 0;
-    for (const auto velocity : {&GasFields::velocity_x, &GasFields::velocity_y, &GasFields::velocity_z}) {
-      EXPECT_EQ(a.*velocity, b.*velocity) << i;
-      for (const float value : a.*velocity) largest = max(largest, absolute(value));
+    for (const auto axis : {&GasFields::velocity_x, &GasFields::velocity_y, &GasFields::velocity_z}) {
+      EXPECT_EQ(a.*axis, b.*axis) << i;
+      for (const float one : a.*axis) largest = max(largest, absolute(one));
     }
     EXPECT_GT(largest, 0.01f) << i;
     EXPECT_EQ(a.density, b.density) << i;

@@ -92,6 +92,7 @@ void read_world(const Field& field, SceneWorld& world) {
   members.read("tolerance", world.tolerance, Range::between(1.0e-9, 1));
   if (const auto impacts = members.find("max_impacts")) world.max_impacts = int(impacts->integer(1, 4096));
   members.read("sleeping", world.sleeping);
+  members.read("sleep_share", world.sleep_share, Range::between(0, 1000));
   members.finish();
 }
 

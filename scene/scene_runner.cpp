@@ -20,6 +20,7 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
   def.simd_width = simd_width;
   def.stepping = stepping_of(settings);
   def.sleeping = settings.sleeping;
+  def.sleep_share = settings.sleep_share;
   Result<World> world = World::create(def);
   if (!world) return SceneError{file, 0, 0, "/world", world.error().message};
 

@@ -104,7 +104,8 @@ constexpr char kPart0[] = R"json({
         },
         "tolerance": { "type": "number", "minimum": 1e-9, "maximum": 1, "default": 1e-5, "description": "m, of a step that is not fixed" },
         "max_impacts": { "type": "integer", "minimum": 1, "maximum": 4096, "default": 128, "description": "in a step, adaptive" },
-        "sleeping": { "type": "boolean", "default": true }
+        "sleeping": { "type": "boolean", "default": true },
+        "sleep_share": { "type": "number", "minimum": 0, "maximum": 1000, "default": 0.015, "description": "speed below which bodies are still, as a share of sqrt(gravity x radius)" }
       }
     },
     "view": {
@@ -194,6 +195,7 @@ constexpr char kPart0[] = R"json({
         "gravity_scale": { "type": "number", "minimum": -1e6, "maximum": 1e6, "default": 1 },
         "continuous": { "type": "boolean", "default": false, "description": "swept against moving bodies too" },
         "can_sleep": { "type": "boolean", "default": true },
+        "sleep_speed": { "type": "number", "minimum": 0, "maximum": 1e6, "default": 0, "description": "m/s below which the body is still; 0: by the world's sleep_share" },
         "locked": {
           "type": "object",
           "additionalProperties": false,

@@ -191,7 +191,8 @@ inline constexpr char kSchemaOfLiquids[] = R"json(    "liquid": {
               "type": ["array", "null"],
               "items": { "type": "array", "items": { "type": "number" }, "minItems": 9, "maxItems": 9 },
               "description": "1/s: how the velocity changes around the particle, row by row"
-            }
+            },
+            "volumes": { "$ref": "#/$defs/numbers", "description": "m^3; without: an eighth of a cell each, a quarter in a plane flow" }
           }
         }
       }

@@ -36,6 +36,7 @@ void write_world(JsonWriter& json, const SceneWorld& world) {
   unless_default(json, "direct_rows", world.solver_options.direct_rows, SolverOptions{}.direct_rows);
   if (world.broad_phase != BroadPhaseKind::bvh) json.field("broad_phase", to_string(world.broad_phase));
   unless_default(json, "sleeping", world.sleeping, true);
+  unless_default(json, "sleep_share", world.sleep_share, WorldDef{}.sleep_share);
   json.end_object();
 }
 
@@ -192,6 +193,7 @@ void write_motion(JsonWriter& json, const BodyDef& def) {
   unless_default(json, "gravity_scale", def.gravity_scale, 1.0f);
   unless_default(json, "continuous", def.continuous, false);
   unless_default(json, "can_sleep", def.can_sleep, true);
+  unless_default(json, "sleep_speed", def.sleep_speed, 0.0f);
   if (!(def.locked == LockedAxes{})) {
     json.key("locked").begin_object(kOneLine);
     write_axes(json, "linear", def.locked.linear);

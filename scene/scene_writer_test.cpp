@@ -17,7 +17,8 @@ const std::string kEverything = R"({
   "gyre_scene": 1,
   "name": "every member, \"quoted\" and \u00e4",
   "world": {"gravity": [0.1, -9.81, 1e-7], "time_step": 0.00833333333, "substeps": 8, "integrator": "semi_implicit_euler",
-            "solver": "lcp", "lcp_method": "lemke", "friction_sides": 8, "iterations": 40, "direct_rows": 90, "broad_phase": "brute_force", "stepping": "fixed", "sleeping": false},
+            "solver": "lcp", "lcp_method": "lemke", "friction_sides": 8, "iterations": 40, "direct_rows": 90, "broad_phase": "brute_force", "stepping": "fixed", "sleeping": false,
+            "sleep_share": 0.25},
   "view": {"eye": [1, 2.5, 1e6], "target": [0, 1, 0], "field_of_view": 0.9},
   "materials": {
     "ice": {"color": "#a0C0ff", "density": 917, "static_friction": 0.1, "dynamic_friction": 0.03, "restitution": 0.05,
@@ -38,7 +39,7 @@ const std::string kEverything = R"({
     {"name": "box", "type": "dynamic", "position": [123456789.123456789, 1, -0.1],
      "orientation": {"euler_xyz": [0.1, 0.2, 0.3]},
      "linear_velocity": [1, 2, 3], "angular_velocity": [0.1, 0.2, 0.3], "linear_damping": 0.1, "angular_damping": 0.2,
-     "gravity_scale": 0.5, "continuous": true, "can_sleep": false,
+     "gravity_scale": 0.5, "continuous": true, "can_sleep": false, "sleep_speed": 0.125,
      "locked": {"linear": [true, false, false], "angular": [false, true, false]},
      "mass": 3.3, "center_of_mass": [0.1, 0, 0], "inertia": [1, 2, 2.5, 0.1, 0, 0.01],
      "filter": {"layer": 4, "collides_with": 4294967294, "group": -3}, "sensor": true, "color": "#000001",
@@ -120,6 +121,8 @@ TEST(SceneWriter, EveryNumberKeepsItsBits) {
   EXPECT_EQ(second->world.solver_options.direct_rows, 90);
   EXPECT_EQ(second->world.broad_phase, BroadPhaseKind::brute_force);
   EXPECT_FALSE(second->world.sleeping);
+  EXPECT_EQ(second->world.sleep_share, 0.25f);
+  EXPECT_EQ(second->bodies[2].def.sleep_speed, 0.125f);
   ASSERT_EQ(first->bodies.size(), second->bodies.size());
   for (std::size_t i = 0; i < first->bodies.size(); ++i) {
     const SceneBody &a = first->bodies[i], &b = second->bodies[i];

@@ -31,6 +31,9 @@ struct WorldDef {
   int simd_width = 0;          // lanes of the solver's kernels: 1, 4, 8 or 16; 0 = the best of this machine; never changes a bit
   Stepping stepping{};         // expert settings: stepping.h
   bool sleeping = true;        // resting islands sleep until something touches them
+  // The speed below which bodies are still, as a share of sqrt(gravity * bounding radius) of each. Bodies that no friction holds, or that
+  // springs or motors move, have a twentieth of it. 0: only what does not move at all sleeps.
+  float sleep_share = 0.015f;
   CombineRule friction_rule = CombineRule::geometric_mean;
   CombineRule restitution_rule = CombineRule::maximum;
   HostTasks host_tasks{};        // used instead of own threads when `run` is set
@@ -114,6 +117,7 @@ struct BodyDef {
   float gravity_scale = 1.0f;
   bool continuous = false;           // continuous collision against moving bodies too (against fixed bodies it is always on)
   bool can_sleep = true;
+  float sleep_speed = 0.0f;          // m/s: the body is still below it, whatever holds or moves it; 0 = by WorldDef::sleep_share
   LockedAxes locked{};
   std::optional<float> mass{};             // kg; scales the shapes' mass and inertia unless inertia is given too
   std::optional<Vec3> center_of_mass{};    // m, body frame

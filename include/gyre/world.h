@@ -87,6 +87,7 @@ struct WorldStats {
   int contact_points = 0;
   int colors = 0;          // of the constraint graph
   int softs = 0, soft_vertices = 0;  // ropes, cloths and solids
+  int fluids = 0, liquid_particles = 0;  // gases and liquids
 };
 
 // How well the solvers sequential_impulses and lcp solved the last step; all zero with soft_step.
@@ -161,6 +162,8 @@ class World {
   // A joint that is not enabled does nothing, but keeps its bodies from colliding as before.
   bool set_joint_enabled(JointId joint, bool enabled);
   bool set_sleeping(bool enabled);
+  bool set_sleep_share(float share);               // WorldDef::sleep_share
+  bool set_sleep_speed(BodyId body, float speed);  // BodyDef::sleep_speed
   bool set_awake(BodyId body, bool awake);  // false puts the body's whole island to sleep
   bool set_substeps(int substeps);
   // The settings of Stepping (stepping.h); they hold from the next step on. Poses and velocities stay as they are.
@@ -217,6 +220,7 @@ class World {
   Vec3 velocity_at(BodyId body, DVec3 point) const;  // m/s, of the body's material at a world point
   BodyType type(BodyId body) const;
   bool is_awake(BodyId body) const;
+  float sleep_speed(BodyId body) const;  // m/s, as it was set: 0 = by sleep_share()
   std::uint64_t user_data(BodyId body) const;
   MassProperties mass_properties(BodyId body) const;  // body frame; mass 0 unless dynamic
   std::span<const ShapeId> shapes(BodyId body) const;
@@ -300,6 +304,10 @@ class World {
   std::optional<Penetration> penetration(const ShapePose& shape, const QueryFilter& filter = {}) const;
   std::size_t penetration_all(const ShapePose& shape, std::span<Penetration> out, const QueryFilter& filter = {}) const;
 
+  // The shapes that are inside a sensor now: all that overlap or touch it, of bodies of any type, asleep or not, and that its filter
+  // admits; in order of index. Copies up to out.size(); returns how many there are, 0 if the shape is not a sensor.
+  std::size_t sensor_visitors(ShapeId sensor, std::span<ShapeId> out) const;
+
   // Batches: many questions at once over the world's threads. An error names the first question that cannot be asked, or spans of
   // different length; nothing is asked then. One batch at a time uses the threads; a batch that another thread asks meanwhile is
   // answered by that thread alone.
@@ -351,6 +359,7 @@ class World {
   std::uint64_t step_count() const;
   Vec3 gravity() const;
   int substeps() const;
+  float sleep_share() const;
   // The current settings as a WorldDef, to create a world like this one.
   WorldDef def() const;
   Energy energy() const;

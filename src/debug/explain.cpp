@@ -46,9 +46,9 @@ AwakeReason Inquiry::own_reason(std::uint32_t body) const {
   if (flags.awake == 0) return AwakeReason::asleep;
   if (w_.settings.sleeping == 0) return AwakeReason::sleeping_off;
   if (flags.can_sleep == 0) return AwakeReason::may_not_sleep;
-  const SleepTest test = test_sleep(w_, body, gravity_);
+  const SleepTest test = test_sleep(w_, body, gravity_, w_.settings.last_step);
   if (!test.allowed && flags.constraint_use == 0) return AwakeReason::unsupported;
-  if (test.speed > test.rest_speed) return AwakeReason::moving;
+  if (test.motion > test.rest_speed) return AwakeReason::moving;
   return AwakeReason::settling;
 }
 
@@ -143,7 +143,7 @@ void Inquiry::answer(Explanation& out) {
   find_joints(out);
   const std::uint32_t root = islands_.roots[body_];
   if (root != kNoIsland) {
-    const SleepTest test = test_sleep(w_, body_, gravity_);
+    const SleepTest test = test_sleep(w_, body_, gravity_, w_.settings.last_step);
     out.speed = test.speed;
     out.rest_speed = test.rest_speed;
     out.still_seconds = w_.bodies.sleep[body_].still_time;

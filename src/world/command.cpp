@@ -5,10 +5,12 @@
 #include "collision/contact/pair_update.h"
 #include "dynamics/soft_contacts.h"
 #include "math/rotation.h"
+#include "rigid/collision_bodies.h"
 #include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
 #include "world/field_commands.h"
 #include "world/joint_commands.h"
+#include "world/query_sight.h"
 #include "world/fluid_commands.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
@@ -165,6 +167,7 @@ CommandResult execute(WorldState& s, const AddBody& c) {
     w.bodies.motion[body].angular_velocity = def.angular_velocity + Vec3{};
   }
   refit_body(w, body);
+  wake_overlapped(s, body);
   return {true, body_id(w, body), {}, {}};
 }
 
@@ -189,6 +192,7 @@ CommandResult execute(WorldState& s, const AddShape& c) {
   const ShapeId id = attach_shape(w, c.body.index, c.def);
   refresh_mass(w, c.body.index);
   refit_body(w, c.body.index);
+  wake_overlapped(s, c.body.index);
   return {true, {}, id, {}};
 }
 
@@ -225,6 +229,7 @@ CommandResult execute(WorldState& s, const SetPose& c) {
   refresh_inertia(w.bodies, body);
   for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
   refit_body(w, body);
+  wake_overlapped(s, body);
   return {true, {}, {}, {}};
 }
 
@@ -234,6 +239,7 @@ CommandResult execute(WorldState& s, const SetVelocity& c) {
   wake_if_movable(w, c.body.index);
   w.bodies.motion[c.body.index].linear_velocity = c.linear + Vec3{};
   w.bodies.motion[c.body.index].angular_velocity = c.angular + Vec3{};
+  if (!can_move(w, c.body.index)) show_halt_to_sensors(w, c.body.index);
   mark_moved(w, c.body.index);
   return {true, {}, {}, {}};
 }
@@ -249,6 +255,7 @@ CommandResult execute(WorldState& s, const MoveKinematic& c) {
       finite_or((1.0f / c.seconds) * difference(center, w.bodies.poses[body].center) + Vec3{}, {});
   motion.angular_velocity = finite_or(
       (1.0f / c.seconds) * rotation_between(w.bodies.poses[body].orientation, orientation) + Vec3{}, {});
+  if (!can_move(w, body)) show_halt_to_sensors(w, body);
   mark_moved(w, body);
   return {true, {}, {}, {}};
 }
@@ -271,6 +278,7 @@ CommandResult execute(WorldState& s, const SetType& c) {
   refresh_mass(w, body);
   for (const ShapeId id : w.bodies.shapes[body]) refresh_proxy(w, id.index);
   refit_body(w, body);
+  wake_overlapped(s, body);
   return {true, {}, {}, {}};
 }
 
@@ -347,6 +355,7 @@ CommandResult execute(WorldState& s, const SetFilter& c) {
   drop_contacts(w, shape);
   w.shapes.proxies[shape].filter = c.filter;
   refit_placed_shape(w, shape);
+  wake_overlapped(s, w.shapes.bodies[shape]);
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const SetMotor& c) {
@@ -368,6 +377,18 @@ CommandResult execute(WorldState& s, const SetJointEnabled& c) {
 CommandResult execute(WorldState& s, const SetSleeping& c) {
   if (!c.enabled) wake_all(s.rigid), wake_all(s.soft);
   s.rigid.settings.sleeping = c.enabled ? 1 : 0;
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetSleepShare& c) {
+  s.rigid.sleep_settings.clear();
+  if (c.share != kSleepSpeedShare) s.rigid.sleep_settings.push_back({c.share});
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetSleepSpeed& c) {
+  BodyStore& bodies = s.rigid.bodies;
+  if (c.speed == sleep_speed_of(bodies, c.body.index)) return {true, {}, {}, {}};
+  if (c.body.index >= bodies.sleep_speeds.size()) bodies.sleep_speeds.resize(c.body.index + 1);
+  bodies.sleep_speeds[c.body.index].speed = c.speed;
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const SetAwake& c) {

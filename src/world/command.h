@@ -19,6 +19,7 @@ namespace gyre {
 
 struct WorldState;
 
+// Without BodyDef::sleep_speed, which is a command of its own: it is younger than the first recordings.
 struct AddBody {
   BodyDef def;
   std::vector<ShapeDef> shapes;
@@ -108,6 +109,13 @@ struct SetAwake {
 struct SetSubsteps {
   int substeps = 4;
 };
+struct SetSleepShare {
+  float share = 0;
+};
+struct SetSleepSpeed {
+  BodyId body;
+  float speed = 0;
+};
 struct SetSolver {
   SolverKind solver = SolverKind::soft_step;
   SolverOptions options;
@@ -185,7 +193,8 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
                              SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
                              SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled,
-                             SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices, AddFluid, RemoveFluid, SetEmitters>;
+                             SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices, AddFluid, RemoveFluid, SetEmitters,
+                             SetSleepShare, SetSleepSpeed>;
 
 // The result of a command: success, and the id of the new object.
 struct CommandResult {

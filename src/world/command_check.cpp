@@ -108,6 +108,7 @@ Error check(const WorldState&, const AddBody& c) {
   if (e.ok()) e = check_range("body.linear_damping", d.linear_damping, 0.0f, 1.0e6f);
   if (e.ok()) e = check_range("body.angular_damping", d.angular_damping, 0.0f, 1.0e6f);
   if (e.ok()) e = check_range("body.gravity_scale", d.gravity_scale, -1.0e6f, 1.0e6f);
+  if (e.ok()) e = check_range("body.sleep_speed", d.sleep_speed, 0.0f, 1.0e6f);
   if (e.ok()) e = check_mass_overrides(d);
   for (const ShapeDef& shape : c.shapes) {
     if (e.ok()) e = check_shape_def(shape, d.type);
@@ -394,6 +395,13 @@ Error check(const WorldState&, const SetSubsteps& c) {
   if (c.substeps >= 1 && c.substeps <= 64) return ok();
   return refuse("substeps is %d; it must lie within 1 and 64", c.substeps);
 }
+Error check(const WorldState&, const SetSleepShare& c) {
+  return check_range("sleep_share", c.share, 0.0f, 1.0e3f);
+}
+Error check(const WorldState& s, const SetSleepSpeed& c) {
+  const Error e = check_body(s, c.body, "set_sleep_speed");
+  return e.ok() ? check_range("sleep_speed", c.speed, 0.0f, 1.0e6f) : e;
+}
 Error check(const WorldState&, const SetSolver& c) {
   const char* const fault = fault_in(SolverSettings{c.solver, c.options});
   return fault == nullptr ? ok() : refuse("set_solver: %s", fault);
@@ -431,6 +439,7 @@ Error check_command(const WorldState& state, const Command& command) {
 Error check_world_def(const WorldDef& def) {
   Error e = check_finite("gravity", def.gravity);
   if (e.ok()) e = check_range("gravity", length(def.gravity), 0.0f, 1.0e9f);
+  if (e.ok()) e = check_range("sleep_share", def.sleep_share, 0.0f, 1.0e3f);
   if (e) return e;
   if (def.threads < 0 || def.threads > TaskSystem::kMaxWorkers) {
     return refuse("threads is %d; it must lie within 0 and %d", def.threads, TaskSystem::kMaxWorkers);

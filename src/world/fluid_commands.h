@@ -18,4 +18,8 @@ CommandResult execute(WorldState& state, const SetEmitters& c);
 // True if what the id names exists.
 bool is_fluid(const WorldState& state, FluidId id);
 
+// Liquids; gases are left out, whose boxes mostly are open.
+void add_fluid_energy(const WorldState& state, Energy& energy);
+void add_fluid_momentum(const WorldState& state, Momentum& momentum);
+
 }  // namespace gyre

@@ -184,6 +184,21 @@ LiquidDef World::liquid_def(FluidId fluid) const {
   return def;
 }
 
+void add_fluid_energy(const WorldState& s, Energy& energy) {
+  s.fluids.for_each([&](const FluidEntry& entry) {
+    if (!entry.is_liquid()) return;
+    const LiquidTotals totals = liquid_totals(entry.liquid, entry.liquid_def().density, s.rigid.settings.gravity);
+    energy.kinetic += totals.kinetic_energy, energy.potential += totals.potential_energy;
+  });
+}
+void add_fluid_momentum(const WorldState& s, Momentum& momentum) {
+  s.fluids.for_each([&](const FluidEntry& entry) {
+    if (!entry.is_liquid()) return;
+    const LiquidTotals totals = liquid_totals(entry.liquid, entry.liquid_def().density, s.rigid.settings.gravity);
+    momentum.linear += totals.momentum, momentum.angular += totals.angular_momentum;
+  });
+}
+
 const char* to_string(FluidKind kind) { return kind == FluidKind::gas ? "gas" : "liquid"; }
 const char* to_string(FluidBoundary boundary) {
   switch (boundary) {

@@ -35,6 +35,16 @@ const char* fault_in_motion(const RigidWorld& w) {
   return nullptr;
 }
 
+const char* fault_in_sleep_speeds(const RigidWorld& w) {
+  if (w.sleep_settings.size() > 1) return "settings of sleep that contradict each other";
+  for (const SleepSettings& sleep : w.sleep_settings)
+    if (!is_finite(sleep.share) || sleep.share < 0.0f) return "a sleep speed below zero";
+  if (w.bodies.sleep_speeds.size() > w.bodies.ids.capacity()) return "sleep speeds of bodies that are not there";
+  for (const BodySleepSpeed& sleep : w.bodies.sleep_speeds)
+    if (!is_finite(sleep.speed) || sleep.speed < 0.0f) return "a sleep speed below zero";
+  return nullptr;
+}
+
 const char* fault_in_sizes(const RigidWorld& w) {
   const BodyStore& b = w.bodies;
   const std::size_t bodies = b.ids.capacity();
@@ -201,6 +211,7 @@ const char* fault_in(const RigidWorld& w) {
   if (fault == nullptr) fault = fault_in_fields(w.fields.view());
   if (fault == nullptr) fault = fault_in_sizes(w);
   if (fault == nullptr) fault = fault_in_motion(w);
+  if (fault == nullptr) fault = fault_in_sleep_speeds(w);
   if (fault != nullptr) return fault;
   for (std::uint32_t i = 0; fault == nullptr && i < w.bodies.ids.capacity(); ++i)
     fault = fault_in_body(w.bodies, i);

@@ -186,6 +186,14 @@ template <Is<SolverSettings> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.kind), f(r.options.lcp_method), f(r.options.friction_sides), f(r.options.iterations), f(r.options.direct_rows);
 }
+template <Is<SleepSettings> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.share);
+}
+template <Is<BodySleepSpeed> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.speed);
+}
 template <Is<SoftRest> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.still_time), f(r.asleep);

@@ -19,10 +19,12 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 BodyId World::add_body(const BodyDef& body, const ShapeDef& shape) {
-  return submit(*state_, AddBody{body, {shape}}).body;
+  return add_body(body, std::span<const ShapeDef>(&shape, 1));
 }
 BodyId World::add_body(const BodyDef& body, std::span<const ShapeDef> shapes) {
-  return submit(*state_, AddBody{body, {shapes.begin(), shapes.end()}}).body;
+  const BodyId id = submit(*state_, AddBody{body, {shapes.begin(), shapes.end()}}).body;
+  if (id && body.sleep_speed != 0.0f) submit(*state_, SetSleepSpeed{id, body.sleep_speed});
+  return id;
 }
 bool World::remove_body(BodyId body) { return submit(*state_, RemoveBody{body}).done; }
 ShapeId World::add_shape(BodyId body, const ShapeDef& shape) { return submit(*state_, AddShape{body, shape}).shape; }
@@ -92,6 +94,8 @@ bool World::set_drive(JointId joint, const PoseDrive& drive) { return submit(*st
 bool World::set_joint_enabled(JointId joint, bool enabled) { return submit(*state_, SetJointEnabled{joint, enabled}).done; }
 bool World::set_motor(JointId joint, const Motor& motor) { return submit(*state_, SetMotor{joint, motor}).done; }
 bool World::set_sleeping(bool enabled) { return submit(*state_, SetSleeping{enabled}).done; }
+bool World::set_sleep_share(float share) { return submit(*state_, SetSleepShare{share}).done; }
+bool World::set_sleep_speed(BodyId body, float speed) { return submit(*state_, SetSleepSpeed{body, speed}).done; }
 bool World::set_awake(BodyId body, bool awake) { return submit(*state_, SetAwake{body, awake}).done; }
 bool World::set_solver(SolverKind solver, const SolverOptions& options) {
   return submit(*state_, SetSolver{solver, options}).done;

@@ -54,23 +54,6 @@ Error check_question(const ShapePose& shape) { return check_shape_pose(shape); }
 
 // ------------------------------------------------------------------------------------------------------------- the world
 
-// Updates the broad phase with changes since its last update. The first query does it for all.
-void show_changes(WorldState& s) {
-  RigidWorld& w = s.rigid;
-  if (s.queried_changes.load(std::memory_order_acquire) == w.shapes.changed.size()) return;
-  const std::lock_guard<std::mutex> lock(s.query_lock);
-  const std::size_t shown = s.queried_changes.load(std::memory_order_relaxed);
-  if (shown == w.shapes.changed.size()) return;
-  if (shown == kNothingQueried && w.broadphase_stale) {
-    w.broadphase->rebuild(w.shapes.proxies);
-  } else {
-    s.changes_to_show.assign(w.shapes.changed.view());
-    sort_changed(s.changes_to_show, s.change_keys, s.change_scratch);
-    w.broadphase->update(w.shapes.proxies, s.changes_to_show);
-  }
-  s.queried_changes.store(w.shapes.changed.size(), std::memory_order_release);
-}
-
 bool accepts(const RigidWorld& w, const QueryFilter& filter, std::uint32_t shape) {
   const Proxy& proxy = w.shapes.proxies[shape];
   if ((proxy.filter.layer & filter.layers) == 0 || (proxy.sensor && !filter.sensors)) return false;
@@ -342,6 +325,22 @@ Error fill_each(WorldState& s, std::span<const Question> questions, std::span<An
 }
 
 }  // namespace
+
+void show_changes(WorldState& s) {
+  RigidWorld& w = s.rigid;
+  if (s.queried_changes.load(std::memory_order_acquire) == w.shapes.changed.size()) return;
+  const std::lock_guard<std::mutex> lock(s.query_lock);
+  const std::size_t shown = s.queried_changes.load(std::memory_order_relaxed);
+  if (shown == w.shapes.changed.size()) return;
+  if (shown == kNothingQueried && w.broadphase_stale) {
+    w.broadphase->rebuild(w.shapes.proxies);
+  } else {
+    s.changes_to_show.assign(w.shapes.changed.view().subspan(shown == kNothingQueried ? 0 : shown));
+    sort_changed(s.changes_to_show, s.change_keys, s.change_scratch);
+    w.broadphase->update(w.shapes.proxies, s.changes_to_show);
+  }
+  s.queried_changes.store(w.shapes.changed.size(), std::memory_order_release);
+}
 
 bool is_in_sight(WorldState& s, DVec3 from, DVec3 to, std::uint32_t body) {
   QueryFilter filter;

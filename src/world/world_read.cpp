@@ -6,6 +6,7 @@
 #include "rigid/batch/surface_rules.h"
 #include "world/field_commands.h"
 #include "world/joint_reading.h"
+#include "world/fluid_commands.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
 
@@ -94,6 +95,9 @@ BodyType World::type(BodyId body) const {
 bool World::is_awake(BodyId body) const {
   if (!exists(body)) return false;
   return is_simulated(state_->rigid.bodies.flags[body.index]);
+}
+float World::sleep_speed(BodyId body) const {
+  return exists(body) ? sleep_speed_of(state_->rigid.bodies, body.index) : 0.0f;
 }
 std::uint64_t World::user_data(BodyId body) const {
   return exists(body) ? state_->rigid.bodies.user_data[body.index] : 0;
@@ -217,6 +221,8 @@ WorldStats World::stats() const {
   counts.joints = int(w.joints.ids.size());
   counts.colors = state_->solve.colors;
   counts.pairs = int(w.contacts.live);
+  counts.fluids = int(state_->fluids.ids.size());
+  state_->fluids.for_each([&](const FluidEntry& entry) { counts.liquid_particles += entry.liquid.particles(); });
   counts.softs = int(state_->soft.ids.size());
   state_->soft.for_each([&](const SoftEntry& entry) { counts.soft_vertices += entry.body.particles.count; });
   // Free slots have the flags of static bodies; their contacts touch nothing and have no manifolds.
@@ -237,6 +243,7 @@ SolverStats World::solver_stats() const {
 double World::time() const { return state_->time; }
 std::uint64_t World::step_count() const { return state_->step_count; }
 Vec3 World::gravity() const { return state_->rigid.settings.gravity; }
+float World::sleep_share() const { return gyre::sleep_share(state_->rigid); }
 WorldDef World::def() const {
   const RigidSettings& settings = state_->rigid.settings;
   WorldDef def = state_->def;
@@ -256,6 +263,7 @@ WorldDef World::def() const {
     def.stepping.solver_options = solver.options;
   }
   def.sleeping = settings.sleeping != 0;
+  def.sleep_share = gyre::sleep_share(state_->rigid);
   def.friction_rule = settings.friction_rule;
   def.restitution_rule = settings.restitution_rule;
   return def;
@@ -296,6 +304,7 @@ Energy World::energy() const {
   });
   w.joints.ids.for_each_live([&](std::uint32_t slot) { energy.elastic += spring_energy(w, slot); });
   add_soft_energy(state_->soft, gravity, energy);
+  add_fluid_energy(*state_, energy);
   return energy;
 }
 
@@ -310,6 +319,7 @@ Momentum World::momentum() const {
     momentum.angular += cross(w.bodies.poses[i].center, p) + spin_momentum(w.bodies, i);
   });
   add_soft_momentum(state_->soft, momentum);
+  add_fluid_momentum(*state_, momentum);
   return momentum;
 }
 

@@ -166,6 +166,7 @@ std::unique_ptr<WorldState> make_world_state(const WorldDef& def) {
   w.settings.sleeping = def.sleeping ? 1 : 0;
   if (const Stepping& by = def.stepping; by.solver != SolverKind::soft_step)
     w.solver.push_back({by.solver, by.solver_options});
+  if (def.sleep_share != kSleepSpeedShare) w.sleep_settings.push_back({def.sleep_share});
   w.settings.friction_rule = def.friction_rule;
   w.settings.restitution_rule = def.restitution_rule;
   const MotionSettings motion{def.stepping.integrator, def.stepping.springs, def.stepping.time,

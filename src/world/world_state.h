@@ -116,7 +116,8 @@ constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || s
                                  std::is_same_v<Column, Array<PathPoint>> || std::is_same_v<Column, Array<FieldRecord>> ||
                                  std::is_same_v<Column, Array<MotionSettings>> || std::is_same_v<Column, Array<LastMove>> ||
                                  std::is_same_v<Column, Array<SolverSettings>> || std::is_same_v<Column, SoftStore> ||
-                                 std::is_same_v<Column, FluidStore>;
+                                 std::is_same_v<Column, FluidStore> || std::is_same_v<Column, Array<SleepSettings>> ||
+                                 std::is_same_v<Column, Array<BodySleepSpeed>>;
 
 // Calls visit(name, column) for every state column, in a fixed order. A column is an Array or an IsColumn of records
 // that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
@@ -127,6 +128,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("settings", s.rigid.settings);
   visit("motion_settings", s.rigid.motion_settings);
   visit("solver", s.rigid.solver);
+  visit("sleep_settings", s.rigid.sleep_settings);
   visit("material_pairs", s.rigid.material_pairs);
   visit("surface_rules", s.rigid.surface_rules);
   visit("fields", s.rigid.fields);
@@ -138,6 +140,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("body_forces", s.rigid.bodies.forces);
   visit("body_flags", s.rigid.bodies.flags);
   visit("body_sleep", s.rigid.bodies.sleep);
+  visit("body_sleep_speeds", s.rigid.bodies.sleep_speeds);
   visit("body_overrides", s.rigid.bodies.overrides);
   visit("body_user_data", s.rigid.bodies.user_data);
   visit("shape_ids", s.rigid.shapes.ids);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace gyre::kit {
 namespace {
@@ -149,6 +150,64 @@ TEST(Vehicle, StandsOnItsSprings) {
 }
 
 // In one gear, without slip to speak of: the engine's torque at the wheels moves the mass and all that turns with it.
+// A slope turned about any horizontal axis, so that the car stands up, down or across it.
+TEST(Vehicle, StaysWhereItIsBrakedOnASlope) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> draw(0, 1);
+  for (int trial = 0; trial < 8; ++trial) {
+    World world = *World::create({});
+    const float slope = 0.35f * draw(random), heading = 6.28f * draw(random);
+    const Quat turn = from_axis_angle({std::cos(heading), 0, std::sin(heading)}, slope);
+    const BodyId ground =
+        world.add_body({.type = BodyType::fixed, .pose = {.orientation = turn}}, {.geometry = Plane{}});
+    Car car = make_car(world);
+    for (WheelDef& wheel : car.def.wheels) wheel.brake = 3000;
+    const Pose before = world.pose(car.body);
+    world.set_pose(car.body, {DVec3(rotate(turn, to_float(before.position))), turn * before.orientation});
+    const VehicleInput braked{.brake = 1, .gear = 0};
+    drive(world, car, braked, 5.0);
+    const DVec3 from = world.pose(car.body).position;
+    EXPECT_FALSE(world.is_awake(car.body)) << "slope of " << slope << " rad";
+    world.set_awake(car.body, true);
+    drive(world, car, braked, 20.0);
+    EXPECT_LT(length(world.pose(car.body).position - from), 1e-4) << "slope of " << slope << " rad";
+    // It rolls when the brakes are off, unless it stands across the slope, and falls when the ground goes.
+    if (trial % 2 == 0) {
+      drive(world, car, {.gear = 0}, 2.0);
+      const double along = double(slope) * std::fabs(std::cos(double(heading)));
+      if (along > 0.05) {
+        EXPECT_GT(length(world.pose(car.body).position - from), 0.5);
+      }
+    } else {
+      world.remove_body(ground);
+      drive(world, car, braked, 0.5);
+      EXPECT_GT(length(world.pose(car.body).position - from), 0.5);
+    }
+    EXPECT_TRUE(world.is_awake(car.body));
+  }
+}
+
+// With sleep off the tyres still hold it; a push beyond their grip moves it.
+TEST(Vehicle, StandsOnASlopeWithoutSleep) {
+  World world = *World::create({.sleeping = false});
+  const Quat turn = from_axis_angle({1, 0, 0}, -0.25f);
+  world.add_body({.type = BodyType::fixed, .pose = {.orientation = turn}}, {.geometry = Plane{}});
+  Car car = make_car(world);
+  for (WheelDef& wheel : car.def.wheels) wheel.brake = 3000;
+  world.set_pose(car.body, {DVec3(rotate(turn, to_float(world.pose(car.body).position))), turn});
+  const VehicleInput braked{.brake = 1, .gear = 0};
+  drive(world, car, braked, 5.0);
+  const DVec3 from = world.pose(car.body).position;
+  drive(world, car, braked, 30.0);
+  EXPECT_TRUE(world.is_awake(car.body));
+  EXPECT_LT(length(world.pose(car.body).position - from), 1e-3);
+  for (int i = 0; i < 60; ++i) {
+    world.add_force(car.body, {float(1.5 * kMass * kGravity), 0, 0});
+    drive(world, car, braked, 1.0 / 60);
+  }
+  EXPECT_GT(world.pose(car.body).position.x - from.x, 0.5);
+}
+
 TEST(Vehicle, AcceleratesAsItsGearSays) {
   World world = make_road();
   Car car = make_car(world);
@@ -298,7 +357,8 @@ TEST(Vehicle, DifferentialsShareTorque) {
     drive(world, car, {.throttle = 0.4f}, 4.0);
     speed[locked ? 1 : 0] = forward_speed(world, car);
     if (locked) {
-      EXPECT_NEAR(double(car.state.wheels[2].angular_velocity / car.state.wheels[3].angular_velocity), 1.0, 0.1);
+      EXPECT_NEAR(double(car.state.wheels[2].angular_velocity / car.state.wheels[3].angular_velocity), 1.0,
+                  0.1);
     }
   }
   std::printf("[row] one wheel on ice: %.2f m/s open, %.2f m/s locked\n", speed[0], speed[1]);
@@ -381,7 +441,8 @@ TEST(Vehicle, TracksTurnTogether) {
   EXPECT_LT(length(world.pose(tank.body).position - place), 0.5) << "on the spot";
   EXPECT_LT(tank.state.wheels[0].angular_velocity, 0.0f);
   EXPECT_GT(tank.state.wheels[1].angular_velocity, 0.0f);
-  for (int i = 2; i < 10; ++i) EXPECT_EQ(tank.state.wheels[i].angular_velocity, tank.state.wheels[i % 2].angular_velocity);
+  for (int i = 2; i < 10; ++i)
+    EXPECT_EQ(tank.state.wheels[i].angular_velocity, tank.state.wheels[i % 2].angular_velocity);
 }
 
 // It stands, and in a bend leans by atan(v^2 / g R) with hardly any torque left to hold it there.

@@ -107,6 +107,9 @@ struct WheelState {
   float load = 0.0f;         // N
   float slip = 0.0f, slip_angle = 0.0f;
   Vec3 force{};  // N, of the tyre on the vehicle, world frame
+  // A tyre that stands sticks to the ground: how far its foot is stretched, m, along the wheel and across it.
+  bool stands = false;
+  float stretch_along = 0.0f, stretch_across = 0.0f;
   bool on_ground = false;
   DVec3 contact{};
   Vec3 normal{};
@@ -120,6 +123,7 @@ struct VehicleState {
   int gear = 1;              // -1 reverse, 0 neutral, 1 first ...
   float shifting = 0.0f;     // s, the time left of a shift
   float lean_torque = 0.0f;  // N m, in the last call
+  float parked = 0.0f;       // s for which the vehicle has stood still with locked wheels
 };
 
 struct VehicleInput {
@@ -134,6 +138,9 @@ struct VehicleInput {
 // The reason why a definition is invalid; code none if it is valid.
 Error check_vehicle(const VehicleDef& def);
 
+// A vehicle that has stood still for half a second with all wheels locked by its brakes falls asleep, if it touches no other body, and wakes
+// when the input no longer holds it or the ground under it changes.
+//
 // Applies the forces of the wheels to the body for the next step, and advances wheels and engine by `seconds`. The opposite forces act on
 // dynamic bodies that the wheels roll on. Returns an error, and changes nothing, if something is invalid.
 Error drive_vehicle(World& world, const VehicleDef& def, BodyId body, VehicleState& state,

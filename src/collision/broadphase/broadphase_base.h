@@ -1,5 +1,5 @@
-// The common base of all broad phases but brute force: two indices of boxes, one of fixed and one of moving proxies.
-// Fixed proxies cost nothing, and only moving ones query them. Proxies without bounds (planes) have a list of their
+// The common base of all broad phases but brute force: two indices of boxes, one of fixed and one of moving proxies;
+// sensors are among the latter. Fixed proxies cost nothing, and only moving ones query them. Proxies without bounds (planes) have a list of their
 // own; in an index they would overlap every query and swell every box above them.
 //
 // The index names the broad phase. It contains items (small numbers) with boxes, and has
@@ -51,7 +51,7 @@ class BroadphaseBase : public Broadphase {
   static Home home_of(const Proxy& proxy) {
     if (proxy.motion == ProxyMotion::none) return kNoHome;
     if (is_unbounded(proxy.fat_box)) return kUnboundedList;
-    return proxy.motion == ProxyMotion::fixed ? kFixed : kMoving;
+    return is_scenery(proxy) ? kFixed : kMoving;
   }
   static bool has_index(Home home) { return home == kFixed || home == kMoving; }
 
@@ -200,7 +200,7 @@ void BroadphaseBase<Index>::find_pairs(std::span<const Proxy> proxies, std::span
       return;
     }
     indices_[kMoving].for_each_overlap(proxy.fat_box, visit);
-    if (proxy.motion == ProxyMotion::moving) indices_[kFixed].for_each_overlap(proxy.fat_box, visit);
+    if (!is_scenery(proxy)) indices_[kFixed].for_each_overlap(proxy.fat_box, visit);
     for (const std::uint32_t other : unbounded_) visit(other);
   });
 }

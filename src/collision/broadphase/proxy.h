@@ -11,7 +11,7 @@ namespace gyre {
 
 enum class ProxyMotion : std::uint8_t {
   none,    // the slot is empty
-  fixed,   // never moves by itself: two fixed proxies never pair
+  fixed,   // never moves by itself: two fixed proxies pair only if one is a sensor
   moving,  // kinematic or dynamic
 };
 
@@ -24,10 +24,13 @@ struct Proxy {
   bool pushes = true;  // dynamic: a pair needs at least one, unless one is a sensor
 };
 
+// True if the proxy has no pairs with others of its kind: it is fixed and no sensor. A fixed sensor reports fixed shapes, too.
+constexpr bool is_scenery(const Proxy& proxy) { return proxy.motion == ProxyMotion::fixed && !proxy.sensor; }
+
 // True if the two may pair, whatever their boxes.
 constexpr bool may_pair(const Proxy& a, const Proxy& b) {
   if (a.motion == ProxyMotion::none || b.motion == ProxyMotion::none || a.body == b.body) return false;
-  if (a.motion == ProxyMotion::fixed && b.motion == ProxyMotion::fixed) return false;
+  if (is_scenery(a) && is_scenery(b)) return false;
   if (a.sensor && b.sensor) return false;
   if (!a.sensor && !b.sensor && !a.pushes && !b.pushes) return false;
   if (a.filter.group != 0 && a.filter.group == b.filter.group) return a.filter.group > 0;

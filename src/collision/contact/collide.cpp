@@ -111,12 +111,14 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint64_t activ
       continue;
     }
     if (blocks_fast_bodies(contact, input.proxies)) changes.ccd_blockers.set(slot);
-    if (input.awake[contact.body_a] == 0 && input.awake[contact.body_b] == 0) {
+    const bool unseen = is_unseen(contact);
+    if (input.awake[contact.body_a] == 0 && input.awake[contact.body_b] == 0 && !unseen) {
       list.note_manifolds(slot, contact);
       continue;
     }
     const ColliderShape& shape_a = input.shapes[contact.shape_a];
     const ColliderShape& shape_b = input.shapes[contact.shape_b];
+    if (unseen) contact.cached_distance = -1.0f;
     // A sensor's contact caches nothing, so each of its updates is a first one.
     if (contact.cached_distance < 0.0f && contact.sensor == 0)
       contact.size = smaller_size(shape_a.size, shape_b.size);

@@ -110,7 +110,7 @@ inline bool blocks_fast_bodies(const Contact& contact, std::span<const Proxy> pr
   return !proxies[contact.shape_a].pushes || !proxies[contact.shape_b].pushes || contact.sensor != 0;
 }
 
-// Updates the active contacts. A contact without an awake body stays exactly as it is, unless it is gone. In updated
+// Updates the active contacts. A contact without an awake body stays exactly as it is, unless it is gone or an unseen sensor's. In updated
 // manifolds the sums over a step (total_impulse, total_friction) and approach_speed become zero; warm-start impulses
 // are carried over.
 void collide(ContactStore& store, const CollideInput& input, TaskSystem& tasks, TouchChanges& changes);

@@ -125,6 +125,7 @@ std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShap
   contact.manifold_room = shapes.against_mesh ? std::uint16_t(kMaxMeshManifolds) : std::uint16_t(1);
   contact.first_manifold = acquire_manifolds(store, contact.manifold_room);
   contact.sensor = shapes.sensor ? 1 : 0;
+  if (shapes.sensor) contact.cached_distance = kUnseen;
   contact.surface = shapes.surface;
   store.contacts[slot] = contact;
   if (shapes.against_mesh) clear_cached_triangles(store, contact);

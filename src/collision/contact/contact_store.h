@@ -57,6 +57,11 @@ struct ContactLinks {
 };
 constexpr std::uint32_t kNoLink = 0xffffffffu;
 
+// `cached_distance` of a sensor's contact that must be updated even if neither body moves: it is new, or a command halted a
+// kinematic body after its last update.
+constexpr float kUnseen = -2.0f;  // m
+inline bool is_unseen(const Contact& contact) { return contact.cached_distance == kUnseen; }
+
 // Free slots; the lowest is handed out first.
 class FreeSlots {
  public:
@@ -117,7 +122,9 @@ void remove_contact(ContactStore& store, std::uint32_t slot);
 // Rebuilds everything but contacts and manifolds, after a snapshot was loaded.
 void rebuild_index(ContactStore& store);
 // Makes the next update of this contact a full one, after a change of a body that its pose does not show.
-inline void invalidate_cache(Contact& contact) { contact.cached_distance = -1.0f; }
+inline void invalidate_cache(Contact& contact) {
+  if (!is_unseen(contact)) contact.cached_distance = -1.0f;
+}
 
 // Calls fn(slot) for each contact of a shape, in no particular order; fn must not add or remove contacts.
 template <class Fn>

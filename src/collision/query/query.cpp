@@ -5,6 +5,7 @@
 #include "geometry/manifold/manifold.h"
 #include "geometry/query/cast_surface.h"
 #include "geometry/query/closest_points.h"
+#include "geometry/query/surface_overlap.h"
 
 namespace gyre {
 namespace {
@@ -195,6 +196,23 @@ void find_penetrations(const QueryInput& input, const WorldShape& shape,
     }
     return 1.0f;
   });
+}
+
+bool do_shapes_overlap(const QueryInput& input, std::uint32_t a, std::uint32_t b) {
+  if (!is_convex(input.shapes[b].shape.kind)) {
+    const std::uint32_t swapped = a;
+    a = b;
+    b = swapped;
+  }
+  const Shape& target = input.shapes[a].shape;
+  const Shape& convex = input.shapes[b].shape;
+  const Pose pose_a = input.pose_of(a), pose_b = input.pose_of(b);
+  if (!is_convex(convex.kind)) return surfaces_overlap(target, convex, inverse_times(pose_a, pose_b));
+  const Frame frame(pose_a);
+  const DQuat orientation = normalized(to_double(pose_b.orientation));
+  const PosedShape posed{&convex, frame.to_local(pose_b.position), conjugate(frame.orientation) * orientation};
+  ClosestPair closest;
+  return find_closest_points(target, posed, 0.0, closest);
 }
 
 }  // namespace gyre

@@ -83,4 +83,7 @@ struct ShapePenetration {
 void find_penetrations(const QueryInput& input, const WorldShape& shape,
                        FunctionRef<void(const ShapePenetration& deep)> found);
 
+// True if the shapes of the two indices overlap or touch. Of any kinds.
+bool do_shapes_overlap(const QueryInput& input, std::uint32_t a, std::uint32_t b);
+
 }  // namespace gyre

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fluid/kernels/field_lanes.h"
+#include "fluid/kernels/particle_lanes.h"
 #include "fluid/kernels/pressure_lanes.h"
 #include "fluid/kernels/transport_lanes.h"
 
@@ -24,6 +25,8 @@ constexpr GasKernels gas_kernels() {
   kernels.add_mean = add_mean_points<W>;
   kernels.find_mean = find_mean_points<W>;
   kernels.find_inflow = find_inflow_cells<W>;
+  kernels.add_particles = add_particle_sums<W>;
+  kernels.move_particles = move_particle_lanes<W>;
   kernels.largest = largest_point<W>;
   kernels.find_vorticity = find_vorticity_cells<W>;
   kernels.find_confinement = find_confinement_cells<W>;

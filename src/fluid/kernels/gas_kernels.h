@@ -67,6 +67,40 @@ struct VortexPass {
   float strength = 0.0f;  // m
 };
 
+// Particles of a liquid along one axis. Beyond the last centre before a wall there is a mirror image.
+struct ParticleAxis {
+  float inverse_edge = 0.0f, edge = 0.0f;  // of a cell
+  int last_face = 0;                       // the last one with a face above it
+  int low = 0, last_center = 0;            // the first and the last centre with one above it
+  float highest_center = 0.0f;
+  bool wraps = false;
+  float length = 0.0f;                           // m, of the box
+  float lower_wall = 0.0f, upper_wall = 0.0f;    // m: paths stay between
+  float lower_limit = 0.0f, upper_limit = 0.0f;  // m: and so do particles; beyond the box at open sides
+  float lower_speed = 0.0f, upper_speed = 0.0f;  // m/s: bounds of the speed of a particle that a wall stops
+};
+struct ParticlePass {
+  GridShape shape;
+  ParticleAxis axes[3];
+  const float* position[3] = {};
+  float* motion[3] = {};
+  float* affine[9] = {};
+  const float* volume = nullptr;
+  // Sums: pairs of volume and momentum on faces, null: the axis is flat; volume at centres.
+  float* sums[3] = {};
+  float* filled = nullptr;
+  // Motion: velocity on faces, null: the axis is flat, and what carries particles; before: null if particles take the whole velocity.
+  const float* velocity[3] = {};
+  const float* carrier[3] = {};
+  const float* before[3] = {};
+  const std::uint8_t* wet = nullptr;  // of centres: liquid among this and the seven above along the axes
+  float* to[3] = {};                  // new positions, of particle to_begin on
+  int to_begin = 0;
+  float step = 0.0f, blend = 1.0f;
+  float fall[3] = {};     // m/s: of particles away from liquid
+  bool finishes = false;  // keeps them within walls; else the caller does
+};
+
 struct GasKernels {
   int width;
   // y = A x; the sum of x times y.
@@ -106,6 +140,10 @@ struct GasKernels {
   // to = the sum over the axes of scale (velocity - velocity at stride), where a cell has an equation, else 0.
   void (*find_inflow)(const PressureLevel& level, const float* const (&velocity)[3], const float (&scale)[3],
                       float* to, int row_begin, int row_end);
+  // Adds the sums of particles [begin, end) of a row of cells to the grid.
+  void (*add_particles)(const ParticlePass& pass, int begin, int end);
+  // Velocity, slopes and new positions of particles.
+  void (*move_particles)(const ParticlePass& pass, int begin, int end);
   // The largest magnitude.
   float (*largest)(const FieldRows& rows, const float* field, int row_begin, int row_end);
   void (*find_vorticity)(const VortexPass& pass, int row_begin, int row_end);

@@ -7,60 +7,149 @@ namespace gyre {
 
 namespace {
 
-constexpr std::uint8_t kUnknown = 255;
+constexpr std::uint8_t kUnknown = 255, kOutside = 254, kWrapped = 253;
+constexpr int kListed = 512;  // faces that a worker takes at a time
 
-void find_first_layer(const LiquidPass& pass, int axis, std::uint8_t* layer) {
+// The face or cell that a ghost of a periodic axis stands for.
+int find_original(const LiquidPass& pass, int place) {
+  const GridShape& shape = pass.shape();
+  const int from = place - shape.at(-1, -1, -1);
+  int index[3] = {from % shape.plane % shape.pitch - 1, from % shape.plane / shape.pitch - 1,
+                  from / shape.plane - 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!pass.wraps(axis)) continue;
+    const int n = shape.cells[axis];
+    index[axis] = index[axis] < 0 ? n - 1 : index[axis] >= n ? 0 : index[axis];
+  }
+  return shape.at(index[0], index[1], index[2]);
+}
+
+void mark_faces(const LiquidPass& pass, int axis, Array<std::uint8_t>& layer) {
   const GridShape& shape = pass.shape();
   const LiquidCell* const cell = pass.memory.cell.data();
   const int step = shape.stride(axis);
+  layer.clear();
+  layer.resize(std::size_t(shape.size + shape.plane), kOutside);
   each_row(pass, axis, [&](int c, int, int) {
     for (int f = c; f < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++f) {
       const bool beside = cell[f] == LiquidCell::liquid || cell[f - step] == LiquidCell::liquid;
       layer[f] = beside ? 0 : kUnknown;
     }
   });
+  for (int other = 0; other < 3; ++other) {
+    if (!pass.wraps(other)) continue;
+    const int a = (other + 1) % 3, b = (other + 2) % 3, n = shape.cells[other], stride = shape.stride(other);
+    for (int j = -1; j <= shape.cells[b]; ++j) {
+      for (int i = -1; i <= shape.cells[a]; ++i) {
+        std::uint8_t* const line = layer.data() + shape.first + i * shape.stride(a) + j * shape.stride(b);
+        line[-stride] = line[n * stride] = kWrapped;
+      }
+    }
+  }
+}
+
+// Adds the unknown faces beside known ones of a row.
+void list_first_layer(const LiquidPass& pass, int first, int count, Array<std::uint8_t>& layer,
+                      Array<std::uint8_t>& near, Array<std::int32_t>& list) {
+  const GridShape& shape = pass.shape();
+  const int py = shape.pitch, pz = shape.plane;
+  const std::uint8_t* const at = layer.data() + first;
+  near.resize(std::size_t(count) + 8, std::uint8_t(0));
+  std::uint8_t* const found = near.data();
+  // Those with a ghost of a periodic axis beside them are looked at below.
+  const auto counts = [](std::uint8_t one) { return std::uint8_t((one == 0) | (one == kWrapped)); };
+  for (int i = 0; i < count; ++i) {
+    const std::uint8_t any = counts(at[i - 1]) | counts(at[i + 1]) | counts(at[i - py]) | counts(at[i + py]) |
+                             counts(at[i - pz]) | counts(at[i + pz]);
+    found[i] = std::uint8_t(any & std::uint8_t(at[i] == kUnknown));
+  }
+  for (int i = 0; i < count; ++i) {
+    if (i % 8 == 0) {
+      std::uint64_t eight;
+      std::memcpy(&eight, found + i, sizeof eight);
+      if (eight == 0 && i + 8 <= count) {
+        i += 7;
+        continue;
+      }
+    }
+    if (found[i] == 0) continue;
+    for (const int step : {1, py, pz}) {
+      bool known = false;
+      for (const int next : {first + i - step, first + i + step}) {
+        const int original = layer[next] == kWrapped ? find_original(pass, next) : next;
+        known = known || layer[original] == 0;
+      }
+      if (!known) continue;
+      list.push_back(first + i);
+      break;
+    }
+  }
 }
 
 }  // namespace
 
-void find_layers(const LiquidPass& pass, int count, Array<float> (&fields)[3]) {
+void find_layers(const LiquidPass& pass, int count) {
   const GridShape& shape = pass.shape();
-  const int steps[3] = {1, shape.pitch, shape.plane};
+  Array<std::uint8_t> near;
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     Array<std::uint8_t>& layer = pass.memory.layer[axis];
-    Array<std::uint8_t>& next = pass.memory.next_layer;
+    Array<std::int32_t>& list = pass.memory.beyond[axis];
+    Array<std::int32_t>& begin = pass.memory.beyond_begin[axis];
+    mark_faces(pass, axis, layer);
+    list.clear();
+    begin.clear();
+    begin.push_back(0);
+    const int rows_y = shape.cells[1] + (axis == 1 ? 1 : 0), rows_z = shape.cells[2] + (axis == 2 ? 1 : 0);
+    for (int k = 0; k < rows_z; ++k) {
+      for (int j = 0; j < rows_y; ++j)
+        list_first_layer(pass, shape.row(j, k), shape.cells[0] + (axis == 0 ? 1 : 0), layer, near, list);
+    }
+    for (const std::int32_t f : list) layer[f] = 1;
+    for (int round = 1; round < count; ++round) {
+      const std::size_t first = std::size_t(begin.back()), last = list.size();
+      begin.push_back(std::int32_t(last));
+      for (std::size_t i = first; i < last; ++i) {
+        const int f = list[i];
+        for (const int step : {1, shape.pitch, shape.plane}) {
+          for (const int beside : {f - step, f + step}) {
+            const int next = layer[beside] == kWrapped ? find_original(pass, beside) : beside;
+            if (layer[next] != kUnknown) continue;
+            layer[next] = std::uint8_t(round + 1);
+            list.push_back(next);
+          }
+        }
+      }
+    }
+    begin.push_back(std::int32_t(list.size()));
+  }
+}
+
+void extrapolate(const LiquidPass& pass, Array<float> (&fields)[3]) {
+  const GridShape& shape = pass.shape();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    const std::uint8_t* const layer = pass.memory.layer[axis].data();
+    const Array<std::int32_t>& list = pass.memory.beyond[axis];
+    const Array<std::int32_t>& begins = pass.memory.beyond_begin[axis];
     float* const field = fields[axis].data();
-    layer.clear();
-    layer.resize(std::size_t(shape.size), kUnknown);
-    find_first_layer(pass, axis, layer.data());
-    for (int round = 1; round <= count; ++round) {
-      wrap_points(pass, layer.data());
-      wrap_points(pass, field);
-      next.assign(layer.view());
-      const std::uint8_t* const now = layer.data();
-      each_row(pass, axis, [&](int c, int j, int k) {
-        const int across = axis == 1 ? j : k;
-        for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
-          const int f = c + i;
-          if (now[f] != kUnknown) continue;
-          const bool last = (axis == 0 ? i : across) == shape.cells[axis];
+    for (std::size_t round = 0; round + 1 < begins.size(); ++round) {
+      const int first = begins[round], total = begins[round + 1] - first;
+      const auto own = std::uint8_t(round + 1);
+      for_blocks(pass.tasks, total, kListed, [&](int begin, int end, int) {
+        for (int i = first + begin; i < first + end; ++i) {
+          const int f = list[i];
           float sum = 0.0f;
           int known = 0;
-          for (int other = 0; other < 3; ++other) {
-            const int step = steps[other];
-            if (now[f - step] != kUnknown) sum += field[f - step], ++known;
-            if (other == axis && last) continue;
-            if (now[f + step] != kUnknown) sum += field[f + step], ++known;
+          for (const int step : {1, shape.pitch, shape.plane}) {
+            for (const int beside : {f - step, f + step}) {
+              const int next = layer[beside] == kWrapped ? find_original(pass, beside) : beside;
+              if (layer[next] < own) sum += field[next], ++known;
+            }
           }
-          if (known == 0) continue;
           field[f] = sum / float(known);
-          next[f] = std::uint8_t(round);
         }
       });
-      Array<std::uint8_t> swapped = static_cast<Array<std::uint8_t>&&>(layer);
-      layer = static_cast<Array<std::uint8_t>&&>(next);
-      next = static_cast<Array<std::uint8_t>&&>(swapped);
     }
     wrap_points(pass, field);
   }

@@ -1,4 +1,4 @@
-// Velocities of faces beyond the liquid, from those beside it, layer by layer: the mean of the neighbours that are known (R. Bridson, "Fluid
+// Velocities of faces beyond the liquid, from those beside it, layer by layer: the mean of the neighbours that are nearer (R. Bridson, "Fluid
 // Simulation for Computer Graphics", 2008).
 #pragma once
 
@@ -6,7 +6,9 @@
 
 namespace gyre {
 
-// Layers of faces: those beside liquid are 0, up to `count` beyond them.
-void find_layers(const LiquidPass& pass, int count, Array<float> (&fields)[3]);
+// Lists the faces of each layer; those beside liquid are layer 0, up to `count` beyond them.
+void find_layers(const LiquidPass& pass, int count);
+// Gives the faces of all layers but the first their values, and ghosts theirs.
+void extrapolate(const LiquidPass& pass, Array<float> (&fields)[3]);
 
 }  // namespace gyre

@@ -43,22 +43,6 @@ struct Occupied {
   }
 };
 
-bool is_solid(const LiquidGrid& grid, const GasSolids& solids, Vec3 at) {
-  if (!solids.present()) return false;
-  int index[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const int i = int(part_along(at, axis) / part_along(grid.box.cell, axis)),
-              last = grid.shape.cells[axis] - 1;
-    index[axis] = i < last ? i : last;
-  }
-  if (!solids.distance.empty()) {
-    // Particles that touch the surface would be pushed out at once.
-    return sample_field(grid.box, grid.shape, solids.distance.data(), -1, at) <
-           kParticleSkin * grid.box.cell.x;
-  }
-  return solids.solid[grid.shape.at(index[0], index[1], index[2])] != 0;
-}
-
 // A lattice of about two points a cell along each axis that fills [lower, upper] evenly. Calls fn with each point.
 template <class Fn>
 void for_lattice(const GasBox& box, const double (&lower)[3], const double (&upper)[3], Fn&& fn) {
@@ -105,7 +89,7 @@ int fill(LiquidGrid& grid, const double (&lower)[3], const double (&upper)[3], V
   const bool empty = grid.particles() == 0;
   const int before = grid.particles();
   for_lattice(grid.box, lower, upper, [&](Vec3 at, double volume) {
-    if (!inside(at) || is_solid(grid, solids, at)) return;
+    if (!inside(at) || !has_room(grid, solids, at)) return;
     if (!empty && occupied.taken[occupied.index(grid.box, at)] != 0) return;
     add_particle(grid, at, velocity, float(volume));
   });
@@ -113,6 +97,22 @@ int fill(LiquidGrid& grid, const double (&lower)[3], const double (&upper)[3], V
 }
 
 }  // namespace
+
+bool has_room(const LiquidGrid& grid, const GasSolids& solids, Vec3 point) {
+  int index[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const float at = part_along(point, axis), edge = part_along(grid.box.cell, axis);
+    const int last = grid.shape.cells[axis] - 1;
+    if (!(at >= 0.0f && at <= float(last + 1) * edge)) return false;
+    const int i = int(at / edge);
+    index[axis] = i < last ? i : last;
+  }
+  if (!solids.present()) return true;
+  if (solids.distance.empty()) return solids.solid[grid.shape.at(index[0], index[1], index[2])] == 0;
+  // Particles that touch the surface would be pushed out at once.
+  return sample_field(grid.box, grid.shape, solids.distance.data(), -1, point) >=
+         kParticleSkin * grid.box.cell.x;
+}
 
 float particle_volume(const GasBox& box) {
   const double share[4] = {0.125, 0.25, 0.5, 1.0};

@@ -22,8 +22,10 @@ struct LiquidMemory {
   Array<float> steepness[3];
   Array<std::uint8_t> blocked;  // cells without room for liquid
   Array<LiquidCell> cell;
-  Array<std::uint8_t> layer[3];  // of faces: how many from those beside liquid, which are 0
-  Array<std::uint8_t> next_layer;
+  Array<std::uint8_t> wet;        // of centres: liquid among this and the seven above along the axes
+  Array<std::uint8_t> layer[3];   // of faces: how many from those beside liquid, which are 0
+  Array<std::int32_t> beyond[3];  // faces beyond those, layer by layer, and where each layer begins
+  Array<std::int32_t> beyond_begin[3];
   Array<std::int32_t> start;  // of the particles of each cell
   Array<std::int32_t> place;  // of each particle in the order of cells, -1: it has left
   Array<float> spare;         // a column of particles while they are sorted

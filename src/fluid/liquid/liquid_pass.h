@@ -64,42 +64,29 @@ void wrap_points(const LiquidPass& pass, T* field) {
   }
 }
 
-// Where a coordinate lies between two points of the grid.
-struct AxisPlace {
-  int base;
-  float fraction;
-};
-// Along one axis: between faces, and between centres, where a particle closer to a wall than the last centre counts as on it: beyond the wall
-// there is a mirror image.
-struct AxisPlaces {
-  float inverse_edge = 0.0f, edge = 0.0f;
-  int last_face = 0, low = 0, last_center = 0;
-
-  AxisPlaces() = default;
-  AxisPlaces(const GasBox& box, int axis) {
-    const int n = box.cells[axis];
-    const bool flat = n == 1, wraps = box.periodic(axis) && !flat;
-    edge = part_along(box.cell, axis);
-    inverse_edge = 1.0f / edge;
-    last_face = n - 1;
-    low = wraps ? -1 : 0;
-    last_center = wraps ? n - 1 : flat ? 0 : n - 2;
-  }
-  AxisPlace face(float at) const {
-    const float s = at * inverse_edge;
-    int base = int(s);
-    base = base < last_face ? base : last_face;
-    return {base, s - float(base)};
-  }
-  AxisPlace center(float at) const {
-    float s = at * inverse_edge - 0.5f;
-    const float lowest = float(low), highest = float(last_center + (last_face > 0 ? 1 : 0));
-    s = s > lowest ? s : lowest;
-    s = s < highest ? s : highest;
-    int base = int(s - lowest) + low;
-    base = base < last_center ? base : last_center;
-    return {base, s - float(base)};
-  }
-};
+// Where particles lie along an axis. A wall keeps them a thousandth of an edge away.
+inline ParticleAxis particle_axis(const GasBox& box, int axis) {
+  ParticleAxis result;
+  const int n = box.cells[axis];
+  const bool flat = n == 1;
+  result.wraps = box.periodic(axis) && !flat;
+  result.edge = part_along(box.cell, axis);
+  result.inverse_edge = 1.0f / result.edge;
+  result.last_face = n - 1;
+  result.low = result.wraps ? -1 : 0;
+  result.last_center = result.wraps ? n - 1 : flat ? 0 : n - 2;
+  result.highest_center = result.wraps ? float(n) : float(n - 1);
+  result.length = float(n) * result.edge;
+  const float margin = 1.0e-3f * result.edge, far = 1.0e30f;
+  const bool open_low = box.open(2 * axis), open_high = box.open(2 * axis + 1);
+  const bool held_low = !open_low && !result.wraps, held_high = !open_high && !result.wraps;
+  result.lower_wall = held_low ? margin : 0.0f;
+  result.upper_wall = held_high ? result.length - margin : result.length;
+  result.lower_limit = held_low ? margin : open_low ? -far : 0.0f;
+  result.upper_limit = held_high ? result.length - margin : open_high ? far : result.length;
+  result.lower_speed = held_low ? 0.0f : -far;
+  result.upper_speed = held_high ? 0.0f : far;
+  return result;
+}
 
 }  // namespace gyre

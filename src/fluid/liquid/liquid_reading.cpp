@@ -67,8 +67,12 @@ LiquidProbe probe_liquid(const LiquidGrid& grid, DVec3 point, float density) {
     int base[3];
     float fraction[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const AxisPlace place = AxisPlaces(box, axis).center(part_along(local, axis));
-      base[axis] = place.base, fraction[axis] = place.fraction;
+      const ParticleAxis points = particle_axis(box, axis);
+      const float place = clamp(part_along(local, axis) * points.inverse_edge - 0.5f, float(points.low),
+                                points.highest_center);
+      const int whole = int(place - float(points.low)) + points.low;
+      base[axis] = whole < points.last_center ? whole : points.last_center;
+      fraction[axis] = place - float(base[axis]);
     }
     for (int corner = 0; corner < 8; ++corner) {
       float weight = 1.0f;

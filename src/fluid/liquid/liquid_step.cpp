@@ -9,6 +9,8 @@
 #include "fluid/liquid/particle_transfer.h"
 #include "fluid/liquid/surface_tension.h"
 
+#include <cmath>
+
 namespace gyre {
 
 namespace {
@@ -59,24 +61,98 @@ float largest_displacement(const LiquidPass& pass, Vec3 gravity) {
   return most;
 }
 
-void apply_emitters(const LiquidPass& pass, std::span<const LiquidEmitter> emitters, double time) {
+// A lattice that moves with the velocity of a source: particles that have come from it are still on it, and only places without one get one.
+struct SourceLattice {
+  double spacing[3], offset[3];
+  int counts[3];
+  Array<std::uint8_t> taken;
+
+  SourceLattice(const LiquidGrid& grid, const LiquidEmitter& emitter, double time) {
+    std::size_t count = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double edge = double(part_along(grid.box.cell, axis));
+      spacing[axis] = grid.box.flat(axis) ? edge : 0.5 * edge;
+      const double moved =
+          grid.box.flat(axis) ? 0.0 : double(part_along(emitter.velocity, axis)) * (time - emitter.start);
+      const double places = moved / spacing[axis];
+      offset[axis] = (places - std::floor(places)) * spacing[axis];
+      counts[axis] =
+          (grid.box.flat(axis) ? 1 : 2 * grid.box.cells[axis]) + 1;  // the first begins before the box
+      count *= std::size_t(counts[axis]);
+    }
+    taken.resize(count, std::uint8_t(0));
+  }
+  int place(int axis, float at) const {
+    const int i = int((double(at) - offset[axis]) / spacing[axis] + 1.0);
+    return i < 0 ? 0 : i < counts[axis] ? i : counts[axis] - 1;
+  }
+  float point(int axis, int i) const { return float((double(i) - 0.5) * spacing[axis] + offset[axis]); }
+  std::uint8_t& at(int i, int j, int k) { return taken[i + counts[0] * (j + counts[1] * k)]; }
+};
+
+void apply_emitter(const LiquidPass& pass, const LiquidEmitter& emitter, double time) {
   LiquidGrid& grid = pass.grid;
-  for (const LiquidEmitter& emitter : emitters) {
-    if (!(time >= emitter.start && time < emitter.end)) continue;
-    const Vec3 center = difference(emitter.position, grid.box.corner);
-    for (int p = 0; p < grid.particles(); ++p) {
-      float square = 0.0f;
-      for (int axis = 0; axis < 3; ++axis) {
-        const float offset = grid.position[axis][p] - part_along(center, axis);
-        if (!pass.flat(axis)) square += offset * offset;
-      }
-      if (!(square <= emitter.radius * emitter.radius)) continue;
-      for (int axis = 0; axis < 3; ++axis) {
-        grid.motion[axis][p] = pass.flat(axis) ? 0.0f : part_along(emitter.velocity, axis);
-        for (int b = 0; b < 3; ++b) grid.affine[3 * axis + b][p] = 0.0f;
+  const Vec3 center = difference(emitter.position, grid.box.corner);
+  const auto holds = [&](Vec3 point) {
+    Vec3 offset = point - center;
+    if (pass.flat(0)) offset.x = 0.0f;
+    if (pass.flat(1)) offset.y = 0.0f;
+    if (pass.flat(2)) offset.z = 0.0f;
+    return dot(offset, offset) <= emitter.radius * emitter.radius;
+  };
+  SourceLattice lattice(grid, emitter, time);
+  for (int p = 0; p < grid.particles(); ++p) {
+    const Vec3 point{grid.position[0][p], grid.position[1][p], grid.position[2][p]};
+    if (!is_finite(point)) continue;
+    lattice.at(lattice.place(0, point.x), lattice.place(1, point.y), lattice.place(2, point.z)) = 1;
+    if (!holds(point)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      grid.motion[axis][p] = pass.flat(axis) ? 0.0f : part_along(emitter.velocity, axis);
+      for (int b = 0; b < 3; ++b) grid.affine[3 * axis + b][p] = 0.0f;
+    }
+  }
+  const Vec3 velocity{pass.flat(0) ? 0.0f : emitter.velocity.x, pass.flat(1) ? 0.0f : emitter.velocity.y,
+                      pass.flat(2) ? 0.0f : emitter.velocity.z};
+  const float volume = particle_volume(grid.box);
+  for (int k = 0; k < lattice.counts[2]; ++k) {
+    for (int j = 0; j < lattice.counts[1]; ++j) {
+      for (int i = 0; i < lattice.counts[0]; ++i) {
+        const Vec3 point{lattice.point(0, i), lattice.point(1, j), lattice.point(2, k)};
+        if (lattice.at(i, j, k) == 0 && holds(point) && has_room(grid, pass.solids, point))
+          add_particle(grid, point, velocity, volume);
       }
     }
-    fill_liquid_ball(grid, emitter.position, emitter.radius, emitter.velocity, pass.solids);
+  }
+}
+
+// Within a source the liquid moves with its velocity, whatever pressure and weight would do: so as much flows as its area and velocity say.
+void hold_sources(const LiquidPass& pass, std::span<const LiquidEmitter> emitters, double time) {
+  const GridShape& shape = pass.shape();
+  for (const LiquidEmitter& emitter : emitters) {
+    if (!(time >= emitter.start && time < emitter.end)) continue;
+    const Vec3 center = difference(emitter.position, pass.box().corner);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (pass.flat(axis)) continue;
+      const float velocity = part_along(emitter.velocity, axis);
+      each_row(pass, axis, [&](int c, int j, int k) {
+        for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+          const float place[3] = {float(i), float(j), float(k)};
+          float square = 0.0f;
+          for (int other = 0; other < 3; ++other) {
+            const float at = (place[other] + (other == axis ? 0.0f : 0.5f)) * pass.edge(other);
+            const float offset = at - part_along(center, other);
+            if (!pass.flat(other)) square += offset * offset;
+          }
+          const float reach =
+              emitter.radius + 0.5f * pass.edge(axis);  // particles at the rim lie between faces
+          if (square > reach * reach || !(pass.memory.open[axis][c + i] > 0.0f)) continue;
+          pass.grid.velocity[axis][c + i] = velocity;
+          pass.memory.drift[axis][c + i] = velocity;
+        }
+      });
+      wrap_points(pass, pass.grid.velocity[axis].data());
+      wrap_points(pass, pass.memory.drift[axis].data());
+    }
   }
 }
 
@@ -99,7 +175,8 @@ void save_velocity(const LiquidPass& pass) {
   }
 }
 
-void run_substep(const LiquidPass& pass, const LiquidSettings& settings, LiquidReport& report,
+void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
+                 std::span<const LiquidEmitter> emitters, double time, LiquidReport& report,
                  std::span<GasImpulse> impulses) {
   sort_particles(pass);
   transfer_to_grid(pass);
@@ -116,8 +193,10 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings, LiquidR
   report.divergence = largest_liquid_divergence(pass);
   const int layers = 2 + int(settings.max_cells + 0.999f);
   report.iterations += find_carrier(pass).iterations;
-  find_layers(pass, layers, pass.grid.velocity);
-  find_layers(pass, layers, pass.memory.drift);
+  find_layers(pass, layers);
+  extrapolate(pass, pass.grid.velocity);
+  extrapolate(pass, pass.memory.drift);
+  hold_sources(pass, emitters, time);
   move_particles(pass, settings.blend, settings.gravity);
 }
 
@@ -133,7 +212,9 @@ LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, std::span<co
   LiquidReport report;
   begin_motions(grid.box, bodies, solids.present() ? solids.labels : 0, memory.coupling);
   find_open_faces(pass);
-  apply_emitters(pass, emitters, time);
+  for (const LiquidEmitter& emitter : emitters) {
+    if (time >= emitter.start && time < emitter.end) apply_emitter(pass, emitter, time);
+  }
   const float cells = largest_displacement(pass, settings.gravity);
   const float longest = capillary_step(grid.box, settings.surface_tension / settings.density);
   report.substeps = 1;
@@ -143,7 +224,7 @@ LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, std::span<co
   pass.step = step / float(report.substeps);
   for (int substep = 0; substep < report.substeps; ++substep) {
     pass.elapsed = float(substep) * pass.step;
-    run_substep(pass, settings, report, impulses);
+    run_substep(pass, settings, emitters, time, report, impulses);
   }
   if (grid.box.any_open()) sort_particles(pass);
   report.volume = liquid_volume(grid, solids);

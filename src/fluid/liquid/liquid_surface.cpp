@@ -11,7 +11,7 @@ namespace {
 struct SurfaceField {
   const LiquidGrid& grid;
 
-  // The distance at a centre; beyond the sides of the box the surface lies on the side.
+  // The distance at a centre; positive beyond the sides of the box.
   float at(int i, int j, int k) const {
     const int place[3] = {i, j, k};
     int inside[3];
@@ -22,7 +22,7 @@ struct SurfaceField {
       outside = outside || inside[axis] != place[axis];
     }
     const float value = grid.surface[grid.shape.at(inside[0], inside[1], inside[2])];
-    return outside && value < 0.0f ? -value : value;
+    return outside ? absolute(value) : value;
   }
 };
 
@@ -52,17 +52,32 @@ void find_surface_mesh(const LiquidGrid& grid, Array<Vec3>& vertices, Array<std:
           inside += value[corner] < 0.0f ? 1 : 0;
         }
         if (inside == 0 || inside == 8) continue;
+        // Corners beyond a side take no part but that the vertex then lies on the side.
+        const int index[3] = {i, j, k};
+        int beyond = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+          for (int axis = 0; axis < 3; ++axis) {
+            const int place = index[axis] + (corner >> axis & 1);
+            if (place < 0 || place >= shape.cells[axis]) beyond |= 1 << corner;
+          }
+        }
         Vec3 sum{};
         int crossings = 0;
         for (const auto& edge : kEdges) {
           const float a = value[edge[0]], b = value[edge[1]];
-          if ((a < 0.0f) == (b < 0.0f)) continue;
+          if ((beyond >> edge[0] & 1) != 0 || (beyond >> edge[1] & 1) != 0 || (a < 0.0f) == (b < 0.0f))
+            continue;
           const float t = a / (a - b);
           const auto corner = [](int c) { return Vec3{float(c & 1), float(c >> 1 & 1), float(c >> 2)}; };
           sum += lerp(corner(edge[0]), corner(edge[1]), t);
           ++crossings;
         }
-        const Vec3 place = sum / float(crossings) + Vec3{float(i) + 0.5f, float(j) + 0.5f, float(k) + 0.5f};
+        Vec3 place = crossings > 0 ? sum / float(crossings) : Vec3{0.5f, 0.5f, 0.5f};
+        float* const parts[3] = {&place.x, &place.y, &place.z};
+        for (int axis = 0; axis < 3; ++axis) {
+          if (index[axis] < 0 || index[axis] == shape.cells[axis] - 1) *parts[axis] = 0.5f;
+        }
+        place += Vec3{float(i) + 0.5f, float(j) + 0.5f, float(k) + 0.5f};
         vertex[shape.at(i, j, k)] = std::uint32_t(vertices.size());
         vertices.push_back(max(Vec3{}, min(size, multiply_each(place, h))));
       }

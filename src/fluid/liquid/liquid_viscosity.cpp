@@ -12,12 +12,13 @@ constexpr int kMaxIterations = 200;
 
 struct Viscosity {
   const LiquidPass& pass;
-  float scale = 0.0f;       // step times kinematic viscosity
-  Array<float> share;       // of cells: how much of them is liquid
-  Array<float> edge[3];     // weights of the edges along each axis
-  Array<float> weight[3];   // of faces; 0: its velocity is given
-  Array<float> inverse[3];  // of the diagonal
-  Array<float> stress[6];   // along the axes, then of edges along each axis
+  float scale = 0.0f;            // step times kinematic viscosity
+  Array<float> share;            // of cells: how much of them is liquid
+  Array<float> edge[3];          // weights of the edges along each axis
+  Array<float> weight[3];        // of faces; 0: its velocity is given
+  Array<std::uint8_t> known[3];  // faces beside liquid
+  Array<float> inverse[3];       // of the diagonal
+  Array<float> stress[6];        // along the axes, then of edges along each axis
   Array<float> r[3], p[3], q[3];
 
   explicit Viscosity(const LiquidPass& of, float kinematic_viscosity)
@@ -28,6 +29,7 @@ struct Viscosity {
       for (Array<float>* one : {&edge[axis], &weight[axis], &inverse[axis], &r[axis], &p[axis], &q[axis]})
         one->resize(size, 0.0f);
     }
+    for (Array<std::uint8_t>& one : known) one.resize(size, std::uint8_t(0));
     for (Array<float>& one : stress) one.resize(size, 0.0f);
     find_weights();
   }
@@ -59,18 +61,22 @@ struct Viscosity {
     const float inverse_edge = 1.0f / pass.edge(0);
     each_row(pass, -1, [&](int c, int, int) {
       for (int i = c; i < c + shape.cells[0]; ++i)
-        share[i] = cell[i] == LiquidCell::solid ? 0.0f : clamp(0.5f - surface[i] * inverse_edge, 0.0f, 1.0f);
+        share[i] = cell[i] == LiquidCell::liquid ? clamp(0.5f - surface[i] * inverse_edge, 0.0f, 1.0f) : 0.0f;
     });
     fill_ghosts(pass.box(), shape, share.data());
     for (int axis = 0; axis < 3; ++axis) {
       const int step = shape.stride(axis);
       if (pass.flat(axis)) continue;
       const float* const open = pass.memory.open[axis].data();
+      const float* const sums = pass.memory.sums[axis].data();
+      const float inverse_volume = 1.0f / (pass.edge(0) * pass.edge(1) * pass.edge(2));
       each_face(axis, [&](int f) {
         const bool beside = cell[f] == LiquidCell::liquid || cell[f - step] == LiquidCell::liquid;
-        const float mean = 0.5f * (share[f] + share[f - step]);
-        weight[axis][f] = beside && open[f] > 0.0f ? max(mean, kMinWeight) : 0.0f;
+        const float full = inverse_volume * sums[2 * f];
+        known[axis][f] = beside ? 1 : 0;
+        weight[axis][f] = beside && open[f] > 0.0f ? clamp(full, kMinWeight, 1.0f) : 0.0f;
       });
+      wrap_points(pass, known[axis].data());
     }
     for (int axis = 0; axis < 3; ++axis) {
       const int a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -86,6 +92,13 @@ struct Viscosity {
             slips = slips || pass.box().side[2 * other + 1] != GasBoundary::no_slip;
         }
         // A ghost beyond a wall that holds the liquid is solid but has the share of the cell inside.
+        // Stress needs the velocity on all four faces, but for those beyond a wall.
+        const auto is_known = [&](int of, int f, int across) {
+          const int place = index[across] - (f == e ? 0 : 1);
+          return place < 0 || place >= shape.cells[across] || known[of][f] != 0;
+        };
+        slips = slips || !is_known(a, e, b) || !is_known(a, e - sb, b) || !is_known(b, e, a) ||
+                !is_known(b, e - sa, a);
         const auto blocked = [&](int c) { return pass.solids.present() && pass.memory.blocked[c] != 0; };
         slips = slips || blocked(e) || blocked(e - sa) || blocked(e - sb) || blocked(e - sa - sb);
         edge[axis][e] =

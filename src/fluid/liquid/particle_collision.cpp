@@ -5,8 +5,7 @@ namespace gyre {
 
 namespace {
 
-constexpr float kStride = 0.2f;     // edges: between the points of a path that are looked at
-constexpr float kMargin = 1.0e-3f;  // edges: how far they stay from walls
+constexpr float kStride = 0.2f;  // edges: between the points of a path that are looked at
 
 }  // namespace
 
@@ -14,8 +13,7 @@ ParticleCollision::ParticleCollision(const LiquidPass& pass)
     : pass_(pass), has_solids_(pass.solids.present()) {
   edge_ = 1.0e30f;
   for (int axis = 0; axis < 3; ++axis) {
-    length_[axis] = float(pass.shape().cells[axis]) * pass.edge(axis);
-    for (int side = 0; side < 2; ++side) holds_[axis][side] = !pass.box().open(2 * axis + side);
+    axes_[axis] = particle_axis(pass.box(), axis);
     if (!pass.flat(axis) && pass.edge(axis) < edge_) edge_ = pass.edge(axis);
   }
   if (!has_solids_) return;
@@ -63,23 +61,6 @@ ParticleCollision::ParticleCollision(const LiquidPass& pass)
     }
   });
   distance_ = derived_.data();
-}
-
-void ParticleCollision::keep_inside(float (&at)[3]) const {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (pass_.flat(axis)) continue;
-    const float length = length_[axis], margin = kMargin * pass_.edge(axis);
-    if (pass_.wraps(axis)) {
-      if (at[axis] < 0.0f) at[axis] += length;
-      if (at[axis] >= length) at[axis] -= length;
-      if (!(at[axis] >= 0.0f && at[axis] < length)) at[axis] = 0.0f;
-      continue;
-    }
-    at[axis] = at[axis] > 0.0f ? at[axis] : 0.0f;
-    at[axis] = at[axis] < length ? at[axis] : length;
-    if (holds_[axis][0] && at[axis] < margin) at[axis] = margin;
-    if (holds_[axis][1] && at[axis] > length - margin) at[axis] = length - margin;
-  }
 }
 
 Vec3 ParticleCollision::velocity_at(int label, Vec3 point) const {
@@ -166,16 +147,15 @@ void ParticleCollision::finish(int particle, const float (&from)[3], float (&to)
   if (has_solids_) avoid_solids(particle, from, to);
   for (int axis = 0; axis < 3; ++axis) {
     if (pass_.flat(axis)) continue;
-    const float length = length_[axis], margin = kMargin * pass_.edge(axis);
+    const ParticleAxis& limits = axes_[axis];
     float at = to[axis];
     float& speed = grid.motion[axis][particle];
-    if (pass_.wraps(axis)) {
-      if (at < 0.0f) at += length;
-      if (at >= length) at -= length;
-    } else {
-      if (holds_[axis][0] && at < margin) at = margin, speed = speed > 0.0f ? speed : 0.0f;
-      if (holds_[axis][1] && at > length - margin) at = length - margin, speed = speed < 0.0f ? speed : 0.0f;
+    if (limits.wraps) {
+      if (at < 0.0f) at += limits.length;
+      if (at >= limits.length) at -= limits.length;
     }
+    if (at < limits.lower_limit) at = limits.lower_limit, speed = max(speed, limits.lower_speed);
+    if (at > limits.upper_limit) at = limits.upper_limit, speed = min(speed, limits.upper_speed);
     grid.position[axis][particle] = at;
   }
 }

@@ -10,8 +10,6 @@ namespace gyre {
 class ParticleCollision {
  public:
   explicit ParticleCollision(const LiquidPass& pass);
-  // Moves a point of a path to the nearest one within closed walls, or round periodic ones.
-  void keep_inside(float (&at)[3]) const;
   // The particle's way from `from` to `to`, shortened where something is in the way: sets its position.
   void finish(int particle, const float (&from)[3], float (&to)[3]) const;
 
@@ -24,8 +22,7 @@ class ParticleCollision {
   float distance_at(Vec3 point) const;
 
   const LiquidPass& pass_;
-  float length_[3];
-  bool holds_[3][2];  // the lower and the upper side
+  ParticleAxis axes_[3];
   bool has_solids_;
   float edge_ = 0.0f;  // the shortest of a cell
   Array<Motion> motions_;

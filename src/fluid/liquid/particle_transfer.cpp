@@ -26,7 +26,7 @@ void move_column(const LiquidPass& pass, std::size_t left, Array<float>& column)
 }
 
 // The cell of a particle in the order of rows, -1: it has left.
-int find_key(const LiquidGrid& grid, const AxisPlaces (&axes)[3], int p) {
+int find_key(const LiquidGrid& grid, const ParticleAxis (&axes)[3], int p) {
   int index[3];
   for (int axis = 0; axis < 3; ++axis) {
     const float at = grid.position[axis][p], speed = grid.motion[axis][p];
@@ -67,7 +67,6 @@ void fold_ghosts(const LiquidPass& pass, int faces, int numbers, float* field) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!pass.wraps(axis)) continue;
     const int a = (axis + 1) % 3, b = (axis + 2) % 3, n = shape.cells[axis];
-    const int span = n * shape.stride(axis);
     for (int j = -1; j <= shape.cells[b]; ++j) {
       for (int i = -1; i <= shape.cells[a]; ++i) {
         const int c = shape.first + i * shape.stride(a) + j * shape.stride(b);
@@ -84,115 +83,43 @@ void fold_ghosts(const LiquidPass& pass, int faces, int numbers, float* field) {
         }
       }
     }
-    (void)span;
   }
 }
 
-void prepare_axes(const GasBox& box, AxisPlaces (&axes)[3]) {
-  for (int axis = 0; axis < 3; ++axis) axes[axis] = AxisPlaces(box, axis);
-}
-
-// The places of a particle between faces and between centres along every axis.
-struct ParticlePlaces {
-  AxisPlace face[3], center[3];
-  ParticlePlaces(const AxisPlaces (&axes)[3], const float (&at)[3]) {
-    for (int axis = 0; axis < 3; ++axis) {
-      face[axis] = axes[axis].face(at[axis]);
-      center[axis] = axes[axis].center(at[axis]);
-    }
+ParticlePass particle_pass(const LiquidPass& pass) {
+  ParticlePass result;
+  LiquidGrid& grid = pass.grid;
+  result.shape = grid.shape;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.axes[axis] = particle_axis(grid.box, axis);
+    result.position[axis] = grid.position[axis].data();
+    result.motion[axis] = grid.motion[axis].data();
   }
-  AxisPlace of(int component, int axis) const { return component == axis ? face[axis] : center[axis]; }
-};
-
-int index_of(const GridShape& shape, AxisPlace x, AxisPlace y, AxisPlace z) {
-  return shape.at(x.base, y.base, z.base);
+  for (int i = 0; i < 9; ++i) result.affine[i] = grid.affine[i].data();
+  result.volume = grid.volume.data();
+  result.filled = pass.memory.filled.data();
+  return result;
 }
 
-void add_particle_to_faces(const LiquidGrid& grid, const AxisPlaces (&axes)[3], const ParticlePlaces& places,
-                           int component, int p, float* sums) {
-  const GridShape& shape = grid.shape;
-  const AxisPlace x = places.of(component, 0), y = places.of(component, 1), z = places.of(component, 2);
-  const float volume = grid.volume[p], speed = grid.motion[component][p];
-  const float slope_x = grid.affine[3 * component][p], slope_y = grid.affine[3 * component + 1][p],
-              slope_z = grid.affine[3 * component + 2][p];
-  const float left = slope_x * (-x.fraction * axes[0].edge),
-              right = slope_x * ((1.0f - x.fraction) * axes[0].edge);
-  const int index = index_of(shape, x, y, z);
-  for (int up_z = 0; up_z < 2; ++up_z) {
-    const float weight_z = up_z != 0 ? z.fraction : 1.0f - z.fraction;
-    const float offset_z = (float(up_z) - z.fraction) * axes[2].edge;
-    for (int up_y = 0; up_y < 2; ++up_y) {
-      const float weight_y = up_y != 0 ? y.fraction : 1.0f - y.fraction;
-      const float offset_y = (float(up_y) - y.fraction) * axes[1].edge;
-      const float weight = volume * (weight_y * weight_z);
-      const float u = speed + (slope_y * offset_y + slope_z * offset_z);
-      const float w0 = weight * (1.0f - x.fraction), w1 = weight * x.fraction;
-      float* const to = sums + 2 * (index + up_y * shape.pitch + up_z * shape.plane);
-      to[0] += w0;
-      to[1] += w0 * (u + left);
-      to[2] += w1;
-      to[3] += w1 * (u + right);
-    }
-  }
-}
-
-void add_particle_to_centers(const GridShape& shape, const ParticlePlaces& places, float volume,
-                             float* filled) {
-  const AxisPlace &x = places.center[0], &y = places.center[1], &z = places.center[2];
-  const int index = index_of(shape, x, y, z);
-  for (int up_z = 0; up_z < 2; ++up_z) {
-    const float weight_z = up_z != 0 ? z.fraction : 1.0f - z.fraction;
-    for (int up_y = 0; up_y < 2; ++up_y) {
-      const float weight = volume * ((up_y != 0 ? y.fraction : 1.0f - y.fraction) * weight_z);
-      float* const to = filled + index + up_y * shape.pitch + up_z * shape.plane;
-      to[0] += weight * (1.0f - x.fraction);
-      to[1] += weight * x.fraction;
-    }
-  }
-}
-
-// A value of faces at a particle, with its slopes.
-struct FaceSample {
-  float value;
-  float slope[3];
-};
-FaceSample sample_faces(const GridShape& shape, const AxisPlaces (&axes)[3], const ParticlePlaces& places,
-                        int component, const float* faces) {
-  const AxisPlace x = places.of(component, 0), y = places.of(component, 1), z = places.of(component, 2);
-  const float* const at = faces + index_of(shape, x, y, z);
+// Centres around which something is liquid.
+void find_wet(const LiquidPass& pass) {
+  const GridShape& shape = pass.shape();
+  Array<std::uint8_t>& wet = pass.memory.wet;
+  const LiquidCell* const cell = pass.memory.cell.data();
+  wet.resize(std::size_t(shape.size), std::uint8_t(0));
   const int py = shape.pitch, pz = shape.plane;
-  const auto mix = [](float a, float b, float t) { return a + t * (b - a); };
-  const float x00 = mix(at[0], at[1], x.fraction), x10 = mix(at[py], at[py + 1], x.fraction);
-  const float x01 = mix(at[pz], at[pz + 1], x.fraction), x11 = mix(at[py + pz], at[py + pz + 1], x.fraction);
-  const float d0 = mix(at[1] - at[0], at[py + 1] - at[py], y.fraction);
-  const float d1 = mix(at[pz + 1] - at[pz], at[py + pz + 1] - at[py + pz], y.fraction);
-  const float y0 = mix(x00, x10, y.fraction), y1 = mix(x01, x11, y.fraction);
-  FaceSample sample;
-  sample.value = mix(y0, y1, z.fraction);
-  sample.slope[0] = mix(d0, d1, z.fraction) * axes[0].inverse_edge;
-  sample.slope[1] = mix(x10 - x00, x11 - x01, z.fraction) * axes[1].inverse_edge;
-  sample.slope[2] = (y1 - y0) * axes[2].inverse_edge;
-  return sample;
-}
-float sample_value(const GridShape& shape, const ParticlePlaces& places, int component, const float* faces) {
-  const AxisPlace x = places.of(component, 0), y = places.of(component, 1), z = places.of(component, 2);
-  const float* const at = faces + index_of(shape, x, y, z);
-  const int py = shape.pitch, pz = shape.plane;
-  const auto mix = [](float a, float b, float t) { return a + t * (b - a); };
-  return mix(
-      mix(mix(at[0], at[1], x.fraction), mix(at[py], at[py + 1], x.fraction), y.fraction),
-      mix(mix(at[pz], at[pz + 1], x.fraction), mix(at[py + pz], at[py + pz + 1], x.fraction), y.fraction),
-      z.fraction);
-}
-
-// True if none of the eight centres around a particle is liquid.
-bool is_spray(const GridShape& shape, const ParticlePlaces& places, const LiquidCell* cell) {
-  const LiquidCell* const at = cell + index_of(shape, places.center[0], places.center[1], places.center[2]);
-  const int py = shape.pitch, pz = shape.plane;
-  const auto wet = [&](int offset) {
-    return at[offset] == LiquidCell::liquid || at[offset + 1] == LiquidCell::liquid;
-  };
-  return !wet(0) && !wet(py) && !wet(pz) && !wet(py + pz);
+  const auto is_wet = [&](int c) { return cell[c] == LiquidCell::liquid ? 1 : 0; };
+  for_blocks(pass.tasks, (shape.cells[1] + 1) * (shape.cells[2] + 1), kGridRows,
+             [&](int begin, int end, int) {
+               for (int row = begin; row < end; ++row) {
+                 const int k = row / (shape.cells[1] + 1) - 1, j = row % (shape.cells[1] + 1) - 1;
+                 for (int c = shape.at(-1, j, k); c < shape.at(shape.cells[0], j, k); ++c) {
+                   wet[c] = std::uint8_t(is_wet(c) | is_wet(c + 1) | is_wet(c + py) | is_wet(c + py + 1) |
+                                         is_wet(c + pz) | is_wet(c + pz + 1) | is_wet(c + py + pz) |
+                                         is_wet(c + py + pz + 1));
+                 }
+               }
+             });
 }
 
 }  // namespace
@@ -200,8 +127,8 @@ bool is_spray(const GridShape& shape, const ParticlePlaces& places, const Liquid
 void sort_particles(const LiquidPass& pass) {
   LiquidGrid& grid = pass.grid;
   const int count = grid.particles(), cells = grid.shape.count();
-  AxisPlaces axes[3];
-  prepare_axes(grid.box, axes);
+  const ParticleAxis axes[3] = {particle_axis(grid.box, 0), particle_axis(grid.box, 1),
+                                particle_axis(grid.box, 2)};
   Array<std::int32_t>& place = pass.memory.place;
   Array<std::int32_t>& start = pass.memory.start;
   place.resize_uninitialized(std::size_t(count));
@@ -238,41 +165,25 @@ void sort_particles(const LiquidPass& pass) {
 }
 
 void find_filled(const LiquidPass& pass) {
-  const LiquidGrid& grid = pass.grid;
-  AxisPlaces axes[3];
-  prepare_axes(grid.box, axes);
-  float* const filled = pass.memory.filled.data();
   for (float& one : pass.memory.filled) one = 0.0f;
-  for_particle_rows(pass, [&](int begin, int end) {
-    for (int p = begin; p < end; ++p) {
-      const float at[3] = {grid.position[0][p], grid.position[1][p], grid.position[2][p]};
-      add_particle_to_centers(grid.shape, ParticlePlaces(axes, at), grid.volume[p], filled);
-    }
-  });
-  fold_ghosts(pass, -1, 1, filled);
+  const ParticlePass work = particle_pass(pass);
+  for_particle_rows(pass, [&](int begin, int end) { pass.kernels.add_particles(work, begin, end); });
+  fold_ghosts(pass, -1, 1, pass.memory.filled.data());
 }
 
 void transfer_to_grid(const LiquidPass& pass) {
   LiquidGrid& grid = pass.grid;
-  AxisPlaces axes[3];
-  prepare_axes(grid.box, axes);
-  float* sums[3];
+  ParticlePass work = particle_pass(pass);
+  float* sums[3] = {};
   for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
     pass.memory.sums[axis].clear();
     pass.memory.sums[axis].resize(2 * std::size_t(grid.shape.size), 0.0f);
-    sums[axis] = pass.memory.sums[axis].data();
+    work.sums[axis] = sums[axis] = pass.memory.sums[axis].data();
   }
-  float* const filled = pass.memory.filled.data();
   for (float& one : pass.memory.filled) one = 0.0f;
-  for_particle_rows(pass, [&](int begin, int end) {
-    for (int p = begin; p < end; ++p) {
-      const float at[3] = {grid.position[0][p], grid.position[1][p], grid.position[2][p]};
-      const ParticlePlaces places(axes, at);
-      for (int axis = 0; axis < 3; ++axis)
-        if (!pass.flat(axis)) add_particle_to_faces(grid, axes, places, axis, p, sums[axis]);
-      add_particle_to_centers(grid.shape, places, grid.volume[p], filled);
-    }
-  });
+  for_particle_rows(pass, [&](int begin, int end) { pass.kernels.add_particles(work, begin, end); });
+  float* const filled = pass.memory.filled.data();
   fold_ghosts(pass, -1, 1, filled);
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
@@ -290,52 +201,37 @@ void transfer_to_grid(const LiquidPass& pass) {
 
 void move_particles(const LiquidPass& pass, float blend, Vec3 gravity) {
   LiquidGrid& grid = pass.grid;
-  const GridShape& shape = grid.shape;
-  AxisPlaces axes[3];
-  prepare_axes(grid.box, axes);
-  const LiquidCell* const cell = pass.memory.cell.data();
-  const float* velocity[3];
-  const float* carrier[3];
+  find_wet(pass);
+  ParticlePass work = particle_pass(pass);
   for (int axis = 0; axis < 3; ++axis) {
-    velocity[axis] = grid.velocity[axis].data();
-    carrier[axis] = pass.memory.drift[axis].data();
+    if (pass.flat(axis)) continue;
+    work.velocity[axis] = grid.velocity[axis].data();
+    work.carrier[axis] = pass.memory.drift[axis].data();
+    if (blend < 1.0f) work.before[axis] = pass.memory.before[axis].data();
+    work.fall[axis] = part_along(gravity, axis) * pass.step;
   }
-  const float fall[3] = {gravity.x * pass.step, gravity.y * pass.step, gravity.z * pass.step};
+  work.wet = pass.memory.wet.data();
+  work.step = pass.step;
+  work.blend = blend;
+  work.finishes = !pass.solids.present();
+  if (work.finishes) {
+    for (int axis = 0; axis < 3; ++axis) work.to[axis] = grid.position[axis].data();
+    for_blocks(pass.tasks, grid.particles(), kBlockParticles,
+               [&](int begin, int end, int) { pass.kernels.move_particles(work, begin, end); });
+    return;
+  }
   const ParticleCollision collision(pass);
   for_blocks(pass.tasks, grid.particles(), kBlockParticles, [&](int begin, int end, int) {
+    float moved[3][kBlockParticles];
+    ParticlePass block = work;
+    for (int axis = 0; axis < 3; ++axis) block.to[axis] = moved[axis];
+    block.to_begin = begin;
+    pass.kernels.move_particles(block, begin, end);
     for (int p = begin; p < end; ++p) {
-      const float at[3] = {grid.position[0][p], grid.position[1][p], grid.position[2][p]};
-      float to[3] = {at[0], at[1], at[2]};
-      const ParticlePlaces places(axes, at);
-      if (is_spray(shape, places, cell)) {
-        for (int axis = 0; axis < 3; ++axis) {
-          if (pass.flat(axis)) continue;
-          grid.motion[axis][p] += fall[axis];
-          to[axis] = at[axis] + pass.step * grid.motion[axis][p];
-        }
-        for (Array<float>& one : grid.affine) one[p] = 0.0f;
-      } else {
-        float middle[3] = {at[0], at[1], at[2]};
-        for (int axis = 0; axis < 3; ++axis) {
-          if (pass.flat(axis)) continue;
-          const FaceSample sample = sample_faces(shape, axes, places, axis, velocity[axis]);
-          middle[axis] = at[axis] + 0.5f * pass.step * sample.value;
-          float kept = sample.value;
-          if (blend < 1.0f) {
-            const float old = sample_value(shape, places, axis, pass.memory.before[axis].data());
-            kept = blend * sample.value + (1.0f - blend) * (grid.motion[axis][p] + (sample.value - old));
-          }
-          grid.motion[axis][p] = kept;
-          for (int b = 0; b < 3; ++b) grid.affine[3 * axis + b][p] = pass.flat(b) ? 0.0f : sample.slope[b];
-        }
-        collision.keep_inside(middle);
-        const ParticlePlaces halfway(axes, middle);
-        for (int axis = 0; axis < 3; ++axis) {
-          if (!pass.flat(axis))
-            to[axis] = at[axis] + pass.step * sample_value(shape, halfway, axis, carrier[axis]);
-        }
-      }
-      collision.finish(p, at, to);
+      const float from[3] = {grid.position[0][p], grid.position[1][p], grid.position[2][p]};
+      float to[3];
+      for (int axis = 0; axis < 3; ++axis) to[axis] = pass.flat(axis) ? from[axis] : moved[axis][p - begin];
+      collision.finish(p, from, to);
     }
   });
 }

@@ -184,7 +184,8 @@ void fields(C& c, T& v) {
 template <class C, Is<BodyDef> T>
 void fields(C& c, T& v) {
   auto& [type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep,
-         locked, mass, center, inertia, user_data] = v;
+         sleep_speed, locked, mass, center, inertia, user_data] = v;
+  (void)sleep_speed;  // a command of its own, SetSleepSpeed
   all(c, type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep,
       locked, mass, center, inertia, user_data);
 }
@@ -358,14 +359,14 @@ concept IsOneOf = (Is<T, Of> || ...);
 template <class C, class T>
 requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair,
                  SetSurfaceRule, SetSleeping, SetSubsteps, AddField, RemoveField, Explode, AddSoft,
-                 RemoveSoft, AddFluid, RemoveFluid, Step>
+                 RemoveSoft, AddFluid, RemoveFluid, SetSleepShare, Step>
 void fields(C& c, T& v) {
   auto& [only] = v;
   all(c, only);
 }
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
-                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft,
+                 SetAwake, SetField, SetSleepSpeed, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft,
                  SetEmitters>
 void fields(C& c, T& v) {
   auto& [first, second] = v;

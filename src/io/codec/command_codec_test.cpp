@@ -82,6 +82,8 @@ std::vector<Command> all_commands() {
           SetDrive{joint, {.position = {1, 2, 3}, .frequency = 4, .max_torque = 5}},
           SetJointEnabled{joint, false},
           SetMotion{IntegratorKind::rk4, SpringKind::explicit_force, TimeStepping::adaptive, 0.5f, 7},
+          SetSleepShare{0.25f},
+          SetSleepSpeed{body, 0.125f},
           SetSolver{SolverKind::lcp, {LcpMethod::lemke, 8, 30, 90}},
           AddSoft{std::make_shared<const SoftDef>(ClothDef{.grid = ClothGrid{{2, 1}, {4, 3}}, .bend_stiffness = 0.5f})},
           RemoveSoft{SoftId{3, 1, kWorld}},

@@ -31,6 +31,13 @@ void hash_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPo
   lanes.update(word_of(pose.center.y), word_of(pose.center.z), word_of(quaternion), word_of(quaternion + 2));
 }
 
+// Eight numbers at a time; those that are left over at the end are ghosts of a grid or a few of many particles.
+void hash_field(hash_detail::Lanes& lanes, const Array<float>& field) {
+  const float* const values = field.data();
+  for (std::size_t i = 0; i + 8 <= field.size(); i += 8)
+    lanes.update(word_of(values + i), word_of(values + i + 2), word_of(values + i + 4), word_of(values + i + 6));
+}
+
 }  // namespace
 
 std::uint64_t hash_motion(const WorldState& state) {
@@ -45,6 +52,10 @@ std::uint64_t hash_motion(const WorldState& state) {
                        std::uint64_t(__builtin_bit_cast(std::uint32_t, p.vy[i])) << 16 ^
                        std::uint64_t(__builtin_bit_cast(std::uint32_t, p.vz[i])) << 32);
     }
+  });
+  state.fluids.for_each([&](const FluidEntry& entry) {
+    for (const Array<float>& faces : entry.gas.velocity) hash_field(lanes, faces);
+    for (const Array<float>& column : entry.liquid.position) hash_field(lanes, column);
   });
   const std::uint64_t counts = std::uint64_t(bodies.awake.size()) << 32 | state.rigid.contacts.live;
   return mix_bits(lanes.merge() ^ mix_bits(counts ^ mix_bits(word_of(state.time))));

@@ -2,24 +2,13 @@
 
 #include "base/container/disjoint_sets.h"
 #include "collision/contact/pair_update.h"
+#include "rigid/sleep/support.h"
 
 namespace gyre {
 
 namespace {
 
 bool is_dynamic(const RigidWorld& w, std::uint32_t body) { return is_movable(w.bodies.flags[body]); }
-
-// A body on a spring is slow at the turning point of its oscillation, a hundredth of its size from its rest position.
-// Its sleep speed is smaller by this factor.
-constexpr float kSpringSpeedShare = 0.1f;
-
-bool is_on_spring(const RigidWorld& w, std::uint32_t body) {
-  for (const std::uint32_t slot : joints_of(w.bodies, body)) {
-    const JointRecord& joint = w.joints.records[slot];
-    if (joint.is_spring || joint.stiffness > 0.0f) return true;
-  }
-  return false;
-}
 
 // Disjoint sets of bodies; the root of an island is its lowest body.
 class Islands {
@@ -59,24 +48,87 @@ void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
   w.bodies.flags[body].awake = 0;
   clear_motion(w.bodies.motion[body]);
   w.bodies.awake_stale = true;
+  ++w.bodies.sleeping_count;
   w.events.sleep_changes.push_back({body_id(w, body), true});
+}
+
+// The radius with which the rotation of a body counts as speed. A body without shapes has the radius of gyration of its inertia.
+float radius_for_sleep(const BodyMass& mass) {
+  const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
+  return max(mass.bounding_radius, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
+}
+
+float full_sleep_speed(const RigidWorld& w, std::uint32_t body, float gravity, float radius) {
+  const float own = sleep_speed_of(w.bodies, body);
+  return own > 0.0f ? own : sleep_share(w) * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * radius);
+}
+
+SleepTest test_at_first_sight(const RigidWorld& w, std::uint32_t body, float gravity, float radius,
+                              float seconds) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  const BodyMotion& motion = w.bodies.motion[body];
+  const BodyForces& forces = w.bodies.forces[body];
+  const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
+  SleepTest test;
+  // A free body has no support: it never stops once it moves.
+  test.allowed = flags.can_sleep != 0 && (flags.constraint_use != 0 || !moves) && forces.force == Vec3{} &&
+                 forces.torque == Vec3{} &&
+                 (flags.constraint_use != 0 || gravity * absolute(forces.gravity_scale) == 0.0f);
+  test.speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
+  // A wedged or jointed body may be pushed out in every step and return. Its pushout counts no more than its net
+  // motion.
+  const float pushout =
+      min(motion.pushout, length(motion.delta_position) + radius * length(motion.delta_rotation));
+  test.motion = test.speed + kPushoutWeight * pushout / seconds;
+  test.rest_speed = full_sleep_speed(w, body, gravity, radius);
+  if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
+    // A body in a field may be slow for a moment at a turning point, so its velocity must be constant, too.
+    const FieldRest& field = w.field_rest[body];
+    if (field.acts == kFieldsOnly && sleep_speed_of(w.bodies, body) == 0.0f) test.rest_speed *= kFloatingSpeedShare;
+    const float change = length(motion.linear_velocity - field.linear) +
+                         radius * length(motion.angular_velocity - field.angular);
+    const float max_change = test.rest_speed * w.settings.last_step / kTimeToSleep;
+    test.allowed = test.allowed && field.is_unsteady == 0 && change <= max_change;
+  }
+  return test;
+}
+
+// Looks at what may keep a body moving that is slow now.
+void look_closer(const RigidWorld& w, std::uint32_t body, float radius, float seconds, SleepTest& test) {
+  const float free_speed =
+      min(test.rest_speed, kFreeSpeedShare * full_sleep_speed(w, body, length(w.settings.gravity), radius));
+  if (!joints_of(w.bodies, body).empty()) {
+    const BodyMotion& motion = w.bodies.motion[body];
+    const float displacement = length(motion.delta_position) + radius * length(motion.delta_rotation);
+    test.motion = max(test.motion, displacement / seconds);
+  }
+  if (sleep_speed_of(w.bodies, body) > 0.0f) return;
+  if (!joints_of(w.bodies, body).empty()) {
+    const JointDrives drives = find_joint_drives(w, body, radius);
+    if (drives.any) test.rest_speed = min(free_speed, kHeldUpShare * drives.slowest);
+  }
+  if (test.motion > free_speed && test.motion <= test.rest_speed &&
+      !is_held_by_friction(w, body, test.speed, kTimeToSleep, seconds))
+    test.rest_speed = free_speed;
 }
 
 // The change of the still time. A body below its sleep speed accumulates still time. Above it, still time shrinks in
 // proportion to the excess: a limb of a heap that slips once by a hair does not keep thousands awake, and a body that
 // starts to move loses all still time within a step or two.
 float still_time_gain(const SleepTest& test, float seconds) {
-  const float motion = test.speed + kPushoutWeight * test.pushout / seconds;
-  if (motion <= test.rest_speed) return seconds;
-  return test.rest_speed > 0.0f ? seconds * (1.0f - motion / test.rest_speed) : -kMaxStillTime;
+  if (test.motion <= test.rest_speed) return seconds;
+  return test.rest_speed > 0.0f ? seconds * (1.0f - test.motion / test.rest_speed) : -kMaxStillTime;
 }
 
 void update_still_times(RigidWorld& w, float seconds, bool& any_ready) {
   const float gravity = length(w.settings.gravity);
   for (const std::uint32_t i : w.bodies.awake) {
     if (w.bodies.flags[i].type != BodyType::dynamic) continue;
-    const SleepTest test = test_sleep(w, i, gravity);
+    const float radius = radius_for_sleep(w.bodies.masses[i]);
+    SleepTest test = test_at_first_sight(w, i, gravity, radius, seconds);
     float& still = w.bodies.sleep[i].still_time;
+    if (test.allowed && test.motion <= test.rest_speed && still >= kStillBeforeCloserLook)
+      look_closer(w, i, radius, seconds, test);
     still = test.allowed ? clamp(still + still_time_gain(test, seconds), 0.0f, kMaxStillTime) : 0.0f;
     if (still >= kTimeToSleep) any_ready = true;
   }
@@ -93,37 +145,11 @@ bool can_wake_others(const RigidWorld& w, std::uint32_t body) {
          (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{});
 }
 
-SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float gravity) {
-  const BodyFlags& flags = w.bodies.flags[body];
-  const BodyMotion& motion = w.bodies.motion[body];
-  const BodyMass& mass = w.bodies.masses[body];
-  const BodyForces& forces = w.bodies.forces[body];
-  const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
-  SleepTest test;
-  // A free body has no support: it never stops once it moves.
-  test.allowed = flags.can_sleep != 0 && (flags.constraint_use != 0 || !moves) && forces.force == Vec3{} &&
-                 forces.torque == Vec3{} &&
-                 (flags.constraint_use != 0 || gravity * absolute(forces.gravity_scale) == 0.0f);
-  // A body without shapes has the radius of gyration of its inertia, so that rotation counts as motion.
-  const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
-  const float radius = max(mass.bounding_radius, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
-  test.speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
-  // A wedged or jointed body may be pushed out in every step and return. Its pushout counts no more than its net
-  // motion.
-  test.pushout = min(motion.pushout, length(motion.delta_position) + radius * length(motion.delta_rotation));
-  test.rest_speed = kSleepSpeedShare * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * radius);
-  if (is_on_spring(w, body)) test.rest_speed *= kSpringSpeedShare;
-  if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
-    // A body in a field may be slow for a moment at a turning point, so its velocity must be constant, too. A
-    // floating body approaches its equilibrium ever more slowly, so its sleep speed is much smaller.
-    const FieldRest& field = w.field_rest[body];
-    constexpr float kFloatingShare = 1.0f / 200.0f;
-    if (field.acts == kFieldsOnly) test.rest_speed *= kFloatingShare;
-    const float change = length(motion.linear_velocity - field.linear) +
-                         radius * length(motion.angular_velocity - field.angular);
-    const float max_change = test.rest_speed * w.settings.last_step / kTimeToSleep;
-    test.allowed = test.allowed && field.is_unsteady == 0 && change <= max_change;
-  }
+SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float gravity, float seconds) {
+  if (!(seconds > 0.0f)) seconds = 1.0f;  // before the first step nothing was displaced
+  const float radius = radius_for_sleep(w.bodies.masses[body]);
+  SleepTest test = test_at_first_sight(w, body, gravity, radius, seconds);
+  look_closer(w, body, radius, seconds, test);
   return test;
 }
 
@@ -169,6 +195,20 @@ void wake_neighbours(RigidWorld& w, std::uint32_t body) {
   }
 }
 
+void show_halt_to_sensors(RigidWorld& w, std::uint32_t body) {
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    bool any = false;
+    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) {
+      Contact& contact = w.contacts.contacts[slot];
+      if (contact.sensor == 0) return;
+      contact.cached_distance = kUnseen;
+      any = true;
+    });
+    // A changed shape has active contacts in the next step.
+    if (any) w.shapes.changed.push_back(id.index);
+  }
+}
+
 void wake_touched(RigidWorld& w) {
   refresh_awake(w.bodies);
   if (w.bodies.sleeping_count == 0) return;
@@ -186,6 +226,36 @@ void wake_touched(RigidWorld& w) {
   }
 }
 
+namespace {
+
+// Marks islands that nothing supports and that move: without gravity they drift on. (With gravity they fall.)
+void mark_drifting(const RigidWorld& w, Islands& islands, Arena& arena, std::span<std::uint8_t> is_restless) {
+  if (w.settings.gravity != Vec3{}) return;
+  const std::span<std::uint8_t> is_supported = arena.make<std::uint8_t>(is_restless.size());
+  for (std::uint8_t& s : is_supported) s = 0;
+  for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) {
+    if (is_dynamic(w, a) && !is_dynamic(w, b)) is_supported[islands.root(a)] = 1;
+    if (is_dynamic(w, b) && !is_dynamic(w, a)) is_supported[islands.root(b)] = 1;
+  });
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (!is_dynamic(w, i)) continue;
+    for (const std::uint32_t slot : joints_of(w.bodies, i)) {
+      const JointRecord& joint = w.joints.records[slot];
+      if (joint.body_a == kNoBody || joint.body_b == kNoBody) is_supported[islands.root(i)] = 1;
+    }
+  }
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (!is_dynamic(w, i) || is_supported[islands.root(i)] != 0) continue;
+    const BodyMotion& motion = w.bodies.motion[i];
+    const float radius = radius_for_sleep(w.bodies.masses[i]);
+    const float speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
+    const float share = sleep_speed_of(w.bodies, i) > 0.0f ? 1.0f : kDriftSpeedShare;
+    if (speed > share * full_sleep_speed(w, i, 0.0f, radius)) is_restless[islands.root(i)] = 1;
+  }
+}
+
+}  // namespace
+
 void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {
   if (w.settings.sleeping == 0) return;
   bool any_ready = false;
@@ -197,6 +267,7 @@ void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {
   for (const std::uint32_t i : w.bodies.awake) {
     if (is_dynamic(w, i) && w.bodies.sleep[i].still_time < kTimeToSleep) is_restless[islands.root(i)] = 1;
   }
+  mark_drifting(w, islands, arena, is_restless);
   for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) {
     // A body on a moving kinematic body does not sleep.
     if (is_dynamic(w, a) && !is_dynamic(w, b) && can_wake_others(w, b)) is_restless[islands.root(a)] = 1;

@@ -32,6 +32,7 @@ IdPool::Slot add_body_slot(BodyStore& store) {
   store.overrides.set(i, {});
   store.user_data[i] = 0;
   if (i < store.last_moves.size()) store.last_moves[i] = {};
+  if (i < store.sleep_speeds.size()) store.sleep_speeds[i] = {};
   store.shapes[i].clear();
   if (i < store.joints.size()) store.joints[i].clear();
   store.awake_stale = true;

@@ -83,6 +83,11 @@ struct BodySleep {
   std::uint32_t next_in_group = 0;     // ring of the group
 };
 
+// The sleep speed that the user gave a body.
+struct BodySleepSpeed {
+  float speed = 0.0f;  // m/s; 0: that of the world
+};
+
 // Mass properties that the user set instead of those of the shapes.
 struct BodyOverrides {
   std::uint8_t has_mass = 0, has_center = 0, has_inertia = 0;
@@ -116,14 +121,20 @@ struct BodyStore {
   InternedColumn<BodyOverrides> overrides;
   Array<std::uint64_t> user_data;
   Array<LastMove> last_moves;                   // by slot; empty unless the integrator is verlet
+  Array<BodySleepSpeed> sleep_speeds;           // by slot; empty or short if no later body has its own: read with sleep_speed_of()
   Array<SmallArray<ShapeId, 1>> shapes;         // by body, ascending index; derived
   // By body, ascending index; derived. Shorter than the number of bodies, since most worlds have few joints: read
   // with joints_of().
   Array<SmallArray<std::uint32_t, 2>> joints;
   Array<std::uint32_t> awake;      // simulated bodies, ascending; derived
-  std::size_t sleeping_count = 0;  // dynamic bodies that sleep and are not frozen; derived
-  bool awake_stale = false;        // `awake` and `sleeping_count` must be derived again before use
+  // Dynamic bodies that sleep and are not frozen; derived. While `awake_stale`, an upper bound.
+  std::size_t sleeping_count = 0;
+  bool awake_stale = false;  // `awake` and `sleeping_count` must be derived again before use
 };
+
+inline float sleep_speed_of(const BodyStore& store, std::uint32_t body) {
+  return body < store.sleep_speeds.size() ? store.sleep_speeds[body].speed : 0.0f;
+}
 
 // The joint slots of a body; and the list to be changed, for which room is made.
 inline std::span<const std::uint32_t> joints_of(const BodyStore& store, std::uint32_t body) {

@@ -57,6 +57,12 @@ struct RigidSettings {
   float last_step = 0.0f;     // s
 };
 
+// The world's sleep speed, as a share of sqrt(gravity * bounding radius), the natural speed of a body.
+constexpr float kSleepSpeedShare = 0.015f;
+struct SleepSettings {
+  float share = kSleepSpeedShare;
+};
+
 // The events of the present step, before they are published.
 struct RigidEvents {
   Array<ContactBegin> begins;
@@ -92,6 +98,7 @@ struct RigidWorld {
   RigidSettings settings;
   Array<MotionSettings> motion_settings;  // one record, or none for the defaults
   Array<SolverSettings> solver;           // one record, or none for the default solver
+  Array<SleepSettings> sleep_settings;    // one record, or none for the default share
 
   // Derived, or valid for one step only.
   std::unique_ptr<Broadphase> broadphase;
@@ -115,6 +122,10 @@ struct RigidWorld {
 
 inline MotionSettings motion_settings(const RigidWorld& w) {
   return w.motion_settings.empty() ? MotionSettings{} : w.motion_settings[0];
+}
+
+inline float sleep_share(const RigidWorld& w) {
+  return w.sleep_settings.empty() ? kSleepSpeedShare : w.sleep_settings[0].share;
 }
 
 inline BodyId body_id(const RigidWorld& w, std::uint32_t body) {
