@@ -62,7 +62,7 @@ void add_picture(const SeenFluid& fluid, const Subject& subject, DrawList& list)
 }
 
 void add_smoke(const SeenFluid& fluid, const Subject& subject, DrawList& list) {
-  constexpr float kThickness = 9.0f;  // optical thickness of the thickest smoke along the shortest side
+  constexpr float kThickness = 14.0f;  // optical thickness of the thickest smoke along the shortest side
   SmokeVolume volume;
   volume.box = {difference(fluid.lower, subject.origin), difference(fluid.upper(), subject.origin)};
   const Vec3 size = volume.box.high - volume.box.low;

@@ -227,8 +227,7 @@ void Renderer::Gl::draw_scene(const Mat4& clip, const LightView& sun_view, const
 // The more samples a picture has, the fewer slices each of them needs, as they lie elsewhere in each.
 void Renderer::Gl::draw_smoke(const Mat4& clip, const Camera& camera, const Subject& subject,
                               const LightView& sun_view, float chance) const {
-  const SmokeLight light{0.8f * kSunColor, kSkyColor + 0.5f * kBounceColor, sun_view.map_from_world,
-                         sun_map.texture};
+  const SmokeLight light{0.5f * kSunColor, 0.45f * kSkyColor, sun_view.map_from_world, sun_map.texture};
   const int slices = std::clamp(256 / samples, 20, 96);
   smoke.draw(clip, difference(camera.eye, subject.origin), -axes_of(camera).back, light, slices, chance);
   glBindVertexArray(vertex_array);

@@ -202,6 +202,7 @@ export interface FlowData {
   points: Float32Array; // 3 a point
   velocities: Float32Array; // 3 a point: m/s
   spacing: number; // m, between two points
+  across: 0 | 1 | 2; // the axis that the slice stands on
 }
 export interface OverlayData {
   contacts?: ContactData;

@@ -178,6 +178,7 @@ export class Viewer {
     this.softs.highlight(store.selectedSoft.peek(), this.stage.colors.selection);
     this.pointer.update();
     this.rig.update(seconds);
+    this.fluids.face(this.stage.camera);
     this.stage.render();
   }
 

@@ -1,6 +1,6 @@
 // Gases and liquids on the screen: the frame of each box, and in it smoke as a volume, a flat gas as a picture, a liquid as its surface.
 import {
-  BoxGeometry, Color, Data3DTexture, EdgesGeometry, Group, LinearFilter, LineBasicMaterial, LineSegments, RGBAFormat, UnsignedByteType, Vector3,
+  BoxGeometry, type Camera, Color, Data3DTexture, EdgesGeometry, Group, LinearFilter, LineBasicMaterial, LineSegments, RGBAFormat, UnsignedByteType, Vector3,
 } from 'three';
 import type { FluidDescription, FluidState, Frame, Structure } from '../protocol';
 import type { Quality } from '../state/preferences';
@@ -121,6 +121,11 @@ export class Fluids {
       const state = frame.fluids[i];
       if (state) fill(item, state);
     });
+  }
+
+  // Before each picture.
+  face(camera: Camera): void {
+    for (const { smoke } of this.items) smoke?.face(camera);
   }
 
   get known(): FluidDescription[] {

@@ -72,7 +72,6 @@ export class Smoke {
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = 4; // over the surfaces of liquids
     this.mesh.raycast = () => {};
-    this.mesh.onBeforeRender = (_renderer, _scene, camera) => this.cut(camera);
   }
 
   setQuality(quality: Quality): void {
@@ -85,8 +84,9 @@ export class Smoke {
     uniforms.sky!.value = sky;
   }
 
-  // Puts the slices across the view of this camera.
-  private cut(camera: Camera): void {
+  // Puts the slices across the view of this camera. Before each picture: the renderer takes the places before it draws anything.
+  face(camera: Camera): void {
+    camera.updateMatrixWorld();
     const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
     const back = new Vector3().setFromMatrixColumn(camera.matrixWorld, 2);
     const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0);

@@ -5,7 +5,7 @@ import { BodyFlag, type Command } from '../protocol';
 import * as store from '../state/store';
 import type { Surroundings } from './surroundings';
 
-const PAUSE = 80; // ms without motion, after which nothing is stirred
+const PAUSE = 80; // ms without motion while time runs, after which nothing is stirred
 const CLICK = 5; // pixels that a click may move
 
 interface Press {
@@ -135,7 +135,7 @@ export class Pointer {
   // Once a picture: the body follows the pointer in the plane in which it was taken, whatever the camera does meanwhile.
   update(): void {
     const stirred = this.press?.stirred;
-    if (stirred && !this.at.fresh && performance.now() - stirred.since > PAUSE) this.stopStirring();
+    if (stirred && !this.at.fresh && store.playing.peek() && performance.now() - stirred.since > PAUSE) this.stopStirring();
     if (!this.at.fresh) return;
     this.at.fresh = false;
     const { viewer } = this;

@@ -4,8 +4,8 @@ import type { Box, FlowData, FluidDescription, FluidState, Vec3 } from '../proto
 import { placeOf } from './keys';
 
 const SUN: Vec3 = normalized([0.45, 1, 0.62]); // as on the page
-const THICKNESS = 9; // optical thickness of the thickest smoke along the shortest side of its box
-const STIRRED = 0.5; // radius of what a pointer stirs, in parts of the shortest side times THICKNESS
+const THICKNESS = 14; // optical thickness of the thickest smoke along the shortest side of its box
+const STIRRED = 0.8; // radius of what a pointer stirs, in parts of the shortest side times THICKNESS
 const ARROWS = 26; // along the longer side of a slice
 const NONE = { bytes: new Uint8Array(0), floats: new Float32Array(0), indices: new Uint32Array(0) };
 
@@ -191,7 +191,7 @@ export function readFlow(world: World, origin: Vec3): FlowData[] {
     const info = world.fluidInfo(id);
     const { low, high } = boxOf(info, [0, 0, 0]);
     const size = low.map((value, axis) => high[axis]! - value);
-    const across = flatAxis(info) ?? (size[0]! >= size[2]! ? 2 : 0);
+    const across: 0 | 1 | 2 = flatAxis(info) ?? (size[0]! >= size[2]! ? 2 : 0);
     const [a, b] = [0, 1, 2].filter((axis) => axis !== across) as [number, number];
     const spacing = Math.max(size[a]!, size[b]!) / ARROWS;
     const [columns, rows] = [Math.max(1, Math.round(size[a]! / spacing)), Math.max(1, Math.round(size[b]! / spacing))];
@@ -205,7 +205,7 @@ export function readFlow(world: World, origin: Vec3): FlowData[] {
       }
     }
     const velocities = world.sampleVelocity(id, points).slice();
-    return { points: Float32Array.from(points, (value, i) => value - origin[i % 3]!), velocities, spacing };
+    return { points: Float32Array.from(points, (value, i) => value - origin[i % 3]!), velocities, spacing, across };
   });
 }
 

@@ -109,7 +109,7 @@ export class TrackSession implements Session {
 
   frame(fresh = false): FrameMessage {
     const { ids, models, awake, poses, time, softIds, softVertices } = this.at;
-    const world = this.world([...this.overlays].some((name) => NEEDS_WORLD.has(name)));
+    const world = this.world(this.fluids.length > 0 || [...this.overlays].some((name) => NEEDS_WORLD.has(name)));
     const structure = this.restructure(world, fresh);
     const count = ids.length;
     const flags = new Uint8Array(count);
