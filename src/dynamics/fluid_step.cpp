@@ -3,6 +3,7 @@
 #include "fluid/gas/gas_reading.h"
 #include "fluid/liquid/liquid_reading.h"
 #include "fluid/store/fluid_builder.h"
+#include "geometry/mass/submerged.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
 
@@ -123,6 +124,18 @@ void still(FluidEntry& entry) {
   entry.liquid = std::move(calm);
 }
 
+// m^3; 0: not known, since a shape is not convex. Shapes that overlap count twice.
+float volume_of_body(const RigidWorld& w, std::uint32_t body) {
+  double sum = 0.0;
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    const Shape& shape = w.shapes.colliders[id.index].shape;
+    if (w.shapes.proxies[id.index].sensor) continue;
+    if (!is_convex(shape.kind)) return 0.0f;
+    sum += volume_of(shape);
+  }
+  return float(sum);
+}
+
 // Bodies as the pressure of a liquid sees them: those that are awake and free to move yield to it.
 void list_bodies(const RigidWorld& w, FluidScratch& scratch) {
   scratch.bodies.clear();
@@ -138,6 +151,7 @@ void list_bodies(const RigidWorld& w, FluidScratch& scratch) {
       const BodyForces& forces = w.bodies.forces[body];
       const Sym3 inverse_inertia = rotate_inertia(w.bodies.poses[body].orientation, mass.inverse_inertia);
       out.inverse_mass = mass.inverse_mass;
+      out.volume = volume_of_body(w, body);
       out.inverse_inertia = inverse_inertia;
       out.acceleration = forces.gravity_scale * w.settings.gravity + mass.inverse_mass * forces.force;
       out.angular_acceleration = inverse_inertia * forces.torque;

@@ -92,6 +92,103 @@ Sym3 safe_inverse(Sym3 m) {
   return inverse(m);
 }
 
+// Where a body lies flush on a wall or on another solid, liquid gets between the two from the side: the pressure there is that at the rim, the
+// nearest cell of the layer that has an equation, and what the body leaves is filled from that cell. Without this a body on the ground
+// would be held down by all that is above it.
+class SealedFaces {
+ public:
+  SealedFaces(const CouplingGrid& grid, const BodyCoupling& coupling, Array<CutFace>& found)
+      : grid_(grid), shape_(grid.shape), coupling_(coupling), found_(found) {}
+
+  void find(int axis) {
+    const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
+    for (int n = 0; n < shape_.cells[c]; ++n) {
+      for (int m = 0; m < shape_.cells[b]; ++m) {
+        for (int l = 0; l < shape_.cells[axis]; ++l) {
+          int at[3];
+          at[axis] = l, at[b] = m, at[c] = n;
+          const int label = body_at(at);
+          if (label < 0) continue;
+          if (is_sealed(axis, at, -1, label)) add(axis, at, -1, label);
+          if (is_sealed(axis, at, 1, label)) add(axis, at, 1, label);
+        }
+      }
+    }
+  }
+
+ private:
+  int index(const int (&at)[3]) const { return shape_.at(at[0], at[1], at[2]); }
+  bool has(const int (&at)[3], int axis) const { return at[axis] >= 0 && at[axis] < shape_.cells[axis]; }
+  // The label of the body that moves and fills this cell, -1: none.
+  int body_at(const int (&at)[3]) const {
+    const int i = index(at), label = grid_.solids.nearest[i];
+    const bool inside = grid_.solids.distance[i] < 0.0f && !(grid_.active[i] > 0.0f);
+    return inside && label >= 0 && label < int(coupling_.solids.size()) && coupling_.solids[label].moves
+               ? label
+               : -1;
+  }
+  // A closed wall, or another solid, is next to it.
+  bool is_sealed(int axis, const int (&at)[3], int side, int label) const {
+    int next[3] = {at[0], at[1], at[2]};
+    next[axis] += side;
+    if (!has(next, axis)) return !grid_.box.open(2 * axis + (side > 0 ? 1 : 0)) && !grid_.box.periodic(axis);
+    const int i = index(next);
+    return grid_.solids.distance[i] < 0.0f && !(grid_.active[i] > 0.0f) && grid_.solids.nearest[i] != label;
+  }
+  // The nearest cell with an equation in the layer; false if there is none, or if air is nearer.
+  bool find_rim(int axis, const int (&at)[3], int (&rim)[3]) const {
+    int most = 0;
+    for (int other = 0; other < 3; ++other)
+      if (other != axis && shape_.cells[other] > most) most = shape_.cells[other];
+    for (int away = 1; away < most; ++away) {
+      bool air = false;
+      for (int other = 0; other < 3; ++other) {
+        if (other == axis || grid_.box.flat(other)) continue;
+        for (int side = -1; side <= 1; side += 2) {
+          for (int i = 0; i < 3; ++i) rim[i] = at[i];
+          rim[other] += side * away;
+          if (!has(rim, other)) continue;
+          if (grid_.active[index(rim)] > 0.0f) return true;
+          air = air || !(grid_.solids.distance[index(rim)] < 0.0f);
+        }
+      }
+      if (air) return false;
+    }
+    return false;
+  }
+  void add(int axis, const int (&at)[3], int side, int label) {
+    int rim[3];
+    if (!find_rim(axis, at, rim)) return;
+    int beyond[3] = {rim[0], rim[1], rim[2]};
+    beyond[axis] -= side;
+    // From the centres of the layer and of the next one to the face, in a straight line.
+    const bool two = has(beyond, axis) && grid_.active[index(beyond)] > 0.0f;
+    add_part(axis, at, side, label, index(rim), two ? 1.5f : 1.0f);
+    if (two) add_part(axis, at, side, label, index(beyond), -0.5f);
+  }
+  void add_part(int axis, const int (&at)[3], int side, int label, int cell, float weight) {
+    const float edges[3] = {grid_.box.cell.x, grid_.box.cell.y, grid_.box.cell.z};
+    const SolidMotion& solid = coupling_.solids[label];
+    CutFace face;
+    face.face = index(at) + (side > 0 ? shape_.stride(axis) : 0);
+    (side < 0 ? face.lower : face.upper) = cell;
+    face.axis = std::int16_t(axis), face.label = std::int16_t(label);
+    face.share = weight / edges[axis];
+    double point[3];
+    for (int i = 0; i < 3; ++i)
+      point[i] = (at[i] + (i == axis ? (side > 0 ? 1.0 : 0.0) : 0.5)) * double(edges[i]) - solid.center[i];
+    const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+    face.moment[next] = float(point[last]);
+    face.moment[last] = float(-point[next]);
+    found_.push_back(face);
+  }
+
+  const CouplingGrid& grid_;
+  const GridShape& shape_;
+  const BodyCoupling& coupling_;
+  Array<CutFace>& found_;
+};
+
 }  // namespace
 
 double BodyCoupling::add_product(const float* p, float* q) const {
@@ -208,6 +305,11 @@ void find_cut_faces(const CouplingGrid& grid, bool layers, BodyCoupling& couplin
         }
       }
     }
+  }
+  if (has_distance && coupling.any_moves) {
+    SealedFaces sealed(grid, coupling, found);
+    for (int axis = 0; axis < 3; ++axis)
+      if (!grid.box.flat(axis)) sealed.find(axis);
   }
   // By label, in the order found.
   for (SolidMotion& solid : coupling.solids) solid.begin = solid.end = 0;
