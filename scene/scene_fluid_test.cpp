@@ -410,6 +410,67 @@ TEST(SceneFluid, AFluidThatIsRemovedIsLeftOutOfTheFinalScene) {
   EXPECT_TRUE(read_scene(write_scene(left)));
 }
 
+TEST(SceneFluid, ALiquidBecomesWhatItSaysInTheWorld) {
+  const SceneRunner runner = run_fluids(kAllLiquids);
+  ASSERT_EQ(runner.liquids().size(), 2u);
+  const World& world = runner.world();
+  const FluidInfo a = world.fluid_info(runner.liquids()[0]);
+  EXPECT_EQ(a.kind, FluidKind::liquid);
+  EXPECT_EQ(a.cells, (std::array<int, 3>{8, 4, 4}));
+  EXPECT_EQ(a.particles, 8 * (4 * 2 * 4 + 2 * 1 * 4));
+  EXPECT_EQ(world.fluid_info(runner.liquids()[1]).particles, 2);
+  std::vector<DVec3> positions(2);
+  std::vector<Vec3> velocities(2);
+  ASSERT_EQ(world.liquid_particles(runner.liquids()[1], positions, velocities), 2u);
+  // A liquid keeps its particles in the order of cells.
+  EXPECT_NEAR(length(positions[0] - DVec3{5.625, 0.1, 0.123456789012345}), 0.0, 1e-6);
+  EXPECT_EQ(velocities[0], (Vec3{0, 0, 2}));
+  EXPECT_NEAR(length(positions[1] - DVec3{5.5, 0.1, 0.5}), 0.0, 1e-6);
+}
+
+// Half a box of water, a little wider than whole cells.
+const std::string kTank =
+    R"({"gyre_scene": 1, "liquids": [{"name": "water", "bounds": [[0, 0, 0], [0.98, 1, 0.05]], "cell_size": 0.05,
+    "fill": [{"box": [[0, 0, 0], [2, 0.5, 0.05]]}], "probes": [{"name": "deep", "position": [0.3, 0.1, 0.025]},
+    {"name": "air", "position": [0.3, 0.8, 0.025]}]}]})";
+
+TEST(SceneFluid, ProbesOfStillWaterKnowItsDepth) {
+  const SceneRunner runner = run_fluids(kTank, 30);
+  const SceneLiquid& water = runner.scene().liquids[0];
+  const FluidProbe deep = runner.world().probe(runner.liquids()[0], water.probes[0].position);
+  const FluidProbe air = runner.world().probe(runner.liquids()[0], water.probes[1].position);
+  EXPECT_NEAR(deep.surface, 0.5, 0.015);
+  EXPECT_NEAR(air.surface, 0.5, 0.015);
+  EXPECT_NEAR(deep.pressure, 1000 * 9.81 * 0.4, 150);
+  EXPECT_EQ(deep.density, 1.0f);
+  EXPECT_EQ(air.density, 0.0f);
+  EXPECT_LT(length(deep.velocity), 0.02f);
+}
+
+TEST(SceneFluid, ALiquidGoesOnFromAFinalScene) {
+  std::string text = kTank;
+  text.replace(text.find("[2, 0.5,"), 8, "[0.4, 0.9,");
+  const SceneRunner whole = run_fluids(text, 20), half = run_fluids(text, 10);
+  const SceneRunner rest = run_fluids(write_scene(half.final_scene()), 10);
+  EXPECT_EQ(rest.world().fluid_info(rest.liquids()[0]).cells,
+            whole.world().fluid_info(whole.liquids()[0]).cells);
+  const auto positions = [](const SceneRunner& runner) {
+    std::vector<DVec3> out(runner.world().liquid_particles(runner.liquids()[0], {}, {}));
+    runner.world().liquid_particles(runner.liquids()[0], out, {});
+    return out;
+  };
+  const std::vector<DVec3> a = positions(whole), b = positions(rest), start = positions(half);
+  ASSERT_EQ(a.size(), b.size());
+  ASSERT_GT(a.size(), 500u);
+  double farthest = 0, moved = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    farthest = std::fmax(farthest, length(a[i] - b[i]));
+    moved = std::fmax(moved, length(a[i] - start[i]));
+  }
+  EXPECT_LT(farthest, 1e-3);
+  EXPECT_GT(moved, 0.1);
+}
+
 // A lid drags the gas round in a closed box. At Re = 100 the slowest of the return flow on the line through the middle is -0.2109 of the lid
 // at 0.4531 of the height (U. Ghia, K. Ghia, C. Shin, 1982).
 TEST(SceneFluid, ALidDrivesTheGasInABox) {

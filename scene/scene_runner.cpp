@@ -267,6 +267,12 @@ void SceneRunner::put_present_fluids(Scene& out) const {
     LiquidDef present = world_.liquid_def(liquids_[i]);
     liquid.def.emitters = present_emitters(present.emitters);
     liquid.def.particles = std::move(present.particles);
+    // Particles may lie where the box is widened to whole cells.
+    const FluidInfo info = world_.fluid_info(liquids_[i]);
+    const double cell = double(liquid.def.cell_size);
+    const DVec3 widened = info.lower + DVec3{info.cells[0] * cell, info.cells[1] * cell, info.cells[2] * cell};
+    DVec3& upper = liquid.def.upper;
+    upper = {max(upper.x, widened.x), max(upper.y, widened.y), max(upper.z, widened.z)};
   }
 }
 

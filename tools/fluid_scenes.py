@@ -131,11 +131,13 @@ def dam_break():
 
 
 def harbour():
-    boxes = [crate("cork", [0.5, 0.85, 0.5], 0.14, 200, "#dcae7a"), crate("pine", [0.5, 0.85, 1.5], 0.14, 500),
-             crate("oak", [1.0, 0.85, 0.5], 0.14, 800, "#8a5a33"), crate("ice", [1.0, 0.85, 1.5], 0.14, 917, "#bfe3f2"),
-             crate("stone", [1.5, 0.85, 0.35], 0.14, 2600, STONE)]
-    ship = {"name": "ship", "position": [2.4, 0.72, 1], "color": "#7c4a2d",
-            "shapes": [{"type": "box", "half_extents": [0.7, 0.06, 0.3], "density": 500},
+    level, half = 0.625, 0.14
+    boxes = [crate(name, [x, level + half * (1 - 2 * density / 1000), z], half, density, color)  # at the draft of Archimedes
+             for name, x, z, density, color in (("cork", 0.5, 0.5, 200, "#dcae7a"), ("pine", 0.5, 1.5, 500, WOOD),
+                                                ("oak", 1.0, 0.5, 800, "#8a5a33"), ("ice", 1.0, 1.5, 917, "#bfe3f2"))]
+    boxes.append(crate("stone", [1.5, 0.6, 0.35], half, 2600, STONE))
+    ship = {"name": "ship", "position": [2.4, 0.56, 1], "color": "#7c4a2d",
+            "shapes": [{"type": "box", "half_extents": [0.7, 0.06, 0.3], "density": 900},
                        {"type": "box", "half_extents": [0.7, 0.12, 0.05], "position": [0, 0.18, 0.25], "density": 300},
                        {"type": "box", "half_extents": [0.7, 0.12, 0.05], "position": [0, 0.18, -0.25], "density": 300},
                        {"type": "box", "half_extents": [0.05, 0.12, 0.2], "position": [0.65, 0.18, 0], "density": 300},
@@ -147,11 +149,13 @@ def harbour():
                  liquids=[water])
 
 
+# Small, as honey is: a block of a metre would run apart as fast as water.
 def honey():
-    ball = {"name": "ball", "type": "static", "position": [0.6, 0.22, 0.6], "color": STONE, "shapes": [{"type": "sphere", "radius": 0.22}]}
-    syrup = {"name": "honey", "bounds": [[0, 0, 0], [1.2, 1.2, 1.2]], "cell_size": 0.05, "density": 1400, "viscosity": 20, "color": HONEY,
-             "boundary": "no_slip", "fill": [{"box": [[0.4, 0.55, 0.4], [0.8, 1.05, 0.8]]}]}
-    return scene("honey runs over a ball", [1.9, 1.5, 3], [0.6, 0.4, 0.6], [GROUND, ball], liquids=[syrup])
+    ball = {"name": "ball", "type": "static", "position": [0.12, 0.044, 0.12], "color": STONE,
+            "shapes": [{"type": "sphere", "radius": 0.044}]}
+    syrup = {"name": "honey", "bounds": [[0, 0, 0], [0.24, 0.24, 0.24]], "cell_size": 0.01, "density": 1400, "viscosity": 200,
+             "surface_tension": 0.06, "color": HONEY, "boundary": "no_slip", "fill": [{"box": [[0.08, 0.12, 0.08], [0.16, 0.22, 0.16]]}]}
+    return scene("honey runs over a ball", [0.38, 0.3, 0.6], [0.12, 0.08, 0.12], [GROUND, ball], liquids=[syrup])
 
 
 def communicating_vessels():

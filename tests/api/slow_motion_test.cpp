@@ -8,14 +8,14 @@
 namespace gyre::laws {
 namespace {
 
-constexpr double kLong = 20.0;  // s
+constexpr double kLong = 5.0;  // s
 
 // The speeds are from well below the sleep speed of a box of a metre, 0.044 m/s, to above it.
 std::vector<float> slow_speeds() {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> draw(-3.5f, -1.0f);
   std::vector<float> speeds;
-  for (int i = 0; i < 6; ++i) speeds.push_back(std::pow(10.0f, draw(random)));
+  for (int i = 0; i < 4; ++i) speeds.push_back(std::pow(10.0f, draw(random)));
   return speeds;
 }
 
@@ -103,8 +103,12 @@ TEST(SlowMotion, OfAPoleOffBalanceGrows) {
         world.add_body({.pose = {{std::sin(double(angle)), std::cos(double(angle)), 0}, turn}},
                        {.geometry = Box{{0.05f, 1, 0.05f}}});
     world.add_joint(HingeDef{.b = pole, .anchor = {0, 0, 0}, .axis = {0, 0, 1}});
-    run(world, 4);
-    EXPECT_LT(world.pose(pole).position.y, 0.5) << angle;
+    double lowest = 1;
+    for (int i = 0; i < 300; ++i) {
+      world.step(kStep);
+      lowest = std::min(lowest, world.pose(pole).position.y);
+    }
+    EXPECT_LT(lowest, 0.0) << angle;
   }
 }
 
@@ -128,6 +132,16 @@ TEST(SlowMotion, OfSpringsGoesOnToTheirRest) {
 TEST(SlowMotion, InSpaceGoesOnForBodiesTogether) {
   for (const float speed : slow_speeds()) {
     World world = weightless();
+    // The same without weight of its own.
+    World heavy = make_world();
+    const BodyId e =
+        heavy.add_body({.linear_velocity = {speed, 0, 0}, .gravity_scale = 0}, {.geometry = Box{}});
+    const BodyId f = heavy.add_body(
+        {.pose = {.position = {1.1, 0, 0}}, .linear_velocity = {speed, 0, 0}, .gravity_scale = 0},
+        {.geometry = Box{}});
+    heavy.add_joint(FixedDef{.a = e, .b = f, .anchor = {0.55, 0, 0}});
+    run(heavy, kLong);
+    EXPECT_NEAR(heavy.pose(e).position.x, double(speed) * kLong, 1e-3 * double(speed) * kLong);
     const BodyId a = world.add_body({.linear_velocity = {speed, 0, 0}}, {.geometry = Box{}});
     const BodyId b = world.add_body({.pose = {.position = {1.1, 0, 0}}, .linear_velocity = {speed, 0, 0}},
                                     {.geometry = Box{}});

@@ -150,6 +150,44 @@ TEST_F(FluidCommandLine, SummaryAndInfoCountFluids) {
       << words;
 }
 
+// Still water in a plane box: 8 x 4 full cells of four particles.
+const std::string kWaterScene =
+    R"({"gyre_scene": 1, "name": "water", "liquids": [{"name": "tank", "bounds": [[0, 0, 0], [0.8, 0.8, 0.1]],
+  "cell_size": 0.1, "fill": [{"box": [[0, 0, 0], [0.8, 0.4, 0.1]]}], "probes": [{"name": "p", "position": [0.4, 0.1, 0.05]}]}]})";
+
+TEST_F(FluidCommandLine, LiquidsAreTracedWhereItIsAskedFor) {
+  write("w.gyre.json", kWaterScene);
+  ASSERT_EQ(gyre({"simulate", "w.gyre.json", "--steps", "1", "--trace", "t.csv"}).code, 0);
+  EXPECT_EQ(lines_of(read("t.csv")).size(), 1u);
+  ASSERT_EQ(gyre({"simulate", "w.gyre.json", "--steps", "1", "--trace", "t.csv", "--trace-liquids"}).code, 0);
+  const std::vector<std::string> rows = lines_of(read("t.csv"));
+  ASSERT_EQ(rows.size(), 1u + 2u * 128u);
+  EXPECT_EQ(rows[1].rfind("0,0,tank[0],", 0), 0u) << rows[1];
+  EXPECT_EQ(rows[128].rfind("0,0,tank[127],", 0), 0u) << rows[128];
+  EXPECT_EQ(rows[129].rfind("1,", 0), 0u) << rows[129];
+  EXPECT_EQ(last_cells(rows[1], 17).size(), 17u);
+}
+
+TEST_F(FluidCommandLine, FiguresAndCountsKnowLiquids) {
+  write("w.gyre.json", kWaterScene);
+  ASSERT_EQ(gyre({"simulate", "w.gyre.json", "--steps", "20", "--stats", "u.csv", "--probes", "p.csv"}).code,
+            0);
+  const std::vector<std::string> rows = lines_of(read("u.csv"));
+  const std::vector<std::string> last = last_cells(rows.back(), 5);
+  EXPECT_NEAR(std::stod(last[0]), 0.8 * 0.4 * 0.1, 0.05 * 0.032);
+  EXPECT_EQ(last[1], "128");
+  EXPECT_EQ(last[2], "0");
+  const std::vector<std::string> probe = last_cells(lines_of(read("p.csv")).back(), 4);
+  EXPECT_NEAR(std::stod(probe[0]), 1000 * 9.81 * 0.3, 150);
+  EXPECT_EQ(probe[1], "1");
+  EXPECT_NEAR(std::stod(probe[3]), 0.4, 0.02);
+  const FluidDocument info = FluidDocument::parse(gyre({"info", "w.gyre.json", "--json"}).out);
+  EXPECT_EQ(info["liquids"][0]["name"], "tank");
+  EXPECT_EQ(info["liquids"][0]["particles"], 128);
+  const Finished text = gyre({"simulate", "w.gyre.json", "--steps", "1"});
+  EXPECT_EQ(text.out.rfind("water: 0 bodies, 0 joints, 1 liquid (128 particles)\n", 0), 0u) << text.out;
+}
+
 TEST_F(FluidCommandLine, HelpNamesTheTables) {
   const Finished help = gyre({"simulate", "--help"});
   for (const char* option : {"--probes FILE.csv", "--trace-liquids"})

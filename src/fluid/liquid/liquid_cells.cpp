@@ -131,12 +131,50 @@ void find_surface_in_solids(const LiquidPass& pass) {
   });
 }
 
+// How strongly cells are tied to the air around them, and which are air.
+void find_ground(const LiquidPass& pass, PressureGrid& finest) {
+  const GridShape& shape = pass.shape();
+  const LiquidCell* const cell = pass.memory.cell.data();
+  float inner[3];
+  for (int axis = 0; axis < 3; ++axis)
+    inner[axis] = pass.flat(axis) ? 0.0f : 1.0f / (pass.edge(axis) * pass.edge(axis));
+  each_row(pass, -1, [&](int c, int j, int k) {
+    const bool dry = is_dry(pass, -1, j, k);
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      if (dry) {
+        finest.ground[i] = 0.0f;
+        finest.is_air[i] = cell[i] == LiquidCell::air ? 1 : 0;
+        continue;
+      }
+      float ground = 0.0f;
+      if (cell[i] == LiquidCell::liquid) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const int step = shape.stride(axis);
+          const float *const open = pass.memory.open[axis].data(), *const steep =
+                                                                       pass.memory.steepness[axis].data();
+          if (cell[i - step] != LiquidCell::liquid) ground += inner[axis] * open[i] * steep[i];
+          if (cell[i + step] != LiquidCell::liquid) ground += inner[axis] * open[i + step] * steep[i + step];
+        }
+      }
+      finest.ground[i] = ground;
+      finest.is_air[i] = cell[i] == LiquidCell::air ? 1 : 0;
+    }
+  });
+}
+
 }  // namespace
 
 void find_open_faces(const LiquidPass& pass) {
   const GridShape& shape = pass.shape();
   const GasSolids& solids = pass.solids;
   const bool has_distance = solids.present() && !solids.distance.empty();
+  bool same_sides = true;
+  for (int side = 0; side < 6; ++side) {
+    same_sides = same_sides && pass.memory.open_side[side] == pass.box().side[side];
+    pass.memory.open_side[side] = pass.box().side[side];
+  }
+  if (pass.memory.has_open && same_sides && !solids.present()) return;
+  pass.memory.has_open = !solids.present();
   for (int axis = 0; axis < 3; ++axis) {
     float* const to = pass.memory.open[axis].data();
     const int step = shape.stride(axis), last = shape.cells[axis];
@@ -196,6 +234,24 @@ void find_surface(const LiquidPass& pass) {
   if (pass.solids.present()) find_surface_in_solids(pass);
   fill_ghosts(pass.box(), shape, surface);
   fill_cell_ghosts(pass, cell);
+  pass.memory.wet_row.resize(std::size_t(shape.rows()));
+  each_row(pass, -1, [&](int c, int j, int k) {
+    int any = 0;
+    for (int i = c; i < c + shape.cells[0]; ++i) any |= cell[i] == LiquidCell::liquid ? 1 : 0;
+    pass.memory.wet_row[j + k * shape.cells[1]] = std::uint8_t(any);
+  });
+}
+
+// True if no cell on either side of a row of faces is liquid.
+bool is_dry(const LiquidPass& pass, int axis, int j, int k) {
+  const GridShape& shape = pass.shape();
+  const auto wet = [&](int y, int z) {
+    if (pass.wraps(1)) y = (y + shape.cells[1]) % shape.cells[1];
+    if (pass.wraps(2)) z = (z + shape.cells[2]) % shape.cells[2];
+    return y >= 0 && z >= 0 && y < shape.cells[1] && z < shape.cells[2] &&
+           pass.memory.wet_row[y + z * shape.cells[1]] != 0;
+  };
+  return !wet(j, k) && !(axis > 0 && wet(j - (axis == 1 ? 1 : 0), k - (axis == 2 ? 1 : 0)));
 }
 
 void build_liquid_matrix(const LiquidPass& pass) {
@@ -218,8 +274,12 @@ void build_liquid_matrix(const LiquidPass& pass) {
     float* const steepness = pass.memory.steepness[axis].data();
     float* const face = finest.face[axis].data();
     each_row(pass, axis, [&](int c, int j, int k) {
-      const int across = axis == 1 ? j : k;
-      for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+      const int across = axis == 1 ? j : k, count = shape.cells[0] + (axis == 0 ? 1 : 0);
+      if (is_dry(pass, axis, j, k)) {
+        for (int f = c; f < c + count; ++f) steepness[f] = face[f] = 0.0f;
+        return;
+      }
+      for (int i = 0; i < count; ++i) {
         const int f = c + i, at = axis == 0 ? i : across;
         const bool lower = cell[f - step] == LiquidCell::liquid, upper = cell[f] == LiquidCell::liquid;
         float steep = 0.0f, between = 0.0f;
@@ -242,25 +302,7 @@ void build_liquid_matrix(const LiquidPass& pass) {
     });
   }
   finest.full_face = axes > 0 ? full / float(axes) : 0.0f;
-  float inner[3];
-  for (int axis = 0; axis < 3; ++axis)
-    inner[axis] = pass.flat(axis) ? 0.0f : 1.0f / (pass.edge(axis) * pass.edge(axis));
-  each_row(pass, -1, [&](int c, int, int) {
-    for (int i = c; i < c + shape.cells[0]; ++i) {
-      float ground = 0.0f;
-      if (cell[i] == LiquidCell::liquid) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const int step = shape.stride(axis);
-          const float *const open = pass.memory.open[axis].data(), *const steep =
-                                                                       pass.memory.steepness[axis].data();
-          if (cell[i - step] != LiquidCell::liquid) ground += inner[axis] * open[i] * steep[i];
-          if (cell[i + step] != LiquidCell::liquid) ground += inner[axis] * open[i + step] * steep[i + step];
-        }
-      }
-      finest.ground[i] = ground;
-      finest.is_air[i] = cell[i] == LiquidCell::air ? 1 : 0;
-    }
-  });
+  find_ground(pass, finest);
   build_pressure_levels(pass.kernels, pass.tasks, matrix);
   // Solids may enclose liquid that no air touches; without them all of the liquid touches air or none.
   matrix.has_pockets = pass.solids.present();

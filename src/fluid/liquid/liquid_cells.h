@@ -13,6 +13,8 @@ namespace gyre {
 void find_open_faces(const LiquidPass& pass);
 // From the sums of particles to `filled`, cells and the distance from the surface.
 void find_surface(const LiquidPass& pass);
+// True if no cell on either side of a row of faces is liquid; of a row of cells with axis -1.
+bool is_dry(const LiquidPass& pass, int axis, int j, int k);
 // Steepness of faces and the levels of the equation.
 void build_liquid_matrix(const LiquidPass& pass);
 

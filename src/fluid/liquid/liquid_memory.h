@@ -20,6 +20,10 @@ struct LiquidMemory {
   // Of faces: what the gradient of pressure is multiplied by. 1 between cells of liquid, at the surface an edge over the distance from the
   // liquid's centre to it, 0 where pressure does not act.
   Array<float> steepness[3];
+  Array<std::uint8_t> wet_row;  // rows of cells with liquid
+  // `open` is that of a box without solids, with these sides, so it lasts.
+  bool has_open = false;
+  GasBoundary open_side[6] = {};
   Array<std::uint8_t> blocked;  // cells without room for liquid
   Array<LiquidCell> cell;
   Array<std::uint8_t> wet;        // of centres: liquid among this and the seven above along the axes

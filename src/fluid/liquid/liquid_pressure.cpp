@@ -1,6 +1,8 @@
 // Projection of a liquid.
 #include "fluid/liquid/liquid_pressure.h"
 
+#include "fluid/liquid/liquid_cells.h"
+
 namespace gyre {
 
 namespace {
@@ -35,7 +37,12 @@ void find_open_inflow(const LiquidPass& pass, float* to) {
                      *const w = pass.grid.velocity[2].data();
   const float ix = 1.0f / pass.edge(0), iy = 1.0f / pass.edge(1), iz = 1.0f / pass.edge(2);
   const int py = shape.pitch, pz = shape.plane;
-  each_row(pass, -1, [&](int c, int, int) {
+  const PressureRow* const rows = pass.memory.matrix.levels[0].rows.data();
+  each_row(pass, -1, [&](int c, int j, int k) {
+    if (rows[j + k * shape.cells[1]] == PressureRow::empty) {
+      for (int i = c; i < c + shape.cells[0]; ++i) to[i] = 0.0f;
+      return;
+    }
     for (int i = c; i < c + shape.cells[0]; ++i) {
       const float sum = ix * (ox[i] * u[i] - ox[i + 1] * u[i + 1]) +
                         iy * (oy[i] * v[i] - oy[i + py] * v[i + py]) +
@@ -63,7 +70,8 @@ void subtract_liquid_gradient(const LiquidPass& pass, float* x, float scale, Arr
     float* const field = fields[axis].data();
     const int step = pass.shape().stride(axis);
     const float factor = scale / pass.edge(axis);
-    each_row(pass, axis, [&](int c, int, int) {
+    each_row(pass, axis, [&](int c, int j, int k) {
+      if (is_dry(pass, axis, j, k)) return;
       for (int f = c; f < c + pass.shape().cells[0] + (axis == 0 ? 1 : 0); ++f)
         field[f] -= factor * steepness[f] * (x[f] - x[f - step]);
     });

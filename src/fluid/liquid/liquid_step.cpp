@@ -18,7 +18,11 @@ namespace {
 void prepare_memory(const LiquidPass& pass) {
   const std::size_t size = std::size_t(pass.shape().size);
   LiquidMemory& memory = pass.memory;
-  if (memory.filled.size() == size && memory.cell.size() == size) return;
+  const PressureGrid& finest = memory.matrix.levels[0];
+  const bool same_cells = finest.shape.cells[0] == pass.shape().cells[0] &&
+                          finest.shape.cells[1] == pass.shape().cells[1] &&
+                          finest.shape.cells[2] == pass.shape().cells[2];
+  if (memory.filled.size() == size && memory.cell.size() == size && same_cells) return;
   const auto renew = [size](Array<float>& field) { field.clear(), field.resize(size, 0.0f); };
   for (Array<float>& field : memory.field) renew(field);
   renew(memory.filled);
@@ -33,6 +37,7 @@ void prepare_memory(const LiquidPass& pass) {
   memory.cell.clear();
   memory.cell.resize(size, LiquidCell::solid);
   memory.matrix = PressureMatrix{};
+  memory.has_open = false;
 }
 
 // The largest number of cells that a particle or a solid may pass along an axis within the step.

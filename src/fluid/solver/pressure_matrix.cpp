@@ -240,7 +240,9 @@ void find_row_kinds(TaskSystem& tasks, PressureGrid& grid) {
                        all_equal(grid.transfer.data() + c, 1, n - 1) &&
                        (grid.ground.empty() || all_equal(grid.ground.data() + c, 1, n - 1));
     const bool empty = all_zero(grid.inverse_diagonal.data() + c, n);
-    grid.rows[j + k * shape.cells[1]] = empty ? PressureRow::empty : plain ? PressureRow::plain : PressureRow::mixed;
+    grid.rows[j + k * shape.cells[1]] = empty   ? PressureRow::empty
+                                        : plain ? PressureRow::plain
+                                                : PressureRow::mixed;
   });
 }
 

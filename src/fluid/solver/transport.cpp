@@ -26,6 +26,25 @@ void limit_samples(const GasBox& box, const GridShape& shape, bool outside, int 
   }
 }
 
+// Calls fn(place) for each place of the layer at `index` along an axis, with the ghosts of the other axes.
+template <class Fn>
+void for_layer(const GridShape& shape, int axis, int index, Fn&& fn) {
+  const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
+  const int first = shape.first + index * shape.stride(axis);
+  for (int j = -1; j <= shape.cells[b]; ++j) {
+    for (int i = -1; i <= shape.cells[a]; ++i) fn(first + i * shape.stride(a) + j * shape.stride(b));
+  }
+}
+
+// Air at rest beyond open sides: ghosts of the velocity across faces, but along their own axis, where there are none.
+void still_ghosts(const GasBox& box, const GridShape& shape, int faces, float* field) {
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    if (axis == faces || !box.open(side)) continue;
+    for_layer(shape, axis, side % 2 == 0 ? -1 : shape.cells[axis], [&](int c) { field[c] = 0.0f; });
+  }
+}
+
 void transport(const GasPass& pass, Advection advection, int faces, const float* outside, float* field) {
   const GasBox& box = pass.box();
   const GridShape& shape = pass.shape();
@@ -45,7 +64,9 @@ void transport(const GasPass& pass, Advection advection, int faces, const float*
   limit_samples(box, shape, outside != nullptr, faces, work);
   const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
   const auto fill = [&](float* of) {
-    faces < 0 ? fill_ghosts(box, shape, of, outside) : wrap_ghosts(shape, periodic, of);
+    if (faces < 0) return fill_ghosts(box, shape, of, outside);
+    wrap_ghosts(shape, periodic, of);
+    still_ghosts(box, shape, faces, of);
   };
   const auto run = [&](void (*kernel)(const TransportPass&, int, int)) {
     for_blocks(pass.tasks, work.points[1] * work.points[2], kGridRows,
@@ -101,11 +122,28 @@ void trace_paths(const GasPass& pass) {
   }
 }
 
-void transport_fields(const GasPass& pass, Advection advection) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!pass.flat(axis)) transport(pass, advection, axis, nullptr, pass.grid.velocity[axis].data());
+// Air that enters comes from rest: upwind and implicit, from a point at rest a cell outside. Air that came in with the velocity of the side
+// would bring energy without bound.
+void slow_inflow(const GasPass& pass, int axis) {
+  const GridShape& shape = pass.shape();
+  float* const velocity = pass.grid.velocity[axis].data();
+  const float scale = pass.step / pass.edge(axis);
+  for (int side = 0; side < 2; ++side) {
+    if (!pass.box().open(2 * axis + side)) continue;
+    for_layer(shape, axis, side * shape.cells[axis], [&](int c) {
+      const float in = side == 0 ? velocity[c] : -velocity[c];
+      if (in > 0.0f) velocity[c] /= 1.0f + scale * in;
+    });
   }
+}
+
+void transport_fields(const GasPass& pass, Advection advection) {
   const float none = 0.0f, ambient = pass.grid.ambient_temperature;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    transport(pass, advection, axis, &none, pass.grid.velocity[axis].data());
+    slow_inflow(pass, axis);
+  }
   transport(pass, advection, -1, &none, pass.grid.density.data());
   transport(pass, advection, -1, &ambient, pass.grid.temperature.data());
 }

@@ -340,7 +340,9 @@ std::uint64_t state_layout() {
   const StateColumns columns;
   for_each_column(columns, [&]<class Column>(const char* name, const Column&) {
     // Soft matter and fluids have their own layouts, which readers compare: recordings without any stay readable when those change.
+    // So do sleep speeds, which are younger than the first recordings.
     if constexpr (std::is_same_v<Column, SoftStore> || std::is_same_v<Column, FluidStore>) return;
+    if constexpr (std::is_same_v<Column, Array<SleepSettings>> || std::is_same_v<Column, Array<BodySleepSpeed>>) return;
     hash = mix_bits(hash + ColumnLayout<Column>::get().hash);
     hash = mix_bits(hash + hash_text(name));
   });

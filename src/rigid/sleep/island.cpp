@@ -84,7 +84,8 @@ SleepTest test_at_first_sight(const RigidWorld& w, std::uint32_t body, float gra
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
     // A body in a field may be slow for a moment at a turning point, so its velocity must be constant, too.
     const FieldRest& field = w.field_rest[body];
-    if (field.acts == kFieldsOnly && sleep_speed_of(w.bodies, body) == 0.0f) test.rest_speed *= kFloatingSpeedShare;
+    if (field.acts == kFieldsOnly && sleep_speed_of(w.bodies, body) == 0.0f)
+      test.rest_speed *= kFloatingSpeedShare;
     const float change = length(motion.linear_velocity - field.linear) +
                          radius * length(motion.angular_velocity - field.angular);
     const float max_change = test.rest_speed * w.settings.last_step / kTimeToSleep;
@@ -228,9 +229,15 @@ void wake_touched(RigidWorld& w) {
 
 namespace {
 
-// Marks islands that nothing supports and that move: without gravity they drift on. (With gravity they fall.)
+bool is_weightless(const RigidWorld& w, std::uint32_t body) {
+  return w.settings.gravity == Vec3{} || w.bodies.forces[body].gravity_scale == 0.0f;
+}
+
+// Marks islands without weight that nothing supports and that move: they drift on. (With weight they would fall.)
 void mark_drifting(const RigidWorld& w, Islands& islands, Arena& arena, std::span<std::uint8_t> is_restless) {
-  if (w.settings.gravity != Vec3{}) return;
+  bool any = false;
+  for (const std::uint32_t i : w.bodies.awake) any = any || (is_dynamic(w, i) && is_weightless(w, i));
+  if (!any) return;
   const std::span<std::uint8_t> is_supported = arena.make<std::uint8_t>(is_restless.size());
   for (std::uint8_t& s : is_supported) s = 0;
   for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) {
@@ -239,6 +246,7 @@ void mark_drifting(const RigidWorld& w, Islands& islands, Arena& arena, std::spa
   });
   for (const std::uint32_t i : w.bodies.awake) {
     if (!is_dynamic(w, i)) continue;
+    if (!is_weightless(w, i)) is_supported[islands.root(i)] = 1;
     for (const std::uint32_t slot : joints_of(w.bodies, i)) {
       const JointRecord& joint = w.joints.records[slot];
       if (joint.body_a == kNoBody || joint.body_b == kNoBody) is_supported[islands.root(i)] = 1;

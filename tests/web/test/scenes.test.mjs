@@ -8,6 +8,8 @@ import { root, viewerTests } from '../setup.mjs';
 const viewer = viewerTests();
 // These stand to the last bit: what rests, as a tree of contacts or as a structure, is solved exactly.
 const STILL = new Set(['stack.gyre.json', 'card_house.gyre.json']);
+// Only the fluid moves in these, and its motion is in no pose.
+const FLUID_ALONE = new Set(['communicating_vessels', 'honey', 'lid_driven_cavity', 'vortex_street'].map((name) => `fluid/${name}.gyre.json`));
 const scenesIn = (folder) =>
   readdirSync(join(root, 'scenes', folder))
     .filter((name) => name.endsWith('.gyre.json'))
@@ -30,7 +32,7 @@ test('every scene opens and plays', async (t) => {
       assert.equal(after.length, before.length);
       assert.ok(after.every(Number.isFinite), 'a number is not finite');
       const largest = Math.max(...after.map((value, i) => Math.abs(value - before[i])));
-      assert.ok(STILL.has(scene) || largest > 1e-6, `nothing moved (${largest})`);
+      assert.ok(STILL.has(scene) || FLUID_ALONE.has(scene) || largest > 1e-6, `nothing moved (${largest})`);
       assert.equal(await page.locator('[role=alertdialog]').count(), 0);
       viewer.noErrors(page);
     });
