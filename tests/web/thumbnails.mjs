@@ -9,7 +9,8 @@ import { dist, root } from './setup.mjs';
 const [WIDTH, HEIGHT] = [320, 200];
 const SHARPNESS = 2; // drawn larger, then made smaller
 // Steps after which something is to be seen; the others at once settled or best at the usual moment.
-const MOMENT = { billiards: 70, bowling: 95, chain: 75, dominoes: 150, newtons_cradle: 40, pile: 130, showcase: 75, height_field: 60, mesh_terrain: 120, bouncing: 45, t_handle: 30, card_house: 5, stack: 5 };
+const MOMENT = { billiards: 70, bowling: 95, chain: 75, dominoes: 150, newtons_cradle: 40, pile: 130, showcase: 75, height_field: 60, mesh_terrain: 120, bouncing: 45, t_handle: 30, card_house: 5, stack: 5,
+  'fluid/candle': 110, 'fluid/smoke_fan': 90, 'fluid/vortex_street': 300, 'fluid/lid_driven_cavity': 240, 'fluid/dam_break': 45, 'fluid/flag_in_fan_wind': 80 };
 const USUAL = 60;
 
 const asked = process.argv.slice(2);
