@@ -189,6 +189,20 @@ class SealedFaces {
   Array<CutFace>& found_;
 };
 
+// By label, in the order found.
+void sort_by_label(const Array<CutFace>& found, BodyCoupling& coupling) {
+  for (SolidMotion& solid : coupling.solids) solid.begin = solid.end = 0;
+  for (const CutFace& face : found) ++coupling.solids[face.label].end;
+  int begin = 0;
+  for (SolidMotion& solid : coupling.solids) {
+    const int count = solid.end;
+    solid.begin = solid.end = begin;
+    begin += count;
+  }
+  coupling.faces.resize(found.size());
+  for (const CutFace& face : found) coupling.faces[coupling.solids[face.label].end++] = face;
+}
+
 }  // namespace
 
 double BodyCoupling::add_product(const float* p, float* q) const {
@@ -311,17 +325,7 @@ void find_cut_faces(const CouplingGrid& grid, bool layers, BodyCoupling& couplin
     for (int axis = 0; axis < 3; ++axis)
       if (!grid.box.flat(axis)) sealed.find(axis);
   }
-  // By label, in the order found.
-  for (SolidMotion& solid : coupling.solids) solid.begin = solid.end = 0;
-  for (const CutFace& face : found) ++coupling.solids[face.label].end;
-  int begin = 0;
-  for (SolidMotion& solid : coupling.solids) {
-    const int count = solid.end;
-    solid.begin = solid.end = begin;
-    begin += count;
-  }
-  coupling.faces.resize(found.size());
-  for (const CutFace& face : found) coupling.faces[coupling.solids[face.label].end++] = face;
+  sort_by_label(found, coupling);
   // Corners count for too much: without this a body as heavy as the fluid would rise.
   for (CutFace& face : coupling.faces) {
     const SolidMotion& solid = coupling.solids[face.label];
