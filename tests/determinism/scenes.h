@@ -485,17 +485,58 @@ inline void build_changes_lcp(World& world) {
   world.set_solver(SolverKind::lcp, {.iterations = 20, .direct_rows = 24});
 }
 
+// A rope that carries a ball, a cloth over a ball, a jelly on which a box lands.
+inline void build_soft(World& world) {
+  add_fixed(world, {0, 0, 0}, Plane{});
+  add_fixed(world, {0, 0.5, 0}, Sphere{0.4f});
+  world.add_cloth({.grid = ClothGrid{{1.0f, 1.0f}, {10, 10}}, .pose = {{0.03, 1.0, 0.02}, {}}});
+  const BodyId load = add(world, BodyType::dynamic, {2.0, 1.0, 0}, Sphere{0.15f});
+  const SoftId rope = world.add_rope({.points = {{1.0, 2.0, 0}, {2.0, 1.0, 0}}, .segments = 16});
+  world.pin(rope, 0);
+  world.attach(rope, 16, load);
+  world.add_solid({.box = SolidBox{{0.3f, 0.2f, 0.3f}, {3, 2, 3}}, .pose = {{-1.5, 0.25, 0}, {}}});
+  add(world, BodyType::dynamic, {-1.4, 0.9, 0.05}, Box{{0.1f, 0.1f, 0.1f}});
+}
+
+// Warm smoke round a turning paddle, with a cloth in it; a column of water that falls on two floats.
+inline void build_fluids(World& world) {
+  add_fixed(world, {0, 0, 0}, Plane{});
+  GasDef gas;
+  gas.lower = {-1, 0, -1}, gas.upper = {1, 2, 1};
+  gas.cells = {14, 14, 14};
+  gas.viscosity = 0.001f, gas.vorticity = 0.25f;
+  gas.emitters = {{.position = {0.125, 0.25, 0}, .radius = 0.25f, .temperature = 400.0f}};
+  world.add_gas(gas);
+  const BodyId paddle = add(world, BodyType::kinematic, {-0.25, 1, 0.125}, Box{{0.4f, 0.25f, 0.08f}});
+  world.set_velocity(paddle, {}, {0, 3, 0});
+  world.add_cloth({.grid = ClothGrid{{0.5f, 0.5f}, {5, 5}}, .pose = {{0.25, 1.5, 0}, {}}});
+  add(world, BodyType::dynamic, {3.75, 0.125, 0.25}, Box{{0.1f, 0.1f, 0.1f}});
+  add(world, BodyType::dynamic, {3.5, 0.5, 0.25}, Sphere{0.1f});
+  LiquidDef water;
+  water.lower = {3, 0, 0}, water.upper = {4, 0.75, 0.5};
+  water.cell_size = 0.0625f;
+  water.viscosity = 0.5f, water.surface_tension = 0.0625f;
+  water.fill = {{{3, 0, 0}, {3.375, 0.5, 0.5}}};
+  world.add_liquid(water);
+}
+
 inline constexpr Scene kScenes[] = {
-    {"stacks", build_stacks, nullptr},         {"pile", build_pile, nullptr},
-    {"joints", build_joints, nullptr},         {"terrain", build_terrain, nullptr},
-    {"cloud", build_cloud, nullptr},           {"pusher", build_pusher, drive_pusher},
-    {"changes", build_changes, drive_changes}, {"fields", build_fields, drive_fields},
+    {"stacks", build_stacks, nullptr},
+    {"pile", build_pile, nullptr},
+    {"joints", build_joints, nullptr},
+    {"terrain", build_terrain, nullptr},
+    {"cloud", build_cloud, nullptr},
+    {"pusher", build_pusher, drive_pusher},
+    {"changes", build_changes, drive_changes},
+    {"fields", build_fields, drive_fields},
     {"joint_kinds", build_joint_kinds, nullptr},
     {"pile_sequential", build_pile_sequential, nullptr},
     {"joint_kinds_sequential", build_joint_kinds_sequential, nullptr},
     {"stacks_lcp", build_stacks_lcp, nullptr},
     {"joint_kinds_lcp", build_joint_kinds_lcp, nullptr},
     {"changes_lcp", build_changes_lcp, drive_changes},
+    {"soft", build_soft, nullptr},
+    {"fluids", build_fluids, nullptr},
 };
 
 // One step of a scene; `step` counts from 0.
