@@ -1,17 +1,20 @@
-// The promise: after 600 steps (40 with soft matter) every scene has the same state, bit for bit, natively and in each build of the package.
+// The promise: after 600 steps (40 with soft matter, 20 with fluids) every scene has the same state, bit for bit, natively and in each build of the package.
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { engine, gyre, hashText, made, meshFiles, nativeHash, nativeProgram, sceneNames, sceneText, softSceneNames } from './kit.mjs';
+import { engine, gyre, hashText, made, meshFiles, nativeHash, nativeProgram, sceneNames, sceneText, softSceneNames, fluidSceneNames } from './kit.mjs';
 
-// A step of soft matter costs as much as many steps of bodies.
-const runs = [...sceneNames.map((name) => [name, 600]), ...softSceneNames.map((name) => [name, 40])];
+// A step of soft matter or of a fluid costs as much as many steps of bodies.
+const runs = [
+  ...sceneNames.map((name) => [name, 600]), ...softSceneNames.map((name) => [name, 40]), ...fluidSceneNames.map((name) => [name, 20]),
+];
 const builds = process.env.GYRE_WEB_BUILD ? [process.env.GYRE_WEB_BUILD] : ['simd', 'threads', 'plain'].filter(made);
 const skip = nativeProgram === null ? 'no native gyre to compare with: build it, or set GYRE_CLI' : false;
 
 test('there are scenes to compare', () => {
   assert.ok(sceneNames.length >= 15, `${sceneNames.length} scenes`);
   assert.ok(softSceneNames.length >= 3, `${softSceneNames.length} scenes of soft matter`);
+  assert.ok(fluidSceneNames.length >= 5, `${fluidSceneNames.length} scenes of fluids`);
 });
 
 for (const build of builds) {

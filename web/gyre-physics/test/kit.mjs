@@ -26,6 +26,8 @@ const scenesIn = (folder) => readdirSync(join(sceneFolder, folder)).filter((name
 export const sceneNames = scenesIn('.');
 /** Of ropes, cloths and soft bodies. */
 export const softSceneNames = scenesIn('soft');
+/** Of gases and liquids. */
+export const fluidSceneNames = scenesIn('fluid');
 
 export function sceneText(name) {
   return readFileSync(join(sceneFolder, name), 'utf8');
