@@ -297,6 +297,12 @@ Error check_fluid(const LiquidDef& def) {
   return def.particles ? check_particles(def) : Error{};
 }
 
+std::int64_t count_cells(const FluidDef& def) {
+  const auto* const gas = std::get_if<GasDef>(&def);
+  const std::array<int, 3> cells = gas != nullptr ? gas->cells : liquid_cells(std::get<LiquidDef>(def));
+  return std::int64_t(cells[0]) * std::int64_t(cells[1]) * std::int64_t(cells[2]);
+}
+
 GasEmitter make_emitter(const FluidEmitter& emitter) {
   GasEmitter out;
   out.position = emitter.position, out.radius = emitter.radius;

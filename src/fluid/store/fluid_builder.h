@@ -17,6 +17,9 @@ Error check_fluid(const GasDef& def);
 Error check_fluid(const LiquidDef& def);
 Error check_emitters(std::span<const FluidEmitter> emitters, DVec3 lower, DVec3 upper);
 
+// Cells of its box. The definition must have passed its check.
+std::int64_t count_cells(const FluidDef& def);
+
 // The definition must have passed its check. A liquid has no particles yet: see fill_liquid.
 FluidEntry build_fluid(std::shared_ptr<const FluidDef> def);
 // The particles of the definition of a liquid, but for places within solids. Returns false, and leaves some out, if there are too many.

@@ -23,6 +23,8 @@ bool read_fluids(ByteReader& in, FluidStore& fluids) {
     if (!fluids.ids.live(slot)) continue;
     std::shared_ptr<const FluidDef> def = read_fluid_def(in);
     if (in.failed() || std::visit([](const auto& one) { return check_fluid(one); }, *def)) return false;
+    // Each cell has several numbers of four bytes: what claims more cells than there are bytes takes no memory.
+    if (std::size_t(count_cells(*def)) > in.left()) return false;
     FluidEntry& entry = fluids.entries[slot] = build_fluid(std::move(def));
     bool good = true;
     for_each_fluid_array(entry, [&](auto& array) { good = good && read_array(in, array); });
