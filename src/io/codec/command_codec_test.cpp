@@ -82,14 +82,20 @@ std::vector<Command> all_commands() {
           SetDrive{joint, {.position = {1, 2, 3}, .frequency = 4, .max_torque = 5}},
           SetJointEnabled{joint, false},
           SetMotion{IntegratorKind::rk4, SpringKind::explicit_force, TimeStepping::adaptive, 0.5f, 7},
-          SetSleepShare{0.25f},
-          SetSleepSpeed{body, 0.125f},
           SetSolver{SolverKind::lcp, {LcpMethod::lemke, 8, 30, 90}},
           AddSoft{std::make_shared<const SoftDef>(ClothDef{.grid = ClothGrid{{2, 1}, {4, 3}}, .bend_stiffness = 0.5f})},
           RemoveSoft{SoftId{3, 1, kWorld}},
           AttachSoft{SoftId{3, 1, kWorld}, 7, BodyId{5, 3, kWorld}},
           ReleaseSoft{SoftId{3, 1, kWorld}, 7},
-          SetVertices{SoftId{3, 1, kWorld}, {{1, 2, 3}}, {{4, 5, 6}}}};
+          SetVertices{SoftId{3, 1, kWorld}, {{1, 2, 3}}, {{4, 5, 6}}},
+          AddFluid{std::make_shared<const FluidDef>(LiquidDef{
+              .fill = {{{0, 0, 0}, {1, 0.5, 1}}},
+              .emitters = {{.position = {0.5, 0.5, 0.5}, .velocity = Vec3{1, 2, 3}}},
+              .particles = LiquidParticles{.positions = {{0.5, 0.5, 0.5}}, .velocities = {{1, 2, 3}}}})},
+          RemoveFluid{FluidId{2, 1, kWorld}},
+          SetEmitters{FluidId{2, 1, kWorld}, {{.position = {1, 2, 3}, .radius = 0.5f}}},
+          SetSleepShare{0.25f},
+          SetSleepSpeed{body, 0.125f}};
 }
 
 // Fields of certain kinds of joints are restored as well.
