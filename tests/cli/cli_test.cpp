@@ -260,10 +260,11 @@ TEST_F(CommandLine, TimesListsTheStages) {
   Finished done = gyre({"simulate", "s.gyre.json", "--steps", "20", "--quiet", "--times"});
   EXPECT_EQ(done.code, 0) << done.err;
   const std::vector<std::string> lines = lines_of(done.out);
-  ASSERT_EQ(lines.size(), 11u) << done.out;
+  ASSERT_EQ(lines.size(), 12u) << done.out;
   EXPECT_EQ(lines[0], "stages of a step, mean:");
-  EXPECT_EQ(lines[3].rfind("  touch_soft ", 0), 0u);
-  EXPECT_EQ(lines[4].rfind("  collide ", 0), 0u);
+  EXPECT_EQ(lines[3].rfind("  flow ", 0), 0u);
+  EXPECT_EQ(lines[4].rfind("  touch_soft ", 0), 0u);
+  EXPECT_EQ(lines[5].rfind("  collide ", 0), 0u);
   done = gyre({"simulate", "s.gyre.json", "--steps", "20", "--json", "--times"});
   EXPECT_NE(done.out.find(R"("stage_ms": {"refit": )"), std::string::npos) << done.out;
   done = gyre({"simulate", "s.gyre.json", "--steps", "0", "--quiet", "--times"});
