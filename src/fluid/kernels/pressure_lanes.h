@@ -141,12 +141,15 @@ GYRE_INLINE double smooth_rows(const PressureLevel& level, const float* b, const
 template <int W>
 double smooth_cells(const PressureLevel& level, const float* b, const float* x, const float* before,
                     float inertia, float gain, float* out, int row_begin, int row_end) {
-  const auto run = [&](auto rows) {
-    return rows(level, b, x, before, inertia, gain, out, row_begin, row_end);
-  };
-  if (level.ground != nullptr)
-    return before != nullptr ? run(smooth_rows<W, true, true>) : run(smooth_rows<W, false, true>);
-  return before != nullptr ? run(smooth_rows<W, true, false>) : run(smooth_rows<W, false, false>);
+  // Called by their names: what must be inlined cannot be called by address.
+  if (level.ground != nullptr) {
+    if (before != nullptr)
+      return smooth_rows<W, true, true>(level, b, x, before, inertia, gain, out, row_begin, row_end);
+    return smooth_rows<W, false, true>(level, b, x, before, inertia, gain, out, row_begin, row_end);
+  }
+  if (before != nullptr)
+    return smooth_rows<W, true, false>(level, b, x, before, inertia, gain, out, row_begin, row_end);
+  return smooth_rows<W, false, false>(level, b, x, before, inertia, gain, out, row_begin, row_end);
 }
 
 template <int W>
