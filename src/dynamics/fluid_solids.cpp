@@ -270,7 +270,7 @@ bool find_distances(const PointGrid& grid, std::span<const NearShape> fixed, std
   return true;
 }
 
-// What a liquid asks of solids beside their faces.
+// A liquid also asks for the distance and the label of the nearest solid at each centre.
 void set_center_distances(const PointGrid& grid, const GridShape& shape, FluidSolids& out) {
   const std::size_t size = std::size_t(shape.size);
   GasSolids& solids = out.solids;

@@ -22,7 +22,7 @@ struct FluidReport {
   bool full = false;        // sources gave nothing, since there are as many particles as may be
 };
 
-// What a fluid keeps from step to step but does not need: solids, memory, the report.
+// Memory, solids and the report of a fluid: kept from step to step, and no state. With a new one the results have the same bits.
 struct FluidScratch {
   FluidSolids solids;
   GasMemory gas;

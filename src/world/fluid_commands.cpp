@@ -54,7 +54,7 @@ CommandResult execute(WorldState& s, const AddFluid& c) {
   return out;
 }
 CommandResult execute(WorldState& s, const RemoveFluid& c) {
-  // What the fluid held may fall.
+  // Bodies that the fluid held may fall.
   for (const FluidPush& push : s.fluids.entries[c.fluid.index].pushes)
     if (s.rigid.bodies.ids.live(push.body)) wake(s.rigid, push.body);
   s.fluids.entries[c.fluid.index] = {};

@@ -180,6 +180,10 @@ LiquidDef World::liquid_def(FluidId fluid) const {
   LiquidDef def = entry.liquid_def();
   def.emitters.clear();
   for (const GasEmitter& emitter : entry.emitters) def.emitters.push_back(emitter_def(emitter));
+  // Particles may be anywhere in the whole cells of the box.
+  const GasBox& box = entry.liquid.box;
+  const double size = double(def.cell_size);
+  def.upper = def.lower + size * DVec3{double(box.cells[0]), double(box.cells[1]), double(box.cells[2])};
   def.particles = copy_particles(entry.liquid);
   return def;
 }

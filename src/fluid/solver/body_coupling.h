@@ -69,7 +69,7 @@ void begin_motions(const GasBox& box, std::span<const FluidBody> bodies, int lab
 // The motions after `step` without pressure, layers counted; `velocity`: of the fluid on faces.
 void predict_motions(std::span<const FluidBody> bodies, float step, const float* const (&velocity)[3],
                      BodyCoupling& coupling);
-// What `x`, pressure over density times the step, does to the motions.
+// Adds to the motions the change by `x`, pressure over density times the step.
 void push_bodies(const float* x, BodyCoupling& coupling);
 // Adds the impulses of the sub-step on bodies, layers counted.
 void add_body_impulses(const float* const (&velocity)[3], const BodyCoupling& coupling,

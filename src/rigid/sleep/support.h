@@ -11,7 +11,7 @@ namespace gyre {
 // `seconds`. A conveyor belt does not hold a body, nor does anything else hold a body on one.
 bool is_held_by_friction(const RigidWorld& w, std::uint32_t body, float speed, float time, float seconds);
 
-// What the joints of a body do to it.
+// The effect of a body's joints on its rest.
 struct JointDrives {
   bool any = false;  // a spring, motor or drive acts
   float slowest =
