@@ -128,6 +128,21 @@ class CModel(model.Model):
         return struct not in self.definitions and all(self.is_plain(part.type) for part in self.fields(struct)) and \
             len(self.fields(struct)) == len(self.api.structs[struct].fields)
 
+    def with_default(self):
+        """Structs that are no definitions and that a program fills in: C has a function that returns each with its defaults."""
+        found = set()
+
+        def add(name):
+            if name in found or name not in self.structs:
+                return
+            found.add(name)
+            for part in self.fields(name):
+                add(self.element(self.element(part.type)))
+
+        for name in [*self.written_structs, *self.variant_parts("AnyShape")]:
+            add(name)
+        return [name for name in self.structs if name in found and name not in self.definitions]
+
     # ------------------------------------------------------------------------------------------------- functions
 
     def c_name(self, function):

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <type_traits>
 #include <vector>
 
@@ -22,8 +23,9 @@ class Arena {
  public:
   template <class T>
   T* rows(std::size_t count) {
-    blocks_.push_back(std::make_unique<std::byte[]>(count * sizeof(T) + 1));
-    return new (blocks_.back().get()) T[count + (count == 0)]{};
+    if (count == 0) return nullptr;
+    blocks_.push_back(std::make_unique<std::byte[]>(count * sizeof(T)));
+    return new (blocks_.back().get()) T[count]{};
   }
   void clear() { blocks_.clear(); }
 

@@ -190,6 +190,8 @@ class HeaderWriter:
                 parts.append(self.any_shape())
         parts.append(BY_HAND)
         parts += [self.default(name) for name in m.structs if name in m.definitions]
+        parts.append("/* Other structs with the default of every field. */\n")
+        parts += [f"GYRE_C_API Gyre{name} gyre_{snake(name)}_default(void) GYRE_C_NOEXCEPT;\n" for name in m.with_default()]
         parts += [self.destroy(name) for name in self.handle_names()]
         parts += [self.function(call) for call in m.calls]
         parts.append(TAIL)

@@ -35,6 +35,7 @@ class SourceWriter:
         parts += [self.give(name) for name in converted]
         parts.append("}  // namespace gyre\n\nusing namespace gyre;\nusing namespace gyre::c;\n\nextern \"C\" {\n\n")
         parts += [self.init(name) for name in m.structs if name in m.definitions]
+        parts += [self.default(name) for name in m.with_default()]
         parts += [self.destroy(name) for name in self.header.handle_names()]
         parts += [self.function(call) for call in m.calls]
         parts.append('}  // extern "C"\n')
@@ -120,8 +121,8 @@ class SourceWriter:
             elif outer == "optional":
                 fill = f"copy(*in.{f}, out.{f})" if m.is_plain(inner) else f"give(*in.{f}, out.{f}, arena)"
                 lines.append(f"  out.has_{f} = in.{f}.has_value();\n  if (in.{f}) {fill};\n")
-                if inner in m.definitions or not m.is_plain(inner):
-                    lines.append(f"  else give({inner}{{}}, out.{f}, arena);\n")
+                if inner in m.structs:
+                    lines.append(f"  else copy({inner}{{}}, out.{f});\n" if m.is_plain(inner) else f"  else give({inner}{{}}, out.{f}, arena);\n")
             elif outer in ("span", "vector"):
                 if m.is_plain(inner):
                     lines.append(f"  out.{f} = reinterpret_cast<const {m.c_type(inner)}*>(in.{f}.data());\n".replace("const const char*", "const char* const"))
@@ -139,6 +140,10 @@ class SourceWriter:
     def init(self, name):
         return (f"void gyre_{snake(name)}_init(Gyre{name}* out, size_t size) noexcept {{\n"
                 f"  init_definition<{name}>(out, size);\n}}\n")
+
+    def default(self, name):
+        value = f"same<Gyre{name}>({self.cpp(name)}{{}})" if self.model.is_mirror(name) else f"default_of<{self.cpp(name)}, Gyre{name}>()"
+        return f"Gyre{name} gyre_{snake(name)}_default(void) noexcept {{ return {value}; }}\n"
 
     @staticmethod
     def destroy(name):

@@ -16,6 +16,7 @@ from pathlib import Path
 from c_model import ROOT, CModel
 from emit_abi import abi_program, symbols
 from emit_header import HeaderWriter
+from emit_python import PythonWriter
 from emit_source import SourceWriter
 from headers import HeaderError
 
@@ -43,7 +44,8 @@ def main():
         texts["source"] = SourceWriter(model).write()
         texts["symbols"] = symbols(texts["header"])
         texts["abi-program"] = abi_program(model)
-        texts["python"], texts["stubs"] = "", ""
+        python = PythonWriter(model)
+        texts["python"], texts["stubs"] = python.write(), ""
     except HeaderError as error:
         print(f"C bindings: {error}", file=sys.stderr)
         return 1
