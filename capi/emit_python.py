@@ -17,15 +17,6 @@ from ._runtime import (BOOL, COUNT, DVEC3, F32, F64, I32, MAT3, MAT4, POINTER, Q
                        definition, done, fill, refused, room, view)
 
 '''
-STUB_HEAD = '''# Made by capi/generate.py from the C++ headers; not to be edited.
-import enum
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-'''
 KINDS = {"float": "F32", "double": "F64", "int": "I32", "int32_t": "I32", "uint32_t": "U32", "uint16_t": "U16", "uint8_t": "U8",
          "uint64_t": "U64", "size_t": "SIZE", "bool": "BOOL", "byte": "U8"}
 CTYPES = {"float": "ctypes.c_float", "double": "ctypes.c_double", "int": "ctypes.c_int32", "int32_t": "ctypes.c_int32",
@@ -309,7 +300,9 @@ class PythonWriter:
             elif p.role == "out":
                 lines.append(f"{body}{p.name} = {self.ctype(p.kind)}()\n")
                 arguments.append(f"ctypes.byref({p.name})")
-            elif p.role == "fill" and not self.is_count_of_rows(call):
+            elif p.role == "fill" and self.is_count_of_rows(call):
+                arguments += ["at", "count"]
+            elif p.role == "fill":
                 count = self.room_of(call, p)
                 lines.append(f"{body}{n} = room({self.kind(p.kind)}, {count})\n")
                 arguments += [f"{n}.ctypes.data", f"len({n})"]
@@ -348,7 +341,7 @@ class PythonWriter:
         m = self.model
         a, kind = call.answer, call.kind
         if fills and self.is_count_of_rows(call):
-            return f"{body}return fill({', '.join([target, self.kind(fills[0].kind), *arguments])})\n"
+            return f"{body}return fill(lambda at, count: {target}({', '.join(arguments)}), {self.kind(fills[0].kind)})\n"
         text = f"{target}({', '.join(arguments)})"
         owner = "self" if call.owner else "None"
         if a == "void":

@@ -18,6 +18,7 @@ from emit_abi import abi_program, symbols
 from emit_header import HeaderWriter
 from emit_python import PythonWriter
 from emit_source import SourceWriter
+from emit_stubs import StubWriter
 from headers import HeaderError
 
 OUTPUTS = ("header", "source", "symbols", "abi-program", "python", "stubs")
@@ -44,8 +45,8 @@ def main():
         texts["source"] = SourceWriter(model).write()
         texts["symbols"] = symbols(texts["header"])
         texts["abi-program"] = abi_program(model)
-        python = PythonWriter(model)
-        texts["python"], texts["stubs"] = python.write(), ""
+        texts["python"] = PythonWriter(model).write()
+        texts["stubs"] = StubWriter(model).write()
     except HeaderError as error:
         print(f"C bindings: {error}", file=sys.stderr)
         return 1

@@ -552,12 +552,12 @@ def definition(cls, value, fields=None):
     return cls.of(value)
 
 
-def fill(function, kind, *arguments):
+def fill(function, kind):
     """Asks how many rows there are, then for all of them."""
-    count = function(*arguments, None, 0)
+    count = function(None, 0)
     rows = np.empty((count, kind.columns) if kind.columns else count, kind.dtype)
     if count:
-        function(*arguments, rows.ctypes.data, count)
+        function(rows.ctypes.data, count)
     return rows.view(np.recarray) if rows.dtype.names else rows
 
 
