@@ -332,7 +332,7 @@ class PythonWriter:
         if kind in VECTORS:
             return f"{kind.upper()}.set({name})"
         if kind in m.structs:
-            return f"{kind}.of({name})"
+            return f"{kind}._of({name})"
         if kind in ("float", "double"):
             return name
         return f"bool({name})" if kind == "bool" else f"{KINDS[kind]}.set({name})"
@@ -366,15 +366,15 @@ class PythonWriter:
             return lines + (f"{body}done({text})\n{body}return result\n" if a == "checked" else f"{body}return result if {text} else None\n")
         if a == "definition":
             text = f"{target}({', '.join([*arguments, 'ctypes.byref(result)'])})"
-            return f"{body}result = {kind}()\n{body}{text}\n{body}return result.owned()\n"
+            return f"{body}result = {kind}()\n{body}{text}\n{body}return result._owned()\n"
         if a == "shape":
             text = f"{target}({', '.join([*arguments, 'ctypes.byref(result)'])})"
             return f"{body}result = SHAPE.ctype()\n{body}return SHAPE.get(result, None) if {text} else None\n"
         if a == "whole":
             owned = any(p.type.startswith("vector<") for p in m.fields(kind)) or any(p.role == "table" for p in call.parameters)
             if owned:
-                return f"{body}return {text}.owned()\n"
-            return f"{body}result = {text}\n{body}result.owner = {owner if call.owner else call.parameters[0].name}\n{body}return result\n"
+                return f"{body}return {text}._owned()\n"
+            return f"{body}result = {text}\n{body}result._owner = {owner if call.owner else call.parameters[0].name}\n{body}return result\n"
         if a == "text":
             if kind == "char*":
                 return f"{body}return {text}.decode()\n"

@@ -17,9 +17,10 @@ from ._api import __all__ as _api_names
 from ._batch import Action, Batch, Channel, Reading, Space, VectorEnv
 from ._library import library as _library
 from ._runtime import GyreError, Id
+from ._render import render
 from ._scenes import Scene, load_scene, read_scene, scene_names
 from . import _world as _  # gives World and others their constructors
 
 __version__ = _library.gyre_version().decode()
-__all__ = [*_api_names, "Action", "Batch", "Channel", "GyreError", "Id", "Reading", "Scene", "Space", "VectorEnv", "load_scene", "read_scene",
+__all__ = [*_api_names, "Action", "Batch", "Channel", "GyreError", "Id", "Reading", "Scene", "Space", "VectorEnv", "load_scene", "read_scene", "render",
            "scene_names"]

@@ -94,7 +94,7 @@ class Kind:
         return self.get(type(struct)._raw[name].__get__(struct), owner)
 
     def write(self, struct, name, value):
-        type(struct)._raw[name].__set__(struct, self.set(value, struct.keep))
+        type(struct)._raw[name].__set__(struct, self.set(value, struct._keep))
 
 
 class Number(Kind):
@@ -188,30 +188,30 @@ class StructKind(Kind):
 
     @property
     def dtype(self):
-        return self.cls.dtype()
+        return self.cls._rows_dtype()
 
     def get(self, raw, owner):
-        raw.owner = owner
+        raw._owner = owner
         return raw
 
     def read(self, struct, name, owner):
         """A part lies in the memory of the whole, which keeps it, and so the arrays that are given to it."""
-        part = struct.keep.get((name, "part"))
+        part = struct._keep.get((name, "part"))
         if part is None:
-            part = struct.keep[name, "part"] = type(struct)._raw[name].__get__(struct)
-            part.owner = owner
+            part = struct._keep[name, "part"] = type(struct)._raw[name].__get__(struct)
+            part._owner = owner
         return part
 
     def set(self, value, keep=None):
-        made = self.cls.of(value)
+        made = self.cls._of(value)
         if keep is not None:
             keep[id(made)] = made
         return made
 
     def write(self, struct, name, value):
-        made = self.cls.of(value)
+        made = self.cls._of(value)
         type(struct)._raw[name].__set__(struct, made)
-        struct.keep[name, "given"] = made
+        struct._keep[name, "given"] = made
 
 
 class Texts(Kind):
@@ -283,7 +283,7 @@ class Rows(Kind):
         return self.rows(raw[name].__get__(struct), raw[f"{name}_count"].__get__(struct), owner)
 
     def rows(self, address, count, owner):
-        if isinstance(self.kind, (StructKind, ShapeKind)) and not self.kind.cls.plain:
+        if isinstance(self.kind, (StructKind, ShapeKind)) and not self.kind.cls._plain:
             cls = self.kind.cls
             size = ctypes.sizeof(cls)
             return [self.kind.get(cls.from_address(address + i * size), owner) for i in range(count)]
@@ -292,8 +292,8 @@ class Rows(Kind):
         return view(address, count, self.kind.dtype, self.kind.columns, owner)
 
     def write(self, struct, name, value):
-        memory, address, count = self.memory(value, struct.keep)
-        struct.keep[name] = memory
+        memory, address, count = self.memory(value, struct._keep)
+        struct._keep[name] = memory
         type(struct)._raw[name].__set__(struct, address)
         type(struct)._raw[f"{name}_count"].__set__(struct, count)
 
@@ -305,7 +305,7 @@ class Rows(Kind):
         if isinstance(kind, StructKind) and not (isinstance(value, np.ndarray) and value.dtype == kind.dtype):
             if isinstance(value, (kind.cls, dict)) or not hasattr(value, "__len__"):
                 value = [value]
-            made = [kind.cls.of(part) for part in value]
+            made = [kind.cls._of(part) for part in value]
             rows = (kind.cls * len(made))()
             for i, part in enumerate(made):
                 ctypes.memmove(ctypes.byref(rows, i * ctypes.sizeof(kind.cls)), ctypes.byref(part), ctypes.sizeof(kind.cls))
@@ -323,12 +323,12 @@ class Struct(ctypes.Structure):
     """The base of all structs. Fields are given by name (in a value, also in their order) and are properties."""
 
     _kinds, _raw = {}, {}
-    plain = True   # C++ has the same bytes
-    owner = None   # of the memory that views show
+    _plain = True  # NumPy can show rows of it
+    _owner = None  # of the memory that views show
 
     def __init__(self, *values, **fields):
         super().__init__()
-        self.start()
+        self._start()
         if len(values) > len(self._kinds):
             raise TypeError(f"{type(self).__name__} has {len(self._kinds)} fields, found {len(values)} values")
         fields.update(zip(self._kinds, values))
@@ -339,13 +339,13 @@ class Struct(ctypes.Structure):
                                 f", only {', '.join(self._kinds)}"))
             setattr(self, name, value)
 
-    def start(self):
+    def _start(self):
         default = getattr(type(self), "_default", None)
         if default is not None:
             ctypes.memmove(ctypes.byref(self), default, ctypes.sizeof(self))
 
     @property
-    def keep(self):
+    def _keep(self):
         """Arrays that members point to."""
         kept = self.__dict__.get("_kept")
         if kept is None:
@@ -353,7 +353,7 @@ class Struct(ctypes.Structure):
         return kept
 
     @classmethod
-    def of(cls, value):
+    def _of(cls, value):
         """A struct from what a caller may give for it."""
         if isinstance(value, cls):
             return value
@@ -376,25 +376,25 @@ class Struct(ctypes.Structure):
         raise TypeError(f"found {type(value).__name__}, expected {cls.__name__} or a dict of its fields")
 
     @classmethod
-    def dtype(cls):
+    def _rows_dtype(cls):
         if "_dtype" not in cls.__dict__:
             kinds = cls._kinds
             cls._dtype = np.dtype({"names": list(kinds), "formats": [_format(kind) for kind in kinds.values()],
                                    "offsets": [cls._raw[name].offset for name in kinds], "itemsize": ctypes.sizeof(cls)})
         return cls._dtype
 
-    def owned(self):
+    def _owned(self):
         """Copies the arrays that belong to somebody else, so that this struct is good for ever."""
         for name, kind in self._kinds.items():
             if isinstance(kind, Rows):
                 rows = kind.read(self, name, None)
-                kind.write(self, name, [row.owned() for row in rows] if isinstance(rows, list) and rows and isinstance(rows[0], Struct)
+                kind.write(self, name, [row._owned() for row in rows] if isinstance(rows, list) and rows and isinstance(rows[0], Struct)
                            else np.array(rows) if isinstance(rows, np.ndarray) else rows)
             elif isinstance(kind, (StructKind, Optional)):
                 part = kind.read(self, name, None)
-                if isinstance(part, Struct) and not type(part).plain:
-                    part.owned()
-                    self.keep[name] = part
+                if isinstance(part, Struct) and not type(part)._plain:
+                    part._owned()
+                    self._keep[name] = part
         return self
 
     def __repr__(self):
@@ -413,7 +413,7 @@ def _format(kind):
 class Definition(Struct):
     """A struct with a default for every field. Fields are given by name only."""
 
-    plain = False
+    _plain = False
 
     def __init__(self, *values, **fields):
         if values:
@@ -428,9 +428,9 @@ def define(cls, c_name, plain, kinds, docs):
         members += kind.members(name)
     cls._fields_ = members
     cls._raw = {name: cls.__dict__[name] for name, _ in members}
-    cls._kinds, cls.plain = kinds, plain
+    cls._kinds, cls._plain = kinds, plain
     for name, kind in kinds.items():
-        setattr(cls, name, property(lambda self, n=name, k=kind: k.read(self, n, self.owner),
+        setattr(cls, name, property(lambda self, n=name, k=kind: k.read(self, n, self._owner),
                                     lambda self, value, n=name, k=kind: _set(self, n, k, value), doc=docs.get(name)))
     if c_name and issubclass(cls, Definition):
         init = getattr(library, f"gyre_{c_name}_init")
@@ -461,7 +461,7 @@ class AnyShape(ctypes.Structure):
     """A shape of any kind, as C has it."""
 
     _fields_ = [("kind", ctypes.c_uint8), ("measures", _Measures)]
-    plain = False
+    _plain = False
 
 
 class ShapeKind(Kind):
@@ -549,7 +549,7 @@ def definition(cls, value, fields=None):
     """A definition from an object, a dict, or keyword arguments."""
     if fields:
         return cls(**fields) if value is None else cls(**{**({n: getattr(value, n) for n in cls._kinds} if isinstance(value, cls) else value), **fields})
-    return cls.of(value)
+    return cls._of(value)
 
 
 def fill(function, kind):
