@@ -12,8 +12,9 @@ def candidates():
     named = os.environ.get("GYRE_LIBRARY")
     if named:
         return [named]
-    names = ("libgyre.so", "libgyre.dylib", "gyre.dll")
-    found = [str(folder / name) for folder in (HERE, HERE.parents[1] / "lib") for name in names if (folder / name).exists()]
+    names = ("libgyre.so", "libgyre.dylib", "gyre.dll", "libgyre.so.0.1")
+    folders = [HERE, HERE.parents[1] / "lib", *HERE.parents]
+    found = [str(folder / name) for folder in folders for name in names if (folder / name).exists()]
     return found + ["libgyre.so.0.1", "libgyre.so"]
 
 
