@@ -66,7 +66,8 @@ def view(address, count, dtype, columns, owner):
     """A NumPy array over memory of the engine."""
     shape = (count, columns) if columns else (count,)
     if not address or not count:
-        return np.empty((0, columns) if columns else 0, dtype)
+        empty = np.empty((0, columns) if columns else 0, dtype)
+        return empty.view(np.recarray) if dtype.names else empty
     if dtype.names is None:
         return np.asarray(_Memory(address, shape, dtype.str, owner))
     return np.asarray(_Memory(address, (count * dtype.itemsize,), "|u1", owner)).view(dtype).view(np.recarray)
@@ -311,8 +312,7 @@ class Rows(Kind):
                 ctypes.memmove(ctypes.byref(rows, i * ctypes.sizeof(kind.cls)), ctypes.byref(part), ctypes.sizeof(kind.cls))
             return (rows, made), ctypes.addressof(rows), len(made)
         rows = np.ascontiguousarray(value, kind.dtype)
-        if kind.columns:
-            rows = rows.reshape(-1, kind.columns)
+        rows = rows.reshape(-1, kind.columns) if kind.columns else rows.ravel()
         return rows, rows.ctypes.data, len(rows)
 
 
