@@ -79,18 +79,23 @@ int components_of(const GyreChannel& channel, int most) {
 }
 int reading_width(const GyreChannel& channel) {
   switch (channel.what) {
-    case GYRE_READING_ORIENTATION: return components_of(channel, 4);
+    case GYRE_READING_ORIENTATION:
+      return components_of(channel, 4);
     case GYRE_READING_POSITION:
     case GYRE_READING_LINEAR_VELOCITY:
-    case GYRE_READING_ANGULAR_VELOCITY: return components_of(channel, 3);
-    default: return 1;
+    case GYRE_READING_ANGULAR_VELOCITY:
+      return components_of(channel, 3);
+    default:
+      return 1;
   }
 }
 bool is_of_joint(const GyreChannel& channel, bool action) {
   return action ? channel.what >= GYRE_ACTION_MOTOR_VELOCITY && channel.what <= GYRE_ACTION_MOTOR_FORCE
                 : channel.what >= GYRE_READING_JOINT_POSITION && channel.what <= GYRE_READING_JOINT_FORCE;
 }
-int action_width(const GyreChannel& channel) { return is_of_joint(channel, true) ? 1 : components_of(channel, 3); }
+int action_width(const GyreChannel& channel) {
+  return is_of_joint(channel, true) ? 1 : components_of(channel, 3);
+}
 
 BodyId body_in(const GyreChannel& channel, std::uint16_t world) {
   BodyId id = c::same<BodyId>(channel.body);
@@ -166,7 +171,8 @@ void observe(const GyreBatch& batch, BatchWorld& in, float* out) {
   for (const GyreChannel& channel : batch.observations) {
     const BodyId body = body_in(channel, in.number);
     if (is_of_joint(channel, false)) {
-      const JointAxisState state = world.joint_axis_state(joint_in(channel, in.number), c::same<JointAxis>(channel.axis));
+      const JointAxisState state =
+          world.joint_axis_state(joint_in(channel, in.number), c::same<JointAxis>(channel.axis));
       *out++ = channel.what == GYRE_READING_JOINT_POSITION   ? state.position
                : channel.what == GYRE_READING_JOINT_VELOCITY ? state.velocity
                                                              : state.force;
@@ -188,7 +194,8 @@ void observe(const GyreBatch& batch, BatchWorld& in, float* out) {
 
 // A motor with the channel's settings.
 Motor motor_of(const GyreChannel& channel, float value) {
-  Motor motor{.max_force = channel.max_force, .frequency = channel.frequency, .damping_ratio = channel.damping_ratio};
+  Motor motor{
+      .max_force = channel.max_force, .frequency = channel.frequency, .damping_ratio = channel.damping_ratio};
   if (channel.what == GYRE_ACTION_MOTOR_POSITION) {
     motor.target_position = value;
   } else if (channel.what == GYRE_ACTION_MOTOR_FORCE) {
@@ -227,19 +234,22 @@ bool refuse_argument(const char* why) {
 }
 
 bool set_channels(GyreBatch* batch, const GyreChannel* channels, std::size_t count, bool action) {
-  if (batch == nullptr || (channels == nullptr && count > 0)) return refuse_argument("gyre_batch: a pointer is NULL");
+  if (batch == nullptr || (channels == nullptr && count > 0))
+    return refuse_argument("gyre_batch: a pointer is NULL");
   const BatchWorld& first = *batch->worlds.front();
   const World& world = *first.handle.value;
   std::size_t width = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const GyreChannel& channel = channels[i];
-    if (channel.what > (action ? int(GYRE_ACTION_VELOCITY) : int(GYRE_READING_TOUCHING)) || channel.axis > GYRE_JOINT_AXIS_ANGULAR_Z ||
+    if (channel.what > (action ? int(GYRE_ACTION_VELOCITY) : int(GYRE_READING_TOUCHING)) ||
+        channel.axis > GYRE_JOINT_AXIS_ANGULAR_Z ||
         channel.components > (!action && channel.what == GYRE_READING_ORIENTATION ? 15 : 7)) {
-      c::refuse(make_error(ErrorCode::invalid_argument, "gyre_batch: channel %zu: what, components or axis is out of range", i));
+      c::refuse(make_error(ErrorCode::invalid_argument,
+                           "gyre_batch: channel %zu: what, components or axis is out of range", i));
       return false;
     }
-    const bool exists =
-        is_of_joint(channel, action) ? world.exists(joint_in(channel, first.number)) : world.exists(body_in(channel, first.number));
+    const bool exists = is_of_joint(channel, action) ? world.exists(joint_in(channel, first.number))
+                                                     : world.exists(body_in(channel, first.number));
     if (!exists) {
       c::refuse(make_error(ErrorCode::stale_id, "gyre_batch: channel %zu: the world has no such %s", i,
                            is_of_joint(channel, action) ? "joint" : "body"));
@@ -293,20 +303,29 @@ bool gyre_batch_set_observations(GyreBatch* batch, const GyreChannel* channels, 
 bool gyre_batch_set_actions(GyreBatch* batch, const GyreChannel* channels, size_t count) noexcept {
   return set_channels(batch, channels, count, true);
 }
-size_t gyre_batch_size(const GyreBatch* batch) noexcept { return batch != nullptr ? batch->worlds.size() : 0; }
-size_t gyre_batch_observation_width(const GyreBatch* batch) noexcept { return batch != nullptr ? batch->observation_width : 0; }
-size_t gyre_batch_action_width(const GyreBatch* batch) noexcept { return batch != nullptr ? batch->action_width : 0; }
+size_t gyre_batch_size(const GyreBatch* batch) noexcept {
+  return batch != nullptr ? batch->worlds.size() : 0;
+}
+size_t gyre_batch_observation_width(const GyreBatch* batch) noexcept {
+  return batch != nullptr ? batch->observation_width : 0;
+}
+size_t gyre_batch_action_width(const GyreBatch* batch) noexcept {
+  return batch != nullptr ? batch->action_width : 0;
+}
 
-bool gyre_batch_step(GyreBatch* batch, const float* actions, float* observations, int32_t steps, float seconds) noexcept {
+bool gyre_batch_step(GyreBatch* batch, const float* actions, float* observations, int32_t steps,
+                     float seconds) noexcept {
   if (batch == nullptr || steps < 1 || !(seconds > 0.0f && seconds <= 1.0f)) {
-    return refuse_argument("gyre_batch_step: expected a batch, at least one step, and seconds above 0 and at most 1");
+    return refuse_argument(
+        "gyre_batch_step: expected a batch, at least one step, and seconds above 0 and at most 1");
   }
   batch->seconds = seconds;
   batch->workers.run(batch->worlds.size(), [&](std::size_t i) {
     BatchWorld& in = *batch->worlds[i];
     in.refused = false;
     for (int step = 0; step < steps; ++step) {
-      if (actions != nullptr && !act(*batch, in, actions + i * batch->action_width, step == 0)) in.refused = true;
+      if (actions != nullptr && !act(*batch, in, actions + i * batch->action_width, step == 0))
+        in.refused = true;
       if (in.refused || !in.handle.value->step(seconds)) {
         in.refused = true;
         break;
@@ -317,8 +336,8 @@ bool gyre_batch_step(GyreBatch* batch, const float* actions, float* observations
   for (std::size_t i = 0; i < batch->worlds.size(); ++i) {
     if (!batch->worlds[i]->refused) continue;
     const std::span<const Problem> problems = batch->worlds[i]->handle.value->problems();
-    refuse(make_error(problems.empty() ? ErrorCode::invalid_argument : problems.back().code, "world %zu: %.200s", i,
-                      problems.empty() ? "refused" : problems.back().message));
+    refuse(make_error(problems.empty() ? ErrorCode::invalid_argument : problems.back().code,
+                      "world %zu: %.200s", i, problems.empty() ? "refused" : problems.back().message));
     return false;
   }
   return true;
@@ -328,7 +347,8 @@ bool gyre_batch_reset(GyreBatch* batch, const uint8_t* which) noexcept {
   if (batch == nullptr) return refuse_argument("gyre_batch_reset: batch is NULL");
   batch->workers.run(batch->worlds.size(), [&](std::size_t i) {
     // Only bytes that were made by this program are restored, so none can be refused.
-    if (which == nullptr || which[i] != 0) static_cast<void>(restore_snapshot(*batch->worlds[i]->handle.value, batch->start));
+    if (which == nullptr || which[i] != 0)
+      static_cast<void>(restore_snapshot(*batch->worlds[i]->handle.value, batch->start));
   });
   return true;
 }

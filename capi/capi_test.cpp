@@ -17,7 +17,9 @@ using namespace gyre;
 
 namespace {
 
-std::string scene_path(const char* name) { return std::string(GYRE_SOURCE_DIR) + "/scenes/" + name + ".gyre.json"; }
+std::string scene_path(const char* name) {
+  return std::string(GYRE_SOURCE_DIR) + "/scenes/" + name + ".gyre.json";
+}
 
 GyreShapeDef shape_of(GyreAnyShape geometry) {
   GyreShapeDef def = gyre_shape_def_default();
@@ -117,7 +119,8 @@ TEST(CInterface, DefinitionsOfEarlierHeadersAreTaken) {
     shape.geometry = sphere(0.1f + 0.1f * float(i));
     std::memcpy(rows.data() + std::size_t(i) * short_shape, &shape, short_shape);
   }
-  const GyreBodyId body = gyre_world_add_body(fall.world, &def, reinterpret_cast<const GyreShapeDef*>(rows.data()), 2);
+  const GyreBodyId body =
+      gyre_world_add_body(fall.world, &def, reinterpret_cast<const GyreShapeDef*>(rows.data()), 2);
   ASSERT_FALSE(GYRE_IS_NULL(body)) << gyre_last_error();
   std::size_t count = 0;
   const GyreShapeId* shapes = gyre_world_shapes(fall.world, body, &count);
@@ -135,7 +138,8 @@ TEST(CInterface, WrongSizesAndNullHandlesAreRefusedInWords) {
   Fall fall;
   GyreBodyDef def{};
   EXPECT_TRUE(GYRE_IS_NULL(gyre_world_add_body(fall.world, &def, nullptr, 0)));
-  EXPECT_NE(std::string(gyre_last_error()).find("GyreBodyDef: size is 0"), std::string::npos) << gyre_last_error();
+  EXPECT_NE(std::string(gyre_last_error()).find("GyreBodyDef: size is 0"), std::string::npos)
+      << gyre_last_error();
   def.size = sizeof def + 8;
   EXPECT_TRUE(GYRE_IS_NULL(gyre_world_add_body(fall.world, &def, nullptr, 0)));
   EXPECT_FALSE(gyre_world_step(nullptr, 0.1f));

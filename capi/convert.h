@@ -116,7 +116,8 @@ void give_definition(const In& in, Out* out, Arena& arena) {
   if (out == nullptr) return;
   Out whole{};
   give(in, whole, arena);
-  const std::uint32_t size = out->size != 0 && out->size < sizeof(Out) ? out->size : std::uint32_t(sizeof(Out));
+  const std::uint32_t size =
+      out->size != 0 && out->size < sizeof(Out) ? out->size : std::uint32_t(sizeof(Out));
   whole.size = size;
   std::memcpy(static_cast<void*>(out), static_cast<const void*>(&whole), size);
 }
@@ -126,7 +127,8 @@ void init_definition(Out* out, std::size_t size) {
   Out whole = default_of<In, Out>();
   if (size > sizeof whole) std::memset(static_cast<void*>(out), 0, size);
   whole.size = static_cast<std::uint32_t>(size);
-  std::memcpy(static_cast<void*>(out), static_cast<const void*>(&whole), size < sizeof whole ? size : sizeof whole);
+  std::memcpy(static_cast<void*>(out), static_cast<const void*>(&whole),
+              size < sizeof whole ? size : sizeof whole);
 }
 
 template <class In, class Out>

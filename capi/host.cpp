@@ -20,7 +20,9 @@ LastError& last_error() {
   return error;
 }
 
-Geometry geometry_of(const GyreGeometry* geometry) { return geometry != nullptr ? *geometry->value : Geometry(); }
+Geometry geometry_of(const GyreGeometry* geometry) {
+  return geometry != nullptr ? *geometry->value : Geometry();
+}
 
 }  // namespace
 
@@ -32,9 +34,10 @@ void refuse_null(const char* function) {
   refuse(make_error(ErrorCode::invalid_argument, "%s: a handle is NULL", function));
 }
 void refuse_size(const char* name, std::size_t found, std::size_t most) {
-  refuse(make_error(ErrorCode::invalid_argument,
-                    "%s: size is %zu, expected 4 to %zu: fill it by its _init function, with the header of this version", name, found,
-                    most));
+  refuse(make_error(
+      ErrorCode::invalid_argument,
+      "%s: size is %zu, expected 4 to %zu: fill it by its _init function, with the header of this version",
+      name, found, most));
 }
 void refuse_command(const World& world) {
   const std::span<const Problem> problems = world.problems();
@@ -53,16 +56,31 @@ GyreErrorCode checked(const Error& error) {
 
 void take(const GyreAnyShape& in, AnyShape& out) {
   switch (in.kind) {
-    case GYRE_SHAPE_KIND_SPHERE: out = c::same<Sphere>(in.as.sphere); break;
-    case GYRE_SHAPE_KIND_BOX: out = c::same<Box>(in.as.box); break;
-    case GYRE_SHAPE_KIND_CAPSULE: out = c::same<Capsule>(in.as.capsule); break;
-    case GYRE_SHAPE_KIND_CYLINDER: out = c::same<Cylinder>(in.as.cylinder); break;
-    case GYRE_SHAPE_KIND_CONE: out = c::same<Cone>(in.as.cone); break;
-    case GYRE_SHAPE_KIND_PLANE: out = c::same<Plane>(in.as.plane); break;
+    case GYRE_SHAPE_KIND_SPHERE:
+      out = c::same<Sphere>(in.as.sphere);
+      break;
+    case GYRE_SHAPE_KIND_BOX:
+      out = c::same<Box>(in.as.box);
+      break;
+    case GYRE_SHAPE_KIND_CAPSULE:
+      out = c::same<Capsule>(in.as.capsule);
+      break;
+    case GYRE_SHAPE_KIND_CYLINDER:
+      out = c::same<Cylinder>(in.as.cylinder);
+      break;
+    case GYRE_SHAPE_KIND_CONE:
+      out = c::same<Cone>(in.as.cone);
+      break;
+    case GYRE_SHAPE_KIND_PLANE:
+      out = c::same<Plane>(in.as.plane);
+      break;
     case GYRE_SHAPE_KIND_HULL:
     case GYRE_SHAPE_KIND_MESH:
-    case GYRE_SHAPE_KIND_HEIGHT_FIELD: out = geometry_of(in.as.geometry); break;
-    default: out = Geometry();  // which the engine refuses
+    case GYRE_SHAPE_KIND_HEIGHT_FIELD:
+      out = geometry_of(in.as.geometry);
+      break;
+    default:
+      out = Geometry();  // which the engine refuses
   }
 }
 
@@ -96,7 +114,8 @@ const char* gyre_last_error(void) noexcept { return last_error().text.c_str(); }
 GyreErrorCode gyre_last_error_code(void) noexcept { return same<GyreErrorCode>(last_error().code); }
 const char* gyre_version(void) noexcept { return GYRE_VERSION; }
 
-GyreRecorder* gyre_recorder_create(GyreWorld* world, GyreWriteFunction write, void* user, const GyreRecordOptions* options) noexcept {
+GyreRecorder* gyre_recorder_create(GyreWorld* world, GyreWriteFunction write, void* user,
+                                   const GyreRecordOptions* options) noexcept {
   if (world == nullptr || write == nullptr) {
     refuse_null("gyre_recorder_create");
     return nullptr;
@@ -109,7 +128,8 @@ GyreRecorder* gyre_recorder_create(GyreWorld* world, GyreWriteFunction write, vo
   recorder->value = &recorder->own.emplace(*world->value, recorder->sink, options_in);
   if (recorder->value->failed()) {
     refuse(make_error(ErrorCode::invalid_argument,
-                      "record: another recorder records this world, an option is out of range, or nothing could be written"));
+                      "record: another recorder records this world, an option is out of range, or nothing "
+                      "could be written"));
     return nullptr;
   }
   return recorder.release();

@@ -19,7 +19,8 @@ struct GyreScene {
 namespace gyre {
 namespace {
 
-GyreScene* opened(SceneResult<Scene> scene, const std::string& file, std::int32_t threads, std::int32_t simd_width) {
+GyreScene* opened(SceneResult<Scene> scene, const std::string& file, std::int32_t threads,
+                  std::int32_t simd_width) {
   if (!scene) {
     c::refuse_text(ErrorCode::invalid_data, scene.error().text());
     return nullptr;
@@ -66,7 +67,8 @@ const Out* rows_of(std::span<const Id> ids, std::size_t* count) {
 }
 // Several lists of ids as one.
 template <class Out, class Id>
-const Out* joined(std::vector<Id>& into, std::initializer_list<std::span<const Id>> lists, std::size_t* count) {
+const Out* joined(std::vector<Id>& into, std::initializer_list<std::span<const Id>> lists,
+                  std::size_t* count) {
   into.clear();
   for (const std::span<const Id> list : lists) into.insert(into.end(), list.begin(), list.end());
   return rows_of<Out>(std::span<const Id>(into), count);
@@ -84,8 +86,10 @@ GyreScene* gyre_scene_load(const char* path, int32_t threads, int32_t simd_width
   const std::string file = path != nullptr ? path : "";
   return opened(load_scene(file), file, threads, simd_width);
 }
-GyreScene* gyre_scene_read(const char* text, size_t text_count, int32_t threads, int32_t simd_width) noexcept {
-  return opened(read_scene(std::string_view(text, text != nullptr ? text_count : 0)), "scene", threads, simd_width);
+GyreScene* gyre_scene_read(const char* text, size_t text_count, int32_t threads,
+                           int32_t simd_width) noexcept {
+  return opened(read_scene(std::string_view(text, text != nullptr ? text_count : 0)), "scene", threads,
+                simd_width);
 }
 void gyre_scene_destroy(GyreScene* scene) noexcept { delete scene; }
 
@@ -116,13 +120,15 @@ const GyreSoftId* gyre_scene_softs(const GyreScene* scene, size_t* count) noexce
   set_count(count, 0);
   if (scene == nullptr) return nullptr;
   const SceneRunner& runner = scene->runner;
-  return joined<GyreSoftId>(const_cast<GyreScene*>(scene)->softs, {runner.ropes(), runner.cloths(), runner.soft_bodies()}, count);
+  return joined<GyreSoftId>(const_cast<GyreScene*>(scene)->softs,
+                            {runner.ropes(), runner.cloths(), runner.soft_bodies()}, count);
 }
 const GyreFluidId* gyre_scene_fluids(const GyreScene* scene, size_t* count) noexcept {
   set_count(count, 0);
   if (scene == nullptr) return nullptr;
   const SceneRunner& runner = scene->runner;
-  return joined<GyreFluidId>(const_cast<GyreScene*>(scene)->fluids, {runner.gases(), runner.liquids()}, count);
+  return joined<GyreFluidId>(const_cast<GyreScene*>(scene)->fluids, {runner.gases(), runner.liquids()},
+                             count);
 }
 
 const char* gyre_scene_body_name(const GyreScene* scene, size_t index) noexcept {
