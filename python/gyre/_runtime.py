@@ -372,7 +372,7 @@ class Struct(ctypes.Structure):
             if kind is SHAPE and SHAPE.is_shape(value):
                 return cls(**{name: value})  # a definition of a shape from its geometry
         if isinstance(value, (tuple, list)):
-            return cls(**dict(zip(cls._kinds, value, strict=False)))
+            return cls(**dict(zip(cls._kinds, value)))
         raise TypeError(f"found {type(value).__name__}, expected {cls.__name__} or a dict of its fields")
 
     @classmethod

@@ -8,10 +8,13 @@ import ast
 import ctypes
 import gc
 import os
-import subprocess
 import struct
+import subprocess
+import sys
+import tempfile
 import threading
 import unittest
+import zipfile
 import zlib
 from pathlib import Path
 
@@ -418,6 +421,26 @@ class Pictures(unittest.TestCase):
             raise
         self.assertEqual((picture.shape, picture.dtype), ((48, 64, 3), np.uint8))
         self.assertGreater(picture.std(), 5)
+
+
+class Wheels(unittest.TestCase):
+    def test_a_wheel_works_where_it_lies(self):
+        try:
+            import setuptools  # noqa: F401
+            import wheel  # noqa: F401
+        except ImportError as missing:
+            self.skipTest(str(missing))
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, "-W", "ignore", "setup.py", "-q", "egg_info", "--egg-base", folder, "build", "--build-base", folder,
+                            "bdist_wheel", "-d", folder, "-b", os.path.join(folder, "packed")], cwd=ROOT / "python", check=True,
+                           capture_output=True)
+            packed, = Path(folder).glob("gyre-*-py3-none-*.whl")
+            zipfile.ZipFile(packed).extractall(os.path.join(folder, "installed"))
+            environment = {key: value for key, value in os.environ.items() if not key.startswith("GYRE_")}
+            code = "import gyre; gyre.load_scene('machines').run(0.02); print(gyre.__file__)"
+            run = subprocess.run([sys.executable, "-c", code], env={**environment, "PYTHONPATH": os.path.join(folder, "installed")},
+                                 check=True, capture_output=True, text=True)
+            self.assertIn(folder, run.stdout)
 
 
 if __name__ == "__main__":
