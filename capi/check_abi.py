@@ -10,6 +10,7 @@ a new minor version in CMakeLists.txt, which is in the name of the library (libg
 
 import argparse
 import difflib
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -38,7 +39,7 @@ def main():
         print(f"check_abi: {len(found.splitlines())} lines as in abi.txt")
         return 0
     sys.stdout.writelines(difflib.unified_diff(written.splitlines(True), found.splitlines(True), "capi/abi.txt", "this build", n=1))
-    print("check_abi: the binary interface is another one. Where that is meant: check_abi.py --update with the same arguments")
+    print("check_abi: the binary interface is another one. Where that is meant:\n  " + shlex.join(["python3", *sys.argv, "--update"]))
     return 1
 
 

@@ -8,6 +8,7 @@ import ast
 import ctypes
 import gc
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -421,6 +422,17 @@ class Pictures(unittest.TestCase):
             raise
         self.assertEqual((picture.shape, picture.dtype), ((48, 64, 3), np.uint8))
         self.assertGreater(picture.std(), 5)
+
+
+class Docs(unittest.TestCase):
+    def test_the_programs_of_the_pages_run(self):
+        for page in ("docs/python.md", "README.md", "python/README.md"):
+            blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
+            self.assertTrue(blocks, page)
+            with tempfile.TemporaryDirectory() as folder:
+                run = subprocess.run([sys.executable, "-W", "ignore", "-c", "\n".join(blocks)], cwd=folder, capture_output=True, text=True,
+                                     check=False)
+            self.assertEqual(run.returncode, 0, f"{page}: {run.stderr}")
 
 
 class Wheels(unittest.TestCase):
