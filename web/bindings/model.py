@@ -64,6 +64,7 @@ RENAMED = {
     "World::exists(FieldId)": "fieldExists",
     "World::exists(SoftId)": "softExists",
     "World::exists(FluidId)": "fluidExists",
+    "World::user_data(ShapeId)": "shapeUserData",
     "World::create(WorldDef)": "createWorld",
     "Replay::open(vector<byte>,WorldDef)": "openReplay",
     "PoseTrack::open(vector<byte>)": "openPoseTrack",
