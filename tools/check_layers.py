@@ -116,7 +116,7 @@ OUTER = {
     "apps": {"apps", "scene", "bench"},
     "examples": set(),
     "kit": {"kit"},
-    "capi": {"capi"},
+    "capi": {"capi", "scene"},
     "web": {"web", "scene"},
 }
 
