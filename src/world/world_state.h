@@ -9,6 +9,7 @@
 #include "rigid/rigid_step.h"
 #include "rigid/store/rigid_world.h"
 #include "rigid/time/toi_stepping.h"
+#include "soft/query/soft_query.h"
 #include "soft/store/soft_store.h"
 #include "solver/kernels/solver_kernels.h"
 #include "task/task_system.h"
@@ -85,6 +86,10 @@ struct WorldState {
   // may not be built yet. Queries update it under the lock, since several threads may query at once.
   std::atomic<std::size_t> queried_changes{kNothingQueried};
   std::mutex query_lock;
+  // Boxes of soft matter for queries, by slot; made for the state of WorldState::changes, under the lock.
+  std::vector<SoftBoxes> soft_boxes;
+  Arena soft_box_memory;
+  std::atomic<std::uint64_t> soft_boxes_made_at{~std::uint64_t(0)};
   std::mutex batch_lock;          // the workers answer one batch of queries at a time
   Array<std::uint32_t> changes_to_show;
   Array<std::uint64_t> change_keys, change_scratch;
