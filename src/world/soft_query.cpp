@@ -2,6 +2,7 @@
 
 #include "geometry/shape/shape.h"
 #include "math/rotation.h"
+#include "world/soft_commands.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -22,14 +23,10 @@ void show_soft(WorldState& s) {
   s.soft_boxes_made_at.store(s.changes, std::memory_order_release);
 }
 
-SoftId id_of(const WorldState& s, std::uint32_t slot) {
-  return {slot, std::uint16_t(s.soft.ids.generation(slot)), s.number};
-}
-
 bool accepts(const WorldState& s, const QueryFilter& filter, std::uint32_t slot) {
   const SoftEntry& entry = s.soft.entries[slot];
   if (entry.def == nullptr || (entry.settings().filter.layer & filter.layers) == 0) return false;
-  return filter.accepts_soft == nullptr || filter.accepts_soft(filter.user, id_of(s, slot));
+  return filter.accepts_soft == nullptr || filter.accepts_soft(filter.user, soft_id(s, slot));
 }
 
 void find_hits(WorldState& s, const SoftCast& cast, const QueryFilter& filter, double max_fraction,
@@ -41,7 +38,7 @@ void find_hits(WorldState& s, const SoftCast& cast, const QueryFilter& filter, d
     if (!cast_at_soft(s.soft.entries[slot], s.soft_boxes[slot], cast, max_fraction, filter.back_faces, hit))
       continue;
     CastHit out;
-    out.soft = id_of(s, slot);
+    out.soft = soft_id(s, slot);
     out.triangle = std::int32_t(hit.part);
     out.point = hit.point, out.normal = hit.normal, out.fraction = hit.fraction;
     out.inside = hit.inside, out.depth = hit.depth;
@@ -85,7 +82,7 @@ void find_soft_overlaps(WorldState& s, const ShapePose& question, const QueryFil
     if (!accepts(s, filter, slot) || !overlaps_soft(s.soft.entries[slot], s.soft_boxes[slot], place, part))
       continue;
     Overlap out;
-    out.soft = id_of(s, slot);
+    out.soft = soft_id(s, slot);
     out.triangle = part == kNoTriangle ? -1 : std::int32_t(part);
     if (!found(out)) return;
   }

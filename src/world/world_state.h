@@ -78,7 +78,11 @@ struct WorldState {
   Array<Problem> problems;
   Array<std::uint32_t> frozen;
   RigidEvents published_events;  // events of the last step; rigid.events collects those of the next
-  Events events;                 // spans of `published_events`
+  SoftEvents published_soft_events;  // soft.events collects those of the next step
+  Events events;                 // spans of both
+  Array<std::uint8_t> soft_touch_mark;  // by shape; 0 but while shapes are listed
+  Array<SoftTouch> soft_touching;
+  Array<std::uint8_t> soft_inverted;
   bool stepping = false;
   bool validates = true;          // builds with GYRE_VALIDATE: state validation after each stage
   std::uint16_t number = 0;       // of this world, in its ids

@@ -3,6 +3,7 @@
 #include "random.h"
 
 #include <gyre/gyre.h>
+#include <gyre/replay.h>
 
 #include <gtest/gtest.h>
 
@@ -258,6 +259,94 @@ TEST(SoftQueries, SeeChangesAtOnce) {
   EXPECT_TRUE(world.cast_ray({0.1, 1, 0}, {0, -20, 0}));
   EXPECT_TRUE(world.remove_soft(cloth));
   EXPECT_FALSE(world.cast_ray({0.1, 1, 0}, {0, -20, 0}));
+}
+
+// ---------------------------------------------------------------------------------------------------------------- events
+
+SoftId add_jelly(World& world, DVec3 at) {
+  SolidDef jelly;
+  jelly.box = SolidBox{{0.2f, 0.2f, 0.2f}, {2, 2, 2}};
+  jelly.pose.position = at;
+  return world.add_solid(jelly);
+}
+
+TEST(SoftEvents, ATouchBeginsOnceAndEndsOnce) {
+  World world = make_world();
+  const BodyId ground = scenes::add_fixed(world, {0, -0.5, 0}, Box{{5.0f, 0.5f, 5.0f}});
+  const SoftId jelly = add_jelly(world, {0, 0.6, 0});
+  int begins = 0, ends = 0;
+  const auto count = [&] {
+    for (const SoftContactBegin& one : world.events().soft_begins) {
+      EXPECT_EQ(one.soft, jelly);
+      EXPECT_EQ(one.body, ground);
+      EXPECT_EQ(one.shape, world.shapes(ground)[0]);
+      EXPECT_LT(world.vertices(jelly).y[std::size_t(one.vertex)], 0.05);
+      ++begins;
+    }
+    for (const SoftContactEnd& one : world.events().soft_ends) {
+      EXPECT_EQ(one.soft, jelly);
+      ++ends;
+    }
+  };
+  for (int i = 0; i < 180; ++i) world.step(kStep), count();
+  EXPECT_GE(begins, 1);
+  EXPECT_EQ(ends, begins - 1);  // it bounced at most a few times, and lies now
+  EXPECT_LE(begins, 4);
+  const int bounced = begins;
+  for (int i = 0; i < 60; ++i) world.step(kStep), count();
+  EXPECT_EQ(begins, bounced);
+  world.remove_body(ground);
+  world.step(kStep), count();
+  EXPECT_EQ(ends, begins);
+  for (int i = 0; i < 10; ++i) world.step(kStep), count();
+  EXPECT_EQ(ends, begins);
+}
+
+TEST(SoftEvents, GoOnFromASnapshotAndTellWhatCommandsEnd) {
+  World world = make_world();
+  scenes::add_fixed(world, {0, -0.5, 0}, Box{{5.0f, 0.5f, 5.0f}});
+  const SoftId jelly = add_jelly(world, {0, 0.3, 0});
+  for (int i = 0; i < 10; ++i) world.step(kStep);
+  const std::vector<std::byte> before = save_snapshot(world);
+  std::vector<std::pair<std::size_t, std::size_t>> first, again;
+  for (int i = 0; i < 60; ++i) {
+    world.step(kStep);
+    first.push_back({world.events().soft_begins.size(), world.events().soft_ends.size()});
+  }
+  ASSERT_TRUE(restore_snapshot(world, before).ok());
+  EXPECT_TRUE(world.events().soft_begins.empty());
+  for (int i = 0; i < 60; ++i) {
+    world.step(kStep);
+    again.push_back({world.events().soft_begins.size(), world.events().soft_ends.size()});
+  }
+  EXPECT_EQ(first, again);
+  world.remove_soft(jelly);
+  world.step(kStep);
+  ASSERT_EQ(world.events().soft_ends.size(), 1u);
+  EXPECT_EQ(world.events().soft_ends[0].soft, jelly);
+}
+
+TEST(SoftEvents, ATetrahedronThatTurnsInsideOutIsReportedOnce) {
+  WorldDef def;
+  def.gravity = {};
+  World world = std::move(*World::create(def));
+  SolidDef one;
+  one.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  one.tetrahedra = {0, 1, 2, 3, 1, 2, 3, 4};
+  one.settings.velocities = {{60, 60, 60}, {}, {}, {}, {}};
+  const SoftId solid = world.add_solid(one);
+  int reported = 0;
+  for (int i = 0; i < 30; ++i) {
+    world.step(kStep);
+    for (const SoftInverted& tetrahedron : world.events().inverted) {
+      ++reported;
+      EXPECT_EQ(tetrahedron.soft, solid);
+      EXPECT_EQ(tetrahedron.tetrahedron, 0);
+      EXPECT_EQ(tetrahedron.vertices, (std::array<std::uint32_t, 4>{0, 1, 2, 3}));
+    }
+    if (i == 0) EXPECT_EQ(reported, 1);
+  }
+  EXPECT_GE(reported, 1);
 }
 
 }  // namespace

@@ -57,6 +57,22 @@ test('rays, moving shapes and overlaps find soft matter', () => {
   assert.ok(world.overlapAny({ shape: sphere({ radius: 0.1 }), pose: { position: [0, 0.5, 0] } }));
 });
 
+test('events tell which shapes soft matter touches', () => {
+  const { world, ball, cloth } = clothOverBall(api);
+  let begins = [];
+  for (let i = 0; i < 60 && begins.length === 0; ++i) {
+    world.step(second);
+    begins = [...world.events().softBegins];
+  }
+  assert.equal(begins.length, 1);
+  assert.equal(begins[0].soft, cloth);
+  assert.equal(begins[0].body, ball);
+  assert.equal(world.events().inverted.length, 0);
+  world.removeBody(ball);
+  world.step(second);
+  assert.equal(world.events().softEnds.length, 1);
+});
+
 test('ropes: vectors in every form, attached, pinned, released', () => {
   const points = [[0, 2, 0], [0.5, 2, 0], [1, 2, 0]];
   const forms = [points, points.flat(), new Float64Array(points.flat()), points.map(([x, y, z]) => ({ x, y, z }))];
