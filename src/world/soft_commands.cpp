@@ -3,6 +3,7 @@
 #include "base/float_mode.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
+#include "soft/body/enclosed_gas.h"
 #include "soft/body/soft_energy.h"
 #include "soft/store/soft_builder.h"
 #include "world/refusal.h"
@@ -220,6 +221,10 @@ SoftInfo World::soft_info(SoftId soft) const {
   info.user_data = entry.settings().user_data;
   info.awake = entry.is_awake();
   info.elastic_energy = elastic_energy(entry.body);
+  if (const EnclosedGas& gas = entry.body.gas; !gas.triangles.empty()) {
+    info.volume = enclosed_volume(p, gas.triangles);
+    info.pressure = gauge_pressure(gas, info.volume);
+  }
   for (int i = 0; i < p.count; ++i) {
     info.mass += double(p.mass[i]);
     info.kinetic_energy += 0.5 * double(p.mass[i]) * length_squared(DVec3(p.velocity(i)));
@@ -280,6 +285,7 @@ const char* to_string(RopeLinks links) { return links == RopeLinks::springs ? "s
 const char* to_string(ClothLinks links) {
   return links == ClothLinks::springs ? "springs" : links == ClothLinks::rods ? "rods" : "membrane";
 }
+const char* to_string(PressureLaw law) { return law == PressureLaw::ideal_gas ? "ideal_gas" : "constant"; }
 const char* to_string(SolidModel model) {
   return model == SolidModel::linear ? "linear" : model == SolidModel::corotated ? "corotated" : "neo_hookean";
 }
