@@ -7,10 +7,10 @@ namespace gyre {
 namespace {
 
 // A crushed balloon does not push harder than at this share of its volume at rest.
-constexpr double kLeastVolume = 0.01;
+constexpr double kMinVolume = 0.01;
 
 double held_volume(const EnclosedGas& gas, double volume) {
-  return max(volume, kLeastVolume * gas.rest_volume);
+  return max(volume, kMinVolume * gas.rest_volume);
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ double gauge_pressure(const EnclosedGas& gas, double volume) {
 }
 
 double volume_stiffness(const EnclosedGas& gas, double volume) {
-  if (gas.is_constant || volume < kLeastVolume * gas.rest_volume) return 0.0;
+  if (gas.is_constant || volume < kMinVolume * gas.rest_volume) return 0.0;
   return (gas.pressure + gas.ambient) * gas.rest_volume / (volume * volume);
 }
 
