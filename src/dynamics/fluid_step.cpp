@@ -36,6 +36,7 @@ void add_lift(const GasGrid& gas, const GasSolids& solids, const GasSettings& se
     const Array<std::int16_t>& label = solids.label[axis];
     for (int k = 0; k < shape.cells[2]; ++k) {
       for (int j = 0; j < shape.cells[1]; ++j) {
+        if (!solids.may_cut(shape, j, k)) continue;
         const int row = shape.row(j, k);
         for (int i = 0; i < shape.cells[0]; ++i) {
           const std::size_t c = std::size_t(row + i);

@@ -259,6 +259,7 @@ void build_liquid_matrix(const LiquidPass& pass) {
   PressureMatrix& matrix = pass.memory.matrix;
   PressureGrid& finest = matrix.levels[0];
   resize_pressure_level(finest, shape, true, true);
+  mark_all_stale(finest);
   const LiquidCell* const cell = pass.memory.cell.data();
   const float* const surface = pass.grid.surface.data();
   float full = 0.0f;
