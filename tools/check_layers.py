@@ -85,6 +85,7 @@ ROOMS = {
         "kernels": ["body"],
         "store": ["elements", "contact"],
         "solver": ["store", "kernels"],
+        "query": ["store"],
         "contact": ["body"],
     },
     "fluid": {

@@ -175,6 +175,7 @@ class FaceCutter {
     for_blocks(tasks, count[1] * count[2], kPointRows, [&](int first, int last, int) {
       for (int row = first; row < last; ++row) {
         const int k = row / count[1], j = row % count[1];
+        if (!out_.solids.may_cut(shape_, j, k)) continue;
         for (int i = 0; i < count[0]; ++i) {
           int at[3] = {i, j, k};
           std::size_t corner[4];
@@ -220,11 +221,33 @@ class FaceCutter {
   FluidSolids& out_;
 };
 
+// Rows near a corner within a solid.
+void find_near_rows(const PointGrid& grid, TaskSystem& tasks, FluidSolids& out) {
+  const int rows_y = grid.count[1], rows = rows_y * grid.count[2];
+  out.within_row.resize_uninitialized(std::size_t(rows));
+  for_blocks(tasks, rows, kPointRows, [&](int first, int last, int) {
+    for (int row = first; row < last; ++row) {
+      const float* const distance = out.corners.all.distance.data() + std::size_t(row) * grid.count[0];
+      int any = 0;
+      for (int i = 0; i < grid.count[0]; ++i) any |= distance[i] < 0.0f ? 1 : 0;
+      out.within_row[row] = std::uint8_t(any);
+    }
+  });
+  out.solids.near.resize_uninitialized(std::size_t(rows));
+  for (int row = 0; row < rows; ++row) {
+    const int above = row % rows_y + 1 < rows_y ? row + 1 : row, beyond = row + rows_y < rows ? rows_y : 0;
+    out.solids.near[row] = std::uint8_t(out.within_row[row] | out.within_row[above] |
+                                        out.within_row[row + beyond] | out.within_row[above + beyond]);
+  }
+}
+
 // A cell all of whose faces are closed lies within a solid.
 void mark_solid_cells(const GridShape& shape, TaskSystem& tasks, GasSolids& solids) {
   for_blocks(tasks, shape.rows(), kPointRows, [&](int first, int last, int) {
     for (int row = first; row < last; ++row) {
-      const int begin = shape.row(row % shape.cells[1], row / shape.cells[1]);
+      const int k = row / shape.cells[1], j = row % shape.cells[1];
+      if (!solids.may_cut(shape, j, k)) continue;
+      const int begin = shape.row(j, k);
       for (int c = begin; c < begin + shape.cells[0]; ++c) {
         bool closed = true;
         for (int axis = 0; axis < 3; ++axis) {
@@ -334,6 +357,7 @@ void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& sh
   const std::uint64_t revision = out.solids.revision;
   clear_solids(shape, int(out.bodies.size()), out.solids);
   out.solids.revision = revision + (changed ? 1 : 0);
+  find_near_rows(corners, tasks, out);
   FaceCutter cutter(w, box, shape, out);
   for (int axis = 0; axis < 3; ++axis) cutter.cut(axis, tasks);
   mark_solid_cells(shape, tasks, out.solids);

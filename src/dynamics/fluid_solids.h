@@ -29,6 +29,7 @@ struct FluidSolids {
   Array<std::uint32_t> bodies;      // by label, ascending
   SolidDistances corners, centers;  // of cells; centers for liquids alone
   Array<std::int16_t> label_of;     // by body, while labels are given
+  Array<std::uint8_t> within_row;   // rows of corners: 1 if one is within a solid
 };
 
 // `is_liquid`: with the distances of centres.

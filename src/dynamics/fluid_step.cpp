@@ -6,6 +6,7 @@
 #include "geometry/mass/submerged.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
+#include "task/parallel.h"
 
 #include <cmath>
 
@@ -36,6 +37,7 @@ void add_lift(const GasGrid& gas, const GasSolids& solids, const GasSettings& se
     const Array<std::int16_t>& label = solids.label[axis];
     for (int k = 0; k < shape.cells[2]; ++k) {
       for (int j = 0; j < shape.cells[1]; ++j) {
+        if (!solids.may_cut(shape, j, k)) continue;
         const int row = shape.row(j, k);
         for (int i = 0; i < shape.cells[0]; ++i) {
           const std::size_t c = std::size_t(row + i);
@@ -92,21 +94,31 @@ void push_bodies(RigidWorld& w, FluidEntry& entry, const FluidScratch& scratch, 
   entry.pushes = std::move(pushes);
 }
 
-bool is_finite_field(const Array<float>& field) {
-  float sum = 0.0f;
-  for (const float one : field) sum += 0.0f * one;  // 0, or not a number if one is not finite
-  return sum == 0.0f;
+bool is_finite_field(const Array<float>& field, TaskSystem& tasks) {
+  constexpr int kBlock = 16384;
+  const float* const from = field.data();
+  return reduce_blocks(
+             tasks, int(field.size()), kBlock, 0,
+             [&](int begin, int end, int) {
+               int any = 0;
+               for (int i = begin; i < end; ++i) {
+                 const auto bits = __builtin_bit_cast(std::uint32_t, from[i]);
+                 any |= (bits & 0x7f800000u) == 0x7f800000u ? 1 : 0;
+               }
+               return any;
+             },
+             [](int a, int b) { return a | b; }) == 0;
 }
-bool is_finite_fluid(const FluidEntry& entry) {
-  const auto all = [](const auto& fields) {
+bool is_finite_fluid(const FluidEntry& entry, TaskSystem& tasks) {
+  const auto all = [&](const auto& fields) {
     bool good = true;
-    for (const Array<float>& field : fields) good = good && is_finite_field(field);
+    for (const Array<float>& field : fields) good = good && is_finite_field(field, tasks);
     return good;
   };
   if (entry.is_liquid())
     return all(entry.liquid.position) && all(entry.liquid.motion) && all(entry.liquid.affine);
-  return all(entry.gas.velocity) && is_finite_field(entry.gas.density) &&
-         is_finite_field(entry.gas.temperature) && is_finite_field(entry.gas.pressure);
+  return all(entry.gas.velocity) && is_finite_field(entry.gas.density, tasks) &&
+         is_finite_field(entry.gas.temperature, tasks) && is_finite_field(entry.gas.pressure, tasks);
 }
 
 // A fluid that is no longer finite goes on at rest: a gas as air, a liquid with those particles whose places are finite.
@@ -221,7 +233,7 @@ void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& s
       step_liquid_entry(w, entry, own, kernels, tasks, time, seconds);
     else
       step_gas_entry(w, entry, own, kernels, tasks, time, seconds);
-    if (!is_finite_fluid(entry)) {
+    if (!is_finite_fluid(entry, tasks)) {
       still(entry);
       own.gas = {}, own.liquid = {};
       own.report = {};

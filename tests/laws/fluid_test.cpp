@@ -1,6 +1,8 @@
-// Gases and liquids against closed forms and tables: decaying vortices, flow between plates, a driven cavity, a tank at rest, waves, floats.
+// Gases and liquids against closed forms and tables: decaying vortices, flow between plates, a driven cavity, a duct, a vortex ring, smoke, a tank at rest, waves,
+// floats, a hole in a tank, connected vessels, a bucket that turns, a block that tips.
 // Sources: G. I. Taylor, A. E. Green, 1937; J. L. M. Poiseuille, 1840; U. Ghia, K. N. Ghia, C. T. Shin, "High-Re Solutions for Incompressible
-// Flow Using the Navier-Stokes Equations and a Multigrid Method", 1982; H. Lamb, "Hydrodynamics" (waves in a tank); Archimedes.
+// Flow Using the Navier-Stokes Equations and a Multigrid Method", 1982; H. Lamb, "Hydrodynamics" (waves in a tank); Archimedes;
+// E. Torricelli, 1644; L. Rosenhead, "The Spread of Vorticity in the Wake Behind a Cylinder", 1930.
 #include "laws/kit.h"
 
 namespace gyre::laws {
@@ -129,6 +131,243 @@ TEST(Liquid, CarriesWhatItDisplaces) {
   const double level = double(world.probe(pool, {0.06, 0.3, 0.06}).surface);
   const double draft = (level - mean + 0.5 * double(kHeight)) / double(kHeight);
   EXPECT_TRUE(relative_row("F-7 draft of a box of 600 kg/m^3", draft, double(kRatio), 5e-2, 3e-2));
+}
+
+// A square duct of side a: 0.0736714 G a^2 / mu in its middle.
+TEST(Gas, FlowsInASquareDuct) {
+  constexpr int kCells = 24;
+  World world = make_world({.gravity = {1.0f, 0, 0}});
+  GasDef def;
+  def.lower = {}, def.upper = {2.0 / kCells, 1, 1};
+  def.cells = {2, kCells, kCells};
+  def.density = 1.0f, def.viscosity = 0.5f;
+  def.sides = {FluidBoundary::periodic, FluidBoundary::periodic, FluidBoundary::no_slip,
+               FluidBoundary::no_slip,  FluidBoundary::no_slip,  FluidBoundary::no_slip};
+  const FluidId gas = world.add_gas(def);
+  run(world, 1.5);
+  const double speed = double(world.probe(gas, {0.03, 0.5, 0.5}).velocity.x);
+  EXPECT_TRUE(relative_row("F-8 speed in the middle of a square duct", speed, 0.0736714 / 0.5, 2e-2, 1e-2));
+}
+
+// A ring of the circulation G, its core as of the kernel of L. Rosenhead, 1930, moves with G / (4 pi R) (ln(8 R / d) - 1).
+TEST(Gas, CarriesAVortexRing) {
+  constexpr int kCells[3] = {48, 40, 40};
+  constexpr double kCell = 1.0 / 40, kRadius = 8 * kCell, kCore = 2 * kCell, kStrength = 0.1;
+  World world = make_world({.gravity = {}});
+  GasDef def;
+  def.lower = {0, -0.5, -0.5}, def.upper = {kCells[0] * kCell, 0.5, 0.5};
+  def.cells = {kCells[0], kCells[1], kCells[2]};
+  GasFields fields;
+  std::vector<float>* const velocity[3] = {&fields.velocity_x, &fields.velocity_y, &fields.velocity_z};
+  constexpr int kParts = 48;
+  for (int axis = 0; axis < 3; ++axis) {
+    int count[3];
+    for (int a = 0; a < 3; ++a) count[a] = kCells[a] + (a == axis ? 1 : 0);
+    for (int i = 0; i < count[0] * count[1] * count[2]; ++i) {
+      const int index[3] = {i % count[0], i / count[0] % count[1], i / count[0] / count[1]};
+      DVec3 at{index[0] * kCell, index[1] * kCell - 0.5, index[2] * kCell - 0.5};
+      (axis == 0 ? at.y : at.x) += 0.5 * kCell;
+      (axis == 2 ? at.y : at.z) += 0.5 * kCell;
+      DVec3 sum{};
+      for (int part = 0; part < kParts; ++part) {
+        const double angle = 2 * kPiDouble * part / kParts, c = std::cos(angle), s = std::sin(angle);
+        const DVec3 away = at - DVec3{0.4, kRadius * c, kRadius * s};
+        const double far = dot(away, away) + kCore * kCore;
+        sum += (1.0 / (far * std::sqrt(far))) * cross(DVec3{0, -s, c}, away);
+      }
+      sum = (kStrength / (4 * kPiDouble) * 2 * kPiDouble * kRadius / kParts) * sum;
+      velocity[axis]->push_back(float(axis == 0 ? sum.x : axis == 1 ? sum.y : sum.z));
+    }
+  }
+  const std::size_t cells = std::size_t(kCells[0] * kCells[1] * kCells[2]);
+  fields.density.resize(cells, 0.0f), fields.pressure.resize(cells, 0.0f);
+  fields.temperature.resize(cells, def.ambient_temperature);
+  def.fields = fields;
+  const FluidId gas = world.add_gas(def);
+  // The ring is where the speed on the axis is greatest.
+  const auto place = [&] {
+    double best = 0.0, at = 0.0;
+    for (int i = 1; i < kCells[0] * 4; ++i) {
+      const double x = i * 0.25 * kCell, speed = double(world.probe(gas, {x, 0, 0}).velocity.x);
+      if (speed > best) best = speed, at = x;
+    }
+    const auto speed = [&](double x) { return double(world.probe(gas, {x, 0, 0}).velocity.x); };
+    const double low = speed(at - 2 * kCell), high = speed(at + 2 * kCell);
+    return at + kCell * (high - low) / (2 * best - low - high);
+  };
+  run(world, 0.25);
+  const double begin = place();
+  constexpr double kTime = 1.5;
+  run(world, kTime);
+  const double expected = kStrength / (4 * kPiDouble * kRadius) * (std::log(8 * kRadius / kCore) - 1.0);
+  EXPECT_TRUE(relative_row("F-9 speed of a vortex ring", (place() - begin) / kTime, expected, 1e-1, 3e-2));
+}
+
+// In a closed box smoke is kept, however it is stirred; a body that moves leaves no cell with more than a little divergence.
+TEST(Gas, KeepsItsSmoke) {
+  World world = make_world();
+  GasDef def;
+  def.cells = {24, 24, 24};
+  def.sides.fill(FluidBoundary::closed);
+  def.emitters = {{.position = {0, 0.5, 0}, .radius = 0.3f, .temperature = 350.0f, .end = 0.01}};
+  def.vortices = TaylorGreen{1.0f, {3.14159f, 3.14159f}};
+  const FluidId gas = world.add_gas(def);
+  world.step(kStep);
+  const double before = world.fluid_info(gas).smoke_mass;
+  run(world, 2.0);
+  EXPECT_TRUE(relative_row("F-10 smoke in a closed box after 2 s", world.fluid_info(gas).smoke_mass, before,
+                           5e-3, 1e-4));
+}
+
+TEST(Gas, IsFreeOfDivergenceBesideAFan) {
+  World world = make_world();
+  const BodyId fan = world.add_body(
+      {.type = BodyType::kinematic, .pose = {.position = {0, 1, 0}}, .angular_velocity = {0, 6, 0}},
+      {.geometry = Box{{0.5f, 0.15f, 0.15f}}});
+  (void)fan;
+  GasDef def;
+  def.cells = {24, 24, 24};
+  const FluidId gas = world.add_gas(def);
+  double most = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    world.step(kStep);
+    most = std::max(most, double(world.fluid_info(gas).divergence));
+  }
+  EXPECT_TRUE(limit_row("F-11 divergence times the step, beside a fan", most * double(kStep), 1e-3, 1e-4));
+}
+
+// What flows out of a hole is as fast as what has fallen from the level: v^2 = 2 g h.
+TEST(Liquid, FlowsOutAsTorricelliSays) {
+  World world = make_world();
+  constexpr float kCell = 0.02f;
+  // Walls of a tank from x = 0 to 1.2, with a hole of ten cells above 0.2 m.
+  world.add_body({.type = BodyType::fixed, .pose = {.position = {1.24, 0.1, 0}}},
+                 {.geometry = Box{{0.04f, 0.1f, 1}}});
+  world.add_body({.type = BodyType::fixed, .pose = {.position = {1.24, 0.9, 0}}},
+                 {.geometry = Box{{0.04f, 0.5f, 1}}});
+  LiquidDef def = tank({1.8, 1.1, double(kCell)}, 0.9, kCell);
+  def.fill[0].upper.x = 1.2;
+  def.sides[1] = FluidBoundary::open;
+  const FluidId pool = world.add_liquid(def);
+  run(world, 0.6);
+  double ratio = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    world.step(kStep);
+    const Vec3 v = world.probe(pool, {1.34, 0.27, 0.01}).velocity;
+    const double level = double(world.probe(pool, {0.3, 0.5, 0.01}).surface);
+    ratio += double(length(v)) / std::sqrt(2 * kG * (level - 0.27)) / 12.0;
+  }
+  EXPECT_TRUE(row("F-12 speed out of a hole over that of Torricelli", ratio, 1.0, 1e-1, 3e-2));
+}
+
+// Vessels that are connected below have one level.
+TEST(Liquid, HasOneLevelInConnectedVessels) {
+  World world = make_world();
+  constexpr float kCell = 0.02f;
+  world.add_body({.type = BodyType::fixed, .pose = {.position = {0.5, 0.36, 0}}},
+                 {.geometry = Box{{0.04f, 0.26f, 1}}});
+  LiquidDef def = tank({1.0, 0.6, double(kCell)}, 0.4, kCell);
+  def.fill = {{{0, 0, 0}, {0.46, 0.4, 1}}, {{0.46, 0, 0}, {0.54, 0.1, 1}}, {{0.54, 0, 0}, {1, 0.2, 1}}};
+  def.viscosity = 10.0f;
+  def.sides[2] = FluidBoundary::no_slip;
+  const FluidId pool = world.add_liquid(def);
+  run(world, 6.0);
+  const auto level = [&](double from) {
+    double sum = 0.0;
+    for (int i = 0; i < 8; ++i) sum += double(world.probe(pool, {from + 0.05 * i, 0.3, 0.01}).surface) / 8.0;
+    return sum;
+  };
+  EXPECT_TRUE(limit_row("F-13 difference of the levels of connected vessels",
+                        std::fabs(level(0.05) - level(0.6)), double(kCell), 0.25 * double(kCell)));
+}
+
+// Liquid that turns as one body has a surface that rises by w^2 r^2 / (2 g).
+TEST(Liquid, RisesInARotatingBucket) {
+  World world = make_world();
+  constexpr double kRadius = 0.2, kSpin = 5.0, kDepth = 0.14;
+  constexpr float kCell = 0.02f;
+  constexpr int kStaves = 32;
+  for (int i = 0; i < kStaves; ++i) {
+    const float angle = 2 * kPi * float(i) / kStaves;
+    const double far = kRadius + 0.05;
+    BodyDef stave{.type = BodyType::fixed};
+    stave.pose = {.position = {far * std::cos(double(angle)), 0.2, far * std::sin(double(angle))},
+                  .orientation = from_axis_angle({0, 1, 0}, -angle)};
+    world.add_body(stave, {.geometry = Box{{0.05f, 0.3f, 0.06f}}});
+  }
+  LiquidDef def;
+  def.lower = {-0.24, 0, -0.24}, def.upper = {0.24, 0.32, 0.24};
+  def.cell_size = kCell;
+  LiquidParticles particles;
+  const double rise = kSpin * kSpin / (2 * kG), middle = kDepth - 0.5 * rise * kRadius * kRadius;
+  for (int i = 0; i < 48; ++i) {
+    for (int k = 0; k < 48; ++k) {
+      const double x = (i - 23.5) * 0.01, z = (k - 23.5) * 0.01, square = x * x + z * z;
+      if (square > (kRadius - 0.002) * (kRadius - 0.002)) continue;
+      for (int j = 0; 0.01 * (j + 0.5) < middle + rise * square; ++j) {
+        particles.positions.push_back({x, 0.01 * (j + 0.5), z});
+        particles.velocities.push_back({float(kSpin * z), 0, float(-kSpin * x)});
+      }
+    }
+  }
+  def.particles = particles;
+  const FluidId pool = world.add_liquid(def);
+  run(world, 0.5);
+  double measured = 0.0, spin_square = 0.0;
+  constexpr int kSteps = 60;
+  for (int i = 0; i < kSteps; ++i) {
+    world.step(kStep);
+    double rim = 0.0, center = 0.0, spin = 0.0;
+    for (int n = 0; n < 16; ++n) {
+      const double angle = 2 * kPiDouble * n / 16.0;
+      rim += double(world.probe(pool, {0.16 * std::cos(angle), 0.1, 0.16 * std::sin(angle)}).surface) / 16.0;
+      center +=
+          double(world.probe(pool, {0.04 * std::cos(angle), 0.1, 0.04 * std::sin(angle)}).surface) / 16.0;
+      const Vec3 v = world.probe(pool, {0.1 * std::cos(angle), 0.05, 0.1 * std::sin(angle)}).velocity;
+      spin += (double(v.x) * std::sin(angle) - double(v.z) * std::cos(angle)) / (0.1 * 16.0);
+    }
+    measured += (rim - center) / kSteps;
+    spin_square += spin * spin / kSteps;
+  }
+  // Cut cells at the wall slow it: the surface is that of the spin there is.
+  EXPECT_TRUE(row("F-15 spin of a bucket after 1 s over that at the start", std::sqrt(spin_square) / kSpin,
+                  1.0, 0.25, 0.02));
+  const double expected = spin_square * (0.16 * 0.16 - 0.04 * 0.04) / (2 * kG);
+  EXPECT_TRUE(relative_row("F-14 rise of the surface in a rotating bucket", measured, expected, 5e-2, 2e-2));
+}
+
+// The angle of a square block of this density ratio, after some seconds, that began at `angle`, in a plane flow.
+double settled_angle(double ratio, float angle, double seconds) {
+  World world = make_world();
+  constexpr float kCell = 0.025f, kSide = 0.2f;
+  BodyDef body;
+  body.pose = {.position = {0.5, 0.3 + double(kSide) * (0.5 - ratio), 0.5 * double(kCell)},
+               .orientation = from_axis_angle({0, 0, 1}, angle)};
+  body.can_sleep = false;
+  body.locked = {.linear = {false, false, true}, .angular = {true, true, false}};
+  const BodyId block = world.add_body(
+      body, {.geometry = Box{{0.5f * kSide, 0.5f * kSide, 0.5f * kCell}}, .density = 1000.0f * float(ratio)});
+  LiquidDef def = tank({1.0, 0.5, double(kCell)}, 0.3, kCell);
+  world.add_liquid(def);
+  double least = 10.0, most = -10.0;
+  const int steps = int(seconds * 60);
+  for (int i = 0; i < steps; ++i) {
+    world.step(kStep);
+    const Quat q = world.pose(block).orientation;
+    const double now = 2.0 * std::atan2(double(q.z), double(q.w));
+    if (i >= steps / 2) least = std::min(least, now), most = std::max(most, now);
+  }
+  return std::fabs(0.5 * (least + most)) * 180 / kPiDouble;
+}
+
+// A square block floats upright only where its density ratio s has s (1 - s) < 1/6: else it tips.
+TEST(Liquid, TipsABlockOnlyWhereItMust) {
+  EXPECT_TRUE(limit_row("F-16 angle of a floating block of 0.1, degrees",
+                        settled_angle(0.1, 4 * kDegree, 4.0), 3.0, 1.0));
+  EXPECT_TRUE(limit_row("F-17 angle of a floating block of 0.9, degrees",
+                        settled_angle(0.9, 4 * kDegree, 4.0), 3.0, 1.0));
+  EXPECT_TRUE(row("F-18 angle of a floating block of 0.5, degrees", settled_angle(0.5, 4 * kDegree, 5.0),
+                  45.0, 15.0, 5.0));
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ LEFT_OUT = {
     "World::liquid_surface": "see World::sample_velocity",
     "default_joint": "{ kind: ... } is one",
     "QueryFilter.accepts": "a function pointer; the layers of the filter are carried",
+    "QueryFilter.accepts_soft": "see QueryFilter.accepts",
     "QueryFilter.user": "see QueryFilter.accepts",
     "BodyNames": "a function pointer; bodies of a scene are named by the scene",
     "to_string": "names of enumerators are part of the enums, see nameOf",

@@ -33,6 +33,7 @@ void fill_solid_cells(const GasPass& pass, float* field, float otherwise) {
   const GridShape& shape = pass.shape();
   const std::uint8_t* const solid = pass.solids.solid.data();
   each_row(pass, -1, [&](int c, int j, int k) {
+    if (!pass.solids.may_cut(shape, j, k)) return;
     for (int i = 0; i < shape.cells[0]; ++i) {
       if (solid[c + i] == 0) continue;
       float sum = 0.0f;

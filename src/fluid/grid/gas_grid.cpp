@@ -144,6 +144,26 @@ void clear_outside(const GridShape& shape, int faces, Array<float>& field) {
 
 void clear_solids(const GridShape& shape, int labels, GasSolids& solids) {
   const std::size_t size = std::size_t(shape.size);
+  const std::size_t rows = std::size_t(shape.cells[1] + 1) * std::size_t(shape.cells[2] + 1);
+  solids.distance.clear();
+  solids.nearest.clear();
+  solids.labels = labels;
+  ++solids.revision;
+  if (solids.solid.size() == size && solids.near.size() == rows) {
+    for (int k = 0; k <= shape.cells[2]; ++k) {
+      for (int j = 0; j <= shape.cells[1]; ++j) {
+        if (!solids.may_cut(shape, j, k)) continue;
+        for (int c = shape.row(j, k); c <= shape.row(j, k) + shape.cells[0]; ++c) {
+          for (int axis = 0; axis < 3; ++axis)
+            solids.open[axis][c] = 1.0f, solids.velocity[axis][c] = 0.0f, solids.label[axis][c] = -1;
+          solids.solid[c] = 0;
+        }
+      }
+    }
+    solids.near.clear();
+    return;
+  }
+  solids.near.clear();
   for (int axis = 0; axis < 3; ++axis) {
     solids.open[axis].clear();
     solids.open[axis].resize(size, 1.0f);
@@ -154,10 +174,6 @@ void clear_solids(const GridShape& shape, int labels, GasSolids& solids) {
   }
   solids.solid.clear();
   solids.solid.resize(size, std::uint8_t(0));
-  solids.distance.clear();
-  solids.nearest.clear();
-  solids.labels = labels;
-  ++solids.revision;
 }
 
 }  // namespace gyre

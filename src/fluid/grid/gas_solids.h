@@ -21,13 +21,18 @@ struct GasSolids {
   // solid, m, negative within it, right up to four cells and no less than that beyond, and the label of that solid, -1 beyond.
   Array<float> distance;
   Array<std::int16_t> nearest;
+  // Rows of cells, with those of the last faces, cells[1] + 1 along y: 0 where no face is cut and no cell is within a solid. Empty: not known.
+  Array<std::uint8_t> near;
   int labels = 0;
   std::uint64_t revision = 1;  // another number whenever `open` or `solid` changes
 
   bool present() const { return labels > 0; }
+  bool may_cut(const GridShape& shape, int j, int k) const {
+    return near.empty() || near[j + k * (shape.cells[1] + 1)] != 0;
+  }
 };
 
-// Free space: no face is cut.
+// Free space: no face is cut. Rows that are known to be free already are not written again.
 void clear_solids(const GridShape& shape, int labels, GasSolids& solids);
 
 // The impulse and its moment that the pressure of the gas gives to a solid in a step.

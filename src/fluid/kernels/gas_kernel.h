@@ -25,6 +25,9 @@ constexpr GasKernels gas_kernels() {
   kernels.add_mean = add_mean_points<W>;
   kernels.find_mean = find_mean_points<W>;
   kernels.find_inflow = find_inflow_cells<W>;
+  kernels.find_open_inflow = find_open_inflow_cells<W>;
+  kernels.subtract_weighted = subtract_weighted_faces<W>;
+  kernels.find_cells = find_particle_cells<W>;
   kernels.add_particles = add_particle_sums<W>;
   kernels.move_particles = move_particle_lanes<W>;
   kernels.largest = largest_point<W>;

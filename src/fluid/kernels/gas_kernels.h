@@ -140,6 +140,15 @@ struct GasKernels {
   // to = the sum over the axes of scale (velocity - velocity at stride), where a cell has an equation, else 0.
   void (*find_inflow)(const PressureLevel& level, const float* const (&velocity)[3], const float (&scale)[3],
                       float* to, int row_begin, int row_end);
+  // The same of what passes through the open fraction of faces; empty rows become 0.
+  void (*find_open_inflow)(const PressureLevel& level, const float* const (&open)[3],
+                           const float* const (&velocity)[3], const float (&scale)[3], float* to,
+                           int row_begin, int row_end);
+  // field -= scale weight (x - x at -stride) at `count` faces.
+  void (*subtract_weighted)(const float* weight, const float* x, int stride, float scale, float* field,
+                            int count);
+  // The cells of particles [begin, end) in the order of rows, -1: it has left, or its velocity is not finite.
+  void (*find_cells)(const ParticlePass& pass, int begin, int end, std::int32_t* cell);
   // Adds the sums of particles [begin, end) of a row of cells to the grid.
   void (*add_particles)(const ParticlePass& pass, int begin, int end);
   // Velocity, slopes and new positions of particles.

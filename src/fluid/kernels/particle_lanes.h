@@ -10,6 +10,8 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
+constexpr float kLargestFloat = 3.40282347e38f;
+
 // W numbers of a column from `at` on, of which `count` exist; the others are zero.
 template <int W>
 GYRE_INLINE Wide<W> load_particles(const float* column, int at, int count) {
@@ -57,6 +59,33 @@ struct ParticlePlaces {
     all.store(index);
   }
 };
+
+template <int W>
+void find_particle_cells(const ParticlePass& pass, int begin, int end, std::int32_t* cell) {
+  const GridShape& shape = pass.shape;
+  for (int p = begin; p < end; p += W) {
+    const int count = end - p < W ? end - p : W;
+    WideInt<W> index[3];
+    Wide<W> inside(1.0f);  // 0: it has left
+    GYRE_UNROLL
+    for (int axis = 0; axis < 3; ++axis) {
+      const ParticleAxis& a = pass.axes[axis];
+      const int cells = shape.cells[axis];
+      const Wide<W> at = load_particles<W>(pass.position[axis], p, count);
+      const Wide<W> speed = load_particles<W>(pass.motion[axis], p, count);
+      const Wide<W> place = min(max(at * Wide<W>(a.inverse_edge), Wide<W>(0.0f)), Wide<W>(float(cells)));
+      index[axis] = min(truncate(place), WideInt<W>(cells - 1));
+      inside = keep(at >= Wide<W>(0.0f), inside);
+      inside = keep(at <= Wide<W>(float(cells) * a.edge), inside);
+      inside = keep(absolute(speed) <= Wide<W>(kLargestFloat), inside);
+    }
+    const WideInt<W> all =
+        index[0] + WideInt<W>(shape.cells[0]) * (index[1] + WideInt<W>(shape.cells[1]) * index[2]);
+    alignas(64) std::int32_t some[W];
+    select(inside > Wide<W>(0.0f), all, WideInt<W>(-1)).store(some);
+    for (int i = 0; i < count; ++i) cell[p + i] = some[i];
+  }
+}
 
 template <int W>
 void add_particle_sums(const ParticlePass& pass, int begin, int end) {

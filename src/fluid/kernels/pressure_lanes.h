@@ -313,5 +313,43 @@ void find_inflow_cells(const PressureLevel& level, const float* const (&velocity
   });
 }
 
+template <int W>
+void find_open_inflow_cells(const PressureLevel& level, const float* const (&open)[3],
+                            const float* const (&velocity)[3], const float (&scale)[3], float* to,
+                            int row_begin, int row_end) {
+  const GridShape& shape = level.shape;
+  const int stride[3] = {1, shape.pitch, shape.plane};
+  for_rows(shape, shape.cells[1], row_begin, row_end, [&](int c, int, int, int row) {
+    if (level.rows[row] == PressureRow::empty) {
+      for (int i = 0; i < shape.cells[0]; i += W) Wide<W>(0.0f).store(to + c + i);
+      return;
+    }
+    for_lanes<W>(shape.cells[0], [&](int i, auto lanes) {
+      Wide<W> part[3];
+      GYRE_UNROLL
+      for (int axis = 0; axis < 3; ++axis) {
+        const float *const v = velocity[axis] + c + i, *const share = open[axis] + c + i;
+        part[axis] = Wide<W>(scale[axis]) * (Wide<W>::load(share) * Wide<W>::load(v) -
+                                             Wide<W>::load_unaligned(share + stride[axis]) *
+                                                 Wide<W>::load_unaligned(v + stride[axis]));
+      }
+      const Mask<W> active = Wide<W>::load(level.inverse_diagonal + c + i) > 0.0f;
+      lanes.keep_real(keep(active, part[0] + part[1] + part[2])).store(to + c + i);
+    });
+  });
+}
+
+template <int W>
+void subtract_weighted_faces(const float* weight, const float* x, int stride, float scale, float* field,
+                             int count) {
+  int f = 0;
+  for (; f + W <= count; f += W) {
+    const Wide<W> steep = Wide<W>(scale) * Wide<W>::load_unaligned(weight + f);
+    const Wide<W> rise = Wide<W>::load_unaligned(x + f) - Wide<W>::load_unaligned(x + f - stride);
+    (Wide<W>::load_unaligned(field + f) - steep * rise).store_unaligned(field + f);
+  }
+  for (; f < count; ++f) field[f] -= scale * weight[f] * (x[f] - x[f - stride]);
+}
+
 }  // namespace GYRE_TARGET_NAMESPACE
 }  // namespace gyre

@@ -8,7 +8,7 @@ namespace gyre {
 
 // Lists the faces of each layer; those beside liquid are layer 0, up to `count` beyond them.
 void find_layers(const LiquidPass& pass, int count);
-// Gives the faces of all layers but the first their values, and ghosts theirs.
-void extrapolate(const LiquidPass& pass, Array<float> (&fields)[3]);
+// Gives the faces of all layers but the first their values, and ghosts theirs, in two fields at once.
+void extrapolate(const LiquidPass& pass, Array<float> (&first_fields)[3], Array<float> (&second_fields)[3]);
 
 }  // namespace gyre

@@ -4,6 +4,7 @@
 #include "fluid/solver/pressure_pockets.h"
 
 #include <cmath>
+#include <cstring>
 
 namespace gyre {
 
@@ -63,6 +64,12 @@ void fill_cell_ghosts(const LiquidPass& pass, LiquidCell* cell) {
   wrap_points(pass, cell);
 }
 
+bool are_all_above(const float* from, int count, float bound) {
+  int below = 0;
+  for (int i = 0; i < count; ++i) below |= from[i] > bound ? 0 : 1;
+  return below == 0;
+}
+
 // Cells that solids leave no face of, and cells in a solid between two that are not: liquid on either side of a thin wall must not share a
 // pressure within it. Their faces are closed. Without distances, all cells in solids.
 void block_cells(const LiquidPass& pass) {
@@ -71,6 +78,10 @@ void block_cells(const LiquidPass& pass) {
   std::uint8_t* const blocked = pass.memory.blocked.data();
   const bool has_distance = !solids.distance.empty();
   each_row(pass, -1, [&](int c, int j, int k) {
+    if (has_distance && are_all_above(solids.distance.data() + c, shape.cells[0], 0.0f)) {
+      std::memset(blocked + c, 0, std::size_t(shape.cells[0]));
+      return;
+    }
     for (int i = 0; i < shape.cells[0]; ++i) {
       const int at = c + i, index[3] = {i, j, k};
       bool block = solids.solid[at] != 0;
@@ -131,6 +142,23 @@ void find_surface_in_solids(const LiquidPass& pass) {
   });
 }
 
+// Eight cells at once, of which liquid counts: those that are all liquid or that have none need no look at each.
+constexpr int kEight = 8;
+std::uint64_t liquid_of_eight(const LiquidCell* cell) {
+  static_assert(std::uint8_t(LiquidCell::air) == 0 && std::uint8_t(LiquidCell::liquid) == 1 &&
+                std::uint8_t(LiquidCell::solid) == 2);
+  std::uint64_t eight;
+  std::memcpy(&eight, cell, sizeof eight);
+  return eight & 0x0101010101010101u;
+}
+constexpr std::uint64_t kAllLiquid = 0x0101010101010101u;
+
+bool are_eight_open(const float* open) {
+  int closed = 0;
+  for (int i = 0; i < kEight; ++i) closed |= open[i] != 1.0f ? 1 : 0;
+  return closed == 0;
+}
+
 // How strongly cells are tied to the air around them, and which are air.
 void find_ground(const LiquidPass& pass, PressureGrid& finest) {
   const GridShape& shape = pass.shape();
@@ -140,7 +168,23 @@ void find_ground(const LiquidPass& pass, PressureGrid& finest) {
     inner[axis] = pass.flat(axis) ? 0.0f : 1.0f / (pass.edge(axis) * pass.edge(axis));
   each_row(pass, -1, [&](int c, int j, int k) {
     const bool dry = is_dry(pass, -1, j, k);
-    for (int i = c; i < c + shape.cells[0]; ++i) {
+    const int end = c + shape.cells[0], py = shape.pitch, pz = shape.plane;
+    for (int i = c; i < end; ++i) {
+      if (!dry && i + kEight <= end) {
+        const std::uint64_t here = liquid_of_eight(cell + i);
+        const bool within = here == kAllLiquid &&
+                            (liquid_of_eight(cell + i - 1) & liquid_of_eight(cell + i + 1) &
+                             liquid_of_eight(cell + i - py) & liquid_of_eight(cell + i + py) &
+                             liquid_of_eight(cell + i - pz) & liquid_of_eight(cell + i + pz)) == kAllLiquid;
+        if (here == 0 || within) {
+          for (int n = i; n < i + kEight; ++n) {
+            finest.ground[n] = 0.0f;
+            finest.is_air[n] = cell[n] == LiquidCell::air ? 1 : 0;
+          }
+          i += kEight - 1;
+          continue;
+        }
+      }
       if (dry) {
         finest.ground[i] = 0.0f;
         finest.is_air[i] = cell[i] == LiquidCell::air ? 1 : 0;
@@ -183,11 +227,20 @@ void find_open_faces(const LiquidPass& pass) {
     const float high = wraps || pass.box().open(2 * axis + 1) ? 1.0f : 0.0f;
     const float half_inverse = 0.5f / pass.edge(axis);
     each_row(pass, axis, [&](int c, int j, int k) {
-      const int across = axis == 1 ? j : k;
-      for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+      const int across = axis == 1 ? j : k, count = shape.cells[0] + (axis == 0 ? 1 : 0);
+      // As far as this from every solid, a face is open.
+      const float far = 0.51f * pass.edge(axis);
+      const bool free =
+          !solids.present() ||
+          (has_distance &&
+           (axis > 0 && across == last ? true
+                                       : are_all_above(solids.distance.data() + c, shape.cells[0], far)) &&
+           (axis > 0 && across > 0 ? are_all_above(solids.distance.data() + c - step, shape.cells[0], far)
+                                   : true));
+      for (int i = 0; i < count; ++i) {
         const int at = axis == 0 ? i : across, f = c + i;
         to[f] = flat ? 0.0f : at == 0 ? low : at == last ? high : 1.0f;
-        if (!solids.present()) continue;
+        if (free) continue;
         float open = solids.open[axis][f];
         if (has_distance) {
           const float below = solids.distance[at > 0 ? f - step : f],
@@ -259,6 +312,7 @@ void build_liquid_matrix(const LiquidPass& pass) {
   PressureMatrix& matrix = pass.memory.matrix;
   PressureGrid& finest = matrix.levels[0];
   resize_pressure_level(finest, shape, true, true);
+  mark_all_stale(finest);
   const LiquidCell* const cell = pass.memory.cell.data();
   const float* const surface = pass.grid.surface.data();
   float full = 0.0f;
@@ -280,6 +334,17 @@ void build_liquid_matrix(const LiquidPass& pass) {
         return;
       }
       for (int i = 0; i < count; ++i) {
+        if (i + kEight <= count) {
+          const std::uint64_t below = liquid_of_eight(cell + c + i - step),
+                              above = liquid_of_eight(cell + c + i);
+          const bool none = (below | above) == 0;
+          if (none || ((below & above) == kAllLiquid && are_eight_open(open + c + i))) {
+            for (int f = c + i; f < c + i + kEight; ++f)
+              steepness[f] = none ? 0.0f : 1.0f, face[f] = none ? 0.0f : inner;
+            i += kEight - 1;
+            continue;
+          }
+        }
         const int f = c + i, at = axis == 0 ? i : across;
         const bool lower = cell[f - step] == LiquidCell::liquid, upper = cell[f] == LiquidCell::liquid;
         float steep = 0.0f, between = 0.0f;

@@ -27,6 +27,7 @@ struct LiquidMemory {
   Array<std::uint8_t> blocked;  // cells without room for liquid
   Array<LiquidCell> cell;
   Array<std::uint8_t> wet;        // of centres: liquid among this and the seven above along the axes
+  Array<std::uint8_t> known_row;  // rows of faces of one axis: 0 if none is beside liquid
   Array<std::uint8_t> layer[3];   // of faces: how many from those beside liquid, which are 0
   Array<std::int32_t> beyond[3];  // faces beyond those, layer by layer, and where each layer begins
   Array<std::int32_t> beyond_begin[3];

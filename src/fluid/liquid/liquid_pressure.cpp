@@ -29,26 +29,16 @@ PressureVectors vectors_of(const LiquidPass& pass) {
 
 // The net inflow of liquid cells over their volume, without what solids bring.
 void find_open_inflow(const LiquidPass& pass, float* to) {
-  const GridShape& shape = pass.shape();
-  const float* const active = pass.memory.matrix.levels[0].inverse_diagonal.data();
-  const float *const ox = pass.memory.open[0].data(), *const oy = pass.memory.open[1].data(),
-                     *const oz = pass.memory.open[2].data();
-  const float *const u = pass.grid.velocity[0].data(), *const v = pass.grid.velocity[1].data(),
-                     *const w = pass.grid.velocity[2].data();
-  const float ix = 1.0f / pass.edge(0), iy = 1.0f / pass.edge(1), iz = 1.0f / pass.edge(2);
-  const int py = shape.pitch, pz = shape.plane;
-  const PressureRow* const rows = pass.memory.matrix.levels[0].rows.data();
-  each_row(pass, -1, [&](int c, int j, int k) {
-    if (rows[j + k * shape.cells[1]] == PressureRow::empty) {
-      for (int i = c; i < c + shape.cells[0]; ++i) to[i] = 0.0f;
-      return;
-    }
-    for (int i = c; i < c + shape.cells[0]; ++i) {
-      const float sum = ix * (ox[i] * u[i] - ox[i + 1] * u[i + 1]) +
-                        iy * (oy[i] * v[i] - oy[i + py] * v[i + py]) +
-                        iz * (oz[i] * w[i] - oz[i + pz] * w[i + pz]);
-      to[i] = active[i] > 0.0f ? sum : 0.0f;
-    }
+  const PressureLevel level = pass.memory.matrix.level(0);
+  const float *open[3], *velocity[3];
+  float scale[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    open[axis] = pass.memory.open[axis].data();
+    velocity[axis] = pass.grid.velocity[axis].data();
+    scale[axis] = 1.0f / pass.edge(axis);
+  }
+  for_row_blocks(rows_of(pass.shape(), -1), pass.tasks, [&](int begin, int end) {
+    pass.kernels.find_open_inflow(level, open, velocity, scale, to, begin, end);
   });
 }
 
@@ -72,8 +62,8 @@ void subtract_liquid_gradient(const LiquidPass& pass, float* x, float scale, Arr
     const float factor = scale / pass.edge(axis);
     each_row(pass, axis, [&](int c, int j, int k) {
       if (is_dry(pass, axis, j, k)) return;
-      for (int f = c; f < c + pass.shape().cells[0] + (axis == 0 ? 1 : 0); ++f)
-        field[f] -= factor * steepness[f] * (x[f] - x[f - step]);
+      pass.kernels.subtract_weighted(steepness + c, x + c, step, factor, field + c,
+                                     pass.shape().cells[0] + (axis == 0 ? 1 : 0));
     });
   }
 }
@@ -89,9 +79,14 @@ void set_closed_faces(const LiquidPass& pass, Array<float> (&fields)[3]) {
     if (pass.flat(axis)) continue;
     const float* const open = pass.memory.open[axis].data();
     float* const field = fields[axis].data();
-    each_row(pass, axis, [&](int c, int, int) {
-      for (int f = c; f < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++f)
-        field[f] = open[f] > 0.0f ? field[f] : 0.0f;
+    const bool solids = pass.solids.present();
+    each_row(pass, axis, [&](int c, int j, int k) {
+      const int count = shape.cells[0] + (axis == 0 ? 1 : 0), across = axis == 1 ? j : k;
+      // Without solids only those of walls are closed.
+      const bool inner = !solids && (axis == 0 || (across > 0 && across < shape.cells[axis]));
+      const int step = inner ? count - 1 : 1;
+      if (inner && axis != 0) return;
+      for (int f = c; f < c + count; f += step) field[f] = open[f] > 0.0f ? field[f] : 0.0f;
     });
   }
   const BodyCoupling& coupling = pass.memory.coupling;

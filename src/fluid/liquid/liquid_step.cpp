@@ -199,8 +199,7 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
   const int layers = 2 + int(settings.max_cells + 0.999f);
   report.iterations += find_carrier(pass).iterations;
   find_layers(pass, layers);
-  extrapolate(pass, pass.grid.velocity);
-  extrapolate(pass, pass.memory.drift);
+  extrapolate(pass, pass.grid.velocity, pass.memory.drift);
   hold_sources(pass, emitters, time);
   move_particles(pass, settings.blend, settings.gravity);
 }

@@ -16,6 +16,7 @@ ParticleCollision::ParticleCollision(const LiquidPass& pass)
     axes_[axis] = particle_axis(pass.box(), axis);
     if (!pass.flat(axis) && pass.edge(axis) < edge_) edge_ = pass.edge(axis);
   }
+  diagonal_ = 1.01f * length(pass.box().cell);
   if (!has_solids_) return;
   const GridShape& shape = pass.shape();
   const BodyCoupling& coupling = pass.memory.coupling;
@@ -46,6 +47,7 @@ ParticleCollision::ParticleCollision(const LiquidPass& pass)
   }
   if (!pass.solids.distance.empty()) {
     distance_ = pass.solids.distance.data();
+    has_exact_ = true;
     return;
   }
   // Half an edge within solids and without, in proportion between: the fraction of the cell's faces that is open.
@@ -100,6 +102,8 @@ void ParticleCollision::avoid_solids(int particle, const float (&from)[3], float
   const float skin = kParticleSkin * edge_;
   const Vec3 way = end - begin;
   const float span = length(way);
+  // Values between centres are at most the diagonal of a cell less than that at the nearest one.
+  if (has_exact_ && distance_[here] - diagonal_ - length(shift_begin) > span + skin) return;
   // Farther from every solid than the way is long.
   if (distance_at(begin) > span + skin && distance_at(end) > skin) return;
   const int points = 1 + int(min(span / (kStride * edge_), 64.0f));

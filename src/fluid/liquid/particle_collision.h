@@ -24,7 +24,9 @@ class ParticleCollision {
   const LiquidPass& pass_;
   ParticleAxis axes_[3];
   bool has_solids_;
-  float edge_ = 0.0f;  // the shortest of a cell
+  float edge_ = 0.0f;       // the shortest of a cell
+  float diagonal_ = 0.0f;   // of a cell
+  bool has_exact_ = false;  // distances were given
   Array<Motion> motions_;
   Array<float> derived_;  // distances where none are given
   const float* distance_ = nullptr;

@@ -25,19 +25,6 @@ void move_column(const LiquidPass& pass, std::size_t left, Array<float>& column)
   spare = static_cast<Array<float>&&>(swapped);
 }
 
-// The cell of a particle in the order of rows, -1: it has left.
-int find_key(const LiquidGrid& grid, const ParticleAxis (&axes)[3], int p) {
-  int index[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const float at = grid.position[axis][p], speed = grid.motion[axis][p];
-    const int n = grid.box.cells[axis];
-    if (!(at >= 0.0f && at <= float(n) * axes[axis].edge) || !is_finite(speed)) return -1;
-    const int i = int(at * axes[axis].inverse_edge);
-    index[axis] = i < n ? i : n - 1;
-  }
-  return index[0] + grid.box.cells[0] * (index[1] + grid.box.cells[1] * index[2]);
-}
-
 // Calls fn(begin, end) with the particles of each row of cells, so that no two calls at a time are for neighbours.
 template <class Fn>
 void for_particle_rows(const LiquidPass& pass, Fn&& fn) {
@@ -101,23 +88,41 @@ ParticlePass particle_pass(const LiquidPass& pass) {
   return result;
 }
 
+void find_wet_row(const LiquidCell* cell, int py, int pz, int count, std::uint8_t* wet) {
+  for (int c = 0; c < count; ++c) {
+    int any = 0;
+    for (const int row : {0, py, pz, py + pz}) {
+      any |= cell[c + row] == LiquidCell::liquid ? 1 : 0;
+      any |= cell[c + row + 1] == LiquidCell::liquid ? 1 : 0;
+    }
+    wet[c] = std::uint8_t(any);
+  }
+}
+
+// True if no particle adds to the faces of a row.
+bool has_no_particles(const LiquidPass& pass, int j, int k) {
+  if (pass.wraps(1) || pass.wraps(2)) return false;
+  const GridShape& shape = pass.shape();
+  const std::int32_t* const start = pass.memory.start.data();
+  for (int z = k > 0 ? k - 1 : 0; z <= k + 1 && z < shape.cells[2]; ++z) {
+    for (int y = j > 0 ? j - 1 : 0; y <= j + 1 && y < shape.cells[1]; ++y) {
+      const int row = (y + z * shape.cells[1]) * shape.cells[0];
+      if (start[row] != start[row + shape.cells[0]]) return false;
+    }
+  }
+  return true;
+}
+
 // Centres around which something is liquid.
 void find_wet(const LiquidPass& pass) {
   const GridShape& shape = pass.shape();
-  Array<std::uint8_t>& wet = pass.memory.wet;
-  const LiquidCell* const cell = pass.memory.cell.data();
-  wet.resize(std::size_t(shape.size), std::uint8_t(0));
-  const int py = shape.pitch, pz = shape.plane;
-  const auto is_wet = [&](int c) { return cell[c] == LiquidCell::liquid ? 1 : 0; };
+  pass.memory.wet.resize(std::size_t(shape.size), std::uint8_t(0));
   for_blocks(pass.tasks, (shape.cells[1] + 1) * (shape.cells[2] + 1), kGridRows,
              [&](int begin, int end, int) {
                for (int row = begin; row < end; ++row) {
                  const int k = row / (shape.cells[1] + 1) - 1, j = row % (shape.cells[1] + 1) - 1;
-                 for (int c = shape.at(-1, j, k); c < shape.at(shape.cells[0], j, k); ++c) {
-                   wet[c] = std::uint8_t(is_wet(c) | is_wet(c + 1) | is_wet(c + py) | is_wet(c + py + 1) |
-                                         is_wet(c + pz) | is_wet(c + pz + 1) | is_wet(c + py + pz) |
-                                         is_wet(c + py + pz + 1));
-                 }
+                 find_wet_row(pass.memory.cell.data() + shape.at(-1, j, k), shape.pitch, shape.plane,
+                              shape.cells[0] + 1, pass.memory.wet.data() + shape.at(-1, j, k));
                }
              });
 }
@@ -127,14 +132,12 @@ void find_wet(const LiquidPass& pass) {
 void sort_particles(const LiquidPass& pass) {
   LiquidGrid& grid = pass.grid;
   const int count = grid.particles(), cells = grid.shape.count();
-  const ParticleAxis axes[3] = {particle_axis(grid.box, 0), particle_axis(grid.box, 1),
-                                particle_axis(grid.box, 2)};
+  const ParticlePass work = particle_pass(pass);
   Array<std::int32_t>& place = pass.memory.place;
   Array<std::int32_t>& start = pass.memory.start;
   place.resize_uninitialized(std::size_t(count));
-  for_blocks(pass.tasks, count, kBlockParticles, [&](int begin, int end, int) {
-    for (int p = begin; p < end; ++p) place[p] = find_key(grid, axes, p);
-  });
+  for_blocks(pass.tasks, count, kBlockParticles,
+             [&](int begin, int end, int) { pass.kernels.find_cells(work, begin, end, place.data()); });
   start.clear();
   start.resize(std::size_t(cells) + 1, 0);
   for (const std::int32_t key : place)
@@ -190,8 +193,13 @@ void transfer_to_grid(const LiquidPass& pass) {
     fold_ghosts(pass, axis, 2, sums[axis]);
     float* const velocity = grid.velocity[axis].data();
     const float least = 1.0e-6f * particle_volume(grid.box);
-    each_row(pass, axis, [&](int c, int, int) {
-      for (int f = c; f < c + grid.shape.cells[0] + (axis == 0 ? 1 : 0); ++f) {
+    each_row(pass, axis, [&](int c, int j, int k) {
+      const int end = c + grid.shape.cells[0] + (axis == 0 ? 1 : 0);
+      if (has_no_particles(pass, j, k)) {
+        for (int f = c; f < end; ++f) velocity[f] = 0.0f;
+        return;
+      }
+      for (int f = c; f < end; ++f) {
         const float volume = sums[axis][2 * f];
         velocity[f] = volume > least ? sums[axis][2 * f + 1] / volume : 0.0f;
       }

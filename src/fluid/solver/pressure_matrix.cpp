@@ -24,14 +24,63 @@ namespace {
 
 constexpr int kCoarsest = 2;  // cells along an axis that are not halved
 
+// Rows that are stale, of cells or with those of the last faces.
 template <class Fn>
-void each_row(const GridShape& shape, int rows_y, int rows_z, TaskSystem& tasks, Fn&& fn) {
+void each_row(const PressureGrid& grid, int rows_y, int rows_z, TaskSystem& tasks, Fn&& fn) {
+  const GridShape& shape = grid.shape;
+  const std::uint8_t* const stale = grid.stale.data();
   for_blocks(tasks, rows_y * rows_z, kGridRows, [&](int begin, int end, int) {
     for (int row = begin; row < end; ++row) {
       const int k = row / rows_y, j = row - k * rows_y;
-      fn(shape.row(j, k), j, k);
+      if (stale[j + k * (shape.cells[1] + 1)] != 0) fn(shape.row(j, k), j, k);
     }
   });
+}
+
+// What a solid changes in a row, in coarser levels too, is seen at most this many rows away: a cell's transfer depends on cells of the next
+// level, and these on their faces.
+constexpr int kStaleReach = 3;
+
+// The rows of `from` within the reach of begin to end along each axis that are not zero.
+bool any_row(const GridShape& shape, const Array<std::uint8_t>& from, const int (&begin)[2],
+             const int (&end)[2]) {
+  int low[2], high[2];
+  for (int a = 0; a < 2; ++a) {
+    low[a] = begin[a] - kStaleReach > 0 ? begin[a] - kStaleReach : 0;
+    high[a] = end[a] + kStaleReach < shape.cells[a + 1] ? end[a] + kStaleReach : shape.cells[a + 1];
+  }
+  for (int k = low[1]; k <= high[1]; ++k)
+    for (int j = low[0]; j <= high[0]; ++j)
+      if (from[j + k * (shape.cells[1] + 1)] != 0) return true;
+  return false;
+}
+
+// Rows of the finest level near those that solids cut before or cut now.
+void mark_stale(const GridShape& shape, const Array<std::uint8_t>& before, const Array<std::uint8_t>& now,
+                PressureGrid& grid) {
+  mark_all_stale(grid);
+  Array<std::uint8_t> changed;
+  changed.resize_uninitialized(now.size());
+  for (std::size_t row = 0; row < now.size(); ++row) changed[row] = std::uint8_t(before[row] | now[row]);
+  for (int k = 0; k <= shape.cells[2]; ++k)
+    for (int j = 0; j <= shape.cells[1]; ++j)
+      grid.stale[j + k * (shape.cells[1] + 1)] = any_row(shape, changed, {j, k}, {j, k}) ? 1 : 0;
+}
+
+void mark_coarse_stale(const PressureGrid& fine, PressureGrid& coarse) {
+  mark_all_stale(coarse);
+  int all = 1;
+  for (const std::uint8_t one : fine.stale) all &= int(one);
+  if (all != 0) return;
+  const int scale[2] = {fine.halved[1] ? 2 : 1, fine.halved[2] ? 2 : 1};
+  const GridShape& shape = coarse.shape;
+  for (int k = 0; k <= shape.cells[2]; ++k) {
+    for (int j = 0; j <= shape.cells[1]; ++j) {
+      const int begin[2] = {scale[0] * j, scale[1] * k};
+      const int end[2] = {begin[0] + scale[0] - 1, begin[1] + scale[1] - 1};
+      coarse.stale[j + k * (shape.cells[1] + 1)] = any_row(fine.shape, fine.stale, begin, end) ? 1 : 0;
+    }
+  }
 }
 
 // The faces across one axis of the finest level.
@@ -48,7 +97,7 @@ void find_faces(const GasBox& box, const GasSolids& solids, int axis, TaskSystem
   const int step = shape.stride(axis), last = shape.cells[axis];
   const int extra[3] = {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0};
   float* const to = grid.face[axis].data();
-  each_row(shape, shape.cells[1] + extra[1], shape.cells[2] + extra[2], tasks, [&](int c, int j, int k) {
+  each_row(grid, shape.cells[1] + extra[1], shape.cells[2] + extra[2], tasks, [&](int c, int j, int k) {
     const int count = shape.cells[0] + extra[0];
     const int across = axis == 1 ? j : k;
     for (int i = 0; i < count; ++i) {
@@ -73,7 +122,7 @@ void coarsen_faces(const PressureGrid& fine, int axis, TaskSystem& tasks, Pressu
   const int extra[3] = {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0};
   const float scale = fine.halved[axis] ? 0.5f : 1.0f;
   float* const to = coarse.face[axis].data();
-  each_row(shape, shape.cells[1] + extra[1], shape.cells[2] + extra[2], tasks, [&](int c, int j, int k) {
+  each_row(coarse, shape.cells[1] + extra[1], shape.cells[2] + extra[2], tasks, [&](int c, int j, int k) {
     // The first finer index along each axis and how many there are.
     const auto children = [&](int of, int place, int& begin, int& count) {
       begin = fine.halved[of] ? 2 * place : place;
@@ -107,7 +156,7 @@ void coarsen_faces(const PressureGrid& fine, int axis, TaskSystem& tasks, Pressu
 // half an edge: two rows of cells at the distance d from the surface become one at d + 1/2.
 void coarsen_ground(const PressureGrid& fine, TaskSystem& tasks, PressureGrid& coarse) {
   const GridShape& shape = coarse.shape;
-  each_row(shape, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
+  each_row(coarse, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
     const auto children = [&](int axis, int place, int& begin, int& end) {
       begin = fine.halved[axis] ? 2 * place : place;
       end = fine.halved[axis] && begin + 1 < fine.shape.cells[axis] ? begin + 2 : begin + 1;
@@ -145,23 +194,20 @@ int find_diagonals(TaskSystem& tasks, PressureGrid& grid) {
                      *const az = grid.face[2].data();
   const float* const ground = grid.ground.empty() ? nullptr : grid.ground.data();
   float* const to = grid.inverse_diagonal.data();
-  return reduce_blocks(
-      tasks, shape.rows(), kGridRows, 0,
-      [&](int begin, int end, int) {
-        int active = 0;
-        for (int row = begin; row < end; ++row) {
-          const int c = shape.row(row % shape.cells[1], row / shape.cells[1]);
-          for (int i = c; i < c + shape.cells[0]; ++i) {
-            float diagonal =
-                ax[i] + ax[i + 1] + (ay[i] + ay[i + shape.pitch]) + (az[i] + az[i + shape.plane]);
-            if (ground != nullptr) diagonal += ground[i];
-            to[i] = diagonal > 0.0f ? 1.0f / diagonal : 0.0f;
-            active += diagonal > 0.0f ? 1 : 0;
-          }
-        }
-        return active;
-      },
-      [](int a, int b) { return a + b; });
+  grid.active.resize(std::size_t(shape.rows()), 0);
+  each_row(grid, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
+    int active = 0;
+    for (int i = c; i < c + shape.cells[0]; ++i) {
+      float diagonal = ax[i] + ax[i + 1] + (ay[i] + ay[i + shape.pitch]) + (az[i] + az[i + shape.plane]);
+      if (ground != nullptr) diagonal += ground[i];
+      to[i] = diagonal > 0.0f ? 1.0f / diagonal : 0.0f;
+      active += diagonal > 0.0f ? 1 : 0;
+    }
+    grid.active[j + k * shape.cells[1]] = active;
+  });
+  int active = 0;
+  for (const std::int32_t one : grid.active) active += one;
+  return active;
 }
 
 // transfer: 1 over the sum of the weights with which a cell takes from cells of the coarser level that have an equation, or have none
@@ -169,23 +215,23 @@ int find_diagonals(TaskSystem& tasks, PressureGrid& grid) {
 void find_transfer(PressureMatrix& matrix, int fine_index, const GasKernels& kernels, TaskSystem& tasks) {
   PressureGrid& fine = matrix.levels[fine_index];
   PressureGrid& coarse = matrix.levels[fine_index + 1];
-  each_row(coarse.shape, coarse.shape.cells[1], coarse.shape.cells[2], tasks, [&](int c, int, int) {
-    for (int i = c; i < c + coarse.shape.cells[0]; ++i)
-      coarse.x[i] = coarse.inverse_diagonal[i] > 0.0f || (!coarse.is_air.empty() && coarse.is_air[i] != 0)
-                        ? 1.0f
-                        : 0.0f;
+  for_blocks(tasks, coarse.shape.rows(), kGridRows, [&](int begin, int end, int) {
+    for (int row = begin; row < end; ++row) {
+      const int c = coarse.shape.row(row % coarse.shape.cells[1], row / coarse.shape.cells[1]);
+      for (int i = c; i < c + coarse.shape.cells[0]; ++i)
+        coarse.x[i] = coarse.inverse_diagonal[i] > 0.0f || (!coarse.is_air.empty() && coarse.is_air[i] != 0)
+                          ? 1.0f
+                          : 0.0f;
+    }
   });
   wrap_ghosts(coarse.shape, coarse.periodic, coarse.x.data());
   PressureLevel level = matrix.level(fine_index);
   Array<float>& weights = fine.transfer;
-  each_row(fine.shape, fine.shape.cells[1], fine.shape.cells[2], tasks, [&](int c, int, int) {
+  each_row(fine, fine.shape.cells[1], fine.shape.cells[2], tasks, [&](int c, int j, int k) {
     for (int i = c; i < c + fine.shape.cells[0]; ++i) weights[i] = 1.0f;
-  });
-  // In place: 1 + 1 * weight.
-  for_blocks(tasks, fine.shape.rows(), kGridRows, [&](int begin, int end, int) {
-    kernels.prolong(level, coarse.shape, coarse.x.data(), weights.data(), begin, end);
-  });
-  each_row(fine.shape, fine.shape.cells[1], fine.shape.cells[2], tasks, [&](int c, int, int) {
+    // In place: 1 + 1 * weight.
+    const int row = j + k * fine.shape.cells[1];
+    kernels.prolong(level, coarse.shape, coarse.x.data(), weights.data(), row, row + 1);
     for (int i = c; i < c + fine.shape.cells[0]; ++i) {
       const float weight = weights[i] - 1.0f;
       weights[i] = fine.inverse_diagonal[i] > 0.0f && weight > 0.0f ? 1.0f / weight : 0.0f;
@@ -203,15 +249,19 @@ void find_cut_rows(const GridShape& shape, const GasSolids& solids, TaskSystem& 
     for (int i = 0; i < count; ++i) any |= open[i] < 1.0f ? 1 : 0;
     return any != 0;
   };
-  each_row(shape, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
-    bool cut = any_below_one(solids.open[0].data() + c, shape.cells[0] + 1);
-    for (int axis = 1; axis < 3; ++axis) {
-      const float* const lower = solids.open[axis].data() + c;
-      cut = cut || any_below_one(lower, shape.cells[0]) ||
-            any_below_one(lower + shape.stride(axis), shape.cells[0]);
+  for_blocks(tasks, shape.rows(), kGridRows, [&](int begin, int end, int) {
+    for (int row = begin; row < end; ++row) {
+      const int k = row / shape.cells[1], j = row - k * shape.cells[1], c = shape.row(j, k);
+      if (!solids.may_cut(shape, j, k)) continue;
+      bool cut = any_below_one(solids.open[0].data() + c, shape.cells[0] + 1);
+      for (int axis = 1; axis < 3; ++axis) {
+        const float* const lower = solids.open[axis].data() + c;
+        cut = cut || any_below_one(lower, shape.cells[0]) ||
+              any_below_one(lower + shape.stride(axis), shape.cells[0]);
+      }
+      for (int i = c; i < c + shape.cells[0] && !cut; ++i) cut = solids.solid[i] != 0;
+      matrix.cut_row[row] = cut ? 1 : 0;
     }
-    for (int i = c; i < c + shape.cells[0] && !cut; ++i) cut = solids.solid[i] != 0;
-    matrix.cut_row[j + k * shape.cells[1]] = cut ? 1 : 0;
   });
 }
 
@@ -230,7 +280,7 @@ bool all_zero(const float* from, int count) {
 void find_row_kinds(TaskSystem& tasks, PressureGrid& grid) {
   const GridShape& shape = grid.shape;
   const int n = shape.cells[0];
-  each_row(shape, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
+  each_row(grid, shape.cells[1], shape.cells[2], tasks, [&](int c, int j, int k) {
     const bool plain = n > 2 && all_equal(grid.inverse_diagonal.data() + c, 1, n - 1) &&
                        all_equal(grid.face[0].data() + c, 1, n) &&
                        all_equal(grid.face[1].data() + c, 1, n - 1) &&
@@ -252,7 +302,19 @@ void build_pressure_matrix(const GasBox& box, const GridShape& shape, const GasS
                            const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix) {
   matrix.singular = !box.any_open();
   matrix.solids_revision = solids.present() ? solids.revision : 0;
-  resize_pressure_level(matrix.levels[0], shape, true, false);
+  const bool renewed = resize_pressure_level(matrix.levels[0], shape, true, false);
+  Array<std::uint8_t> near;
+  if (!solids.present()) {
+    near.resize(std::size_t(shape.cells[1] + 1) * std::size_t(shape.cells[2] + 1), std::uint8_t(0));
+  } else {
+    near = solids.near;
+  }
+  if (renewed || near.empty() || matrix.near.size() != near.size() || box.periodic(1) || box.periodic(2)) {
+    mark_all_stale(matrix.levels[0]);
+  } else {
+    mark_stale(shape, matrix.near, near, matrix.levels[0]);
+  }
+  matrix.near = static_cast<Array<std::uint8_t>&&>(near);
   for (int axis = 0; axis < 3; ++axis) {
     matrix.levels[0].periodic[axis] = box.periodic(axis) && !box.flat(axis);
     find_faces(box, solids, axis, tasks, matrix.levels[0]);
@@ -261,12 +323,18 @@ void build_pressure_matrix(const GasBox& box, const GridShape& shape, const GasS
   build_pressure_levels(kernels, tasks, matrix);
 }
 
-void resize_pressure_level(PressureGrid& grid, const GridShape& shape, bool finest, bool has_ground) {
+void mark_all_stale(PressureGrid& grid) {
+  const std::size_t rows = std::size_t(grid.shape.cells[1] + 1) * std::size_t(grid.shape.cells[2] + 1);
+  grid.stale.clear();
+  grid.stale.resize(rows, std::uint8_t(1));
+}
+
+bool resize_pressure_level(PressureGrid& grid, const GridShape& shape, bool finest, bool has_ground) {
   const std::size_t size = std::size_t(shape.size);
   if (grid.inverse_diagonal.size() == size && grid.shape.pitch == shape.pitch &&
       grid.shape.plane == shape.plane && grid.shape.cells[0] == shape.cells[0] &&
       grid.shape.cells[2] == shape.cells[2]) {
-    return;
+    return false;
   }
   const auto renew = [size](Array<float>& field) { field.clear(), field.resize(size, 0.0f); };
   grid.shape = shape;
@@ -278,6 +346,7 @@ void resize_pressure_level(PressureGrid& grid, const GridShape& shape, bool fine
   if (has_ground) renew(grid.ground), grid.is_air.resize(size, std::uint8_t(0));
   grid.rows.resize(std::size_t(shape.rows()), PressureRow::mixed);
   if (!finest) renew(grid.b), renew(grid.x), renew(grid.other);
+  return true;
 }
 
 void build_pressure_levels(const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix) {
@@ -299,6 +368,7 @@ void build_pressure_levels(const GasKernels& kernels, TaskSystem& tasks, Pressur
     }
     if (!smaller) break;
     resize_pressure_level(coarse, make_grid_shape(cells[0], cells[1], cells[2]), false, has_ground);
+    mark_coarse_stale(fine, coarse);
     for (int axis = 0; axis < 3; ++axis) coarsen_faces(fine, axis, tasks, coarse);
     if (has_ground) {
       coarsen_ground(fine, tasks, coarse);

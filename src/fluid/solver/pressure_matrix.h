@@ -23,6 +23,8 @@ struct PressureGrid {
   Array<float> b, x, other;  // of a cycle over the levels; those of the finest belong to the caller
   bool halved[3] = {};
   bool periodic[3] = {};
+  Array<std::uint8_t> stale;   // rows of cells, with those of the last faces, that are to be built
+  Array<std::int32_t> active;  // cells of each row that have an equation
 };
 
 struct PressureMatrix {
@@ -33,6 +35,7 @@ struct PressureMatrix {
   int active_cells = 0;               // that have an equation
   std::uint64_t solids_revision = 0;  // from which it was made; 0: from none
   Array<std::uint8_t> cut_row;        // rows of cells: 1 where a solid cuts a face; empty without solids
+  Array<std::uint8_t> near;           // those of the solids from which it was made; empty: not known
   // Pockets (fluid/solver/pressure_pockets.h), found only once a solve has failed for want of them.
   bool has_pockets = false;
   Array<std::int32_t> pocket;            // of each cell, -1: none
@@ -44,12 +47,15 @@ struct PressureMatrix {
 // Faces whose open fraction is below this count as closed: their cells would otherwise get coefficients too far apart.
 inline constexpr float kMinOpen = 0.01f;
 
+// Builds the rows that solids cut or did when `matrix` was built last, and all rows if that is not known.
 void build_pressure_matrix(const GasBox& box, const GridShape& shape, const GasSolids& solids,
                            const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix);
 
-// All but the faces, the ground and the air of the finest level, whose shape and periodic axes are set.
+// All but the faces, the ground and the air of the finest level, whose shape, periodic axes and stale rows are set.
 void build_pressure_levels(const GasKernels& kernels, TaskSystem& tasks, PressureMatrix& matrix);
-void resize_pressure_level(PressureGrid& grid, const GridShape& shape, bool finest, bool has_ground);
+void mark_all_stale(PressureGrid& grid);
+// Returns true if the level was made anew.
+bool resize_pressure_level(PressureGrid& grid, const GridShape& shape, bool finest, bool has_ground);
 
 // Rows of a grid that a worker takes at a time.
 inline constexpr int kGridRows = 32;

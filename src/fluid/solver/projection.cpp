@@ -196,6 +196,7 @@ void add_impulses(const GasPass& pass, float density, std::span<GasImpulse> impu
     const double scale = double(pass.step) * double(density) * volume / double(pass.edge(axis));
     for (int k = 0; k < shape.cells[2]; ++k) {
       for (int j = 0; j < shape.cells[1]; ++j) {
+        if (!pass.solids.may_cut(shape, j, k)) continue;
         const int c = shape.row(j, k);
         for (int i = 0; i < shape.cells[0]; ++i) {
           const int at = axis == 0 ? i : axis == 1 ? j : k;
