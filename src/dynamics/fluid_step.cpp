@@ -151,7 +151,7 @@ float volume_of_body(const RigidWorld& w, std::uint32_t body) {
 // A body yields to the pressure of a gas within the equation if it is lighter than this many times the gas whose place it takes. Heavier ones
 // get the force of the pressure afterwards: the gas that moves with them does not matter then, and a body that stands on something presses
 // nothing out from under it.
-constexpr float kLightShare = 16.0f;
+constexpr float kLightShare = 8.0f;
 
 // Bodies as the pressure of a fluid sees them: those that are awake and free to move yield to it; in a gas, of this density, light ones.
 void list_bodies(const RigidWorld& w, float gas_density, FluidScratch& scratch) {
@@ -256,6 +256,11 @@ void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, cons
   own.report.divergence = report.divergence, own.report.residual = report.residual;
 }
 
+bool is_in_liquid(const LiquidGrid& liquid, DVec3 point) {
+  return sample_field(liquid.box, liquid.shape, liquid.surface.data(), -1,
+                      difference(point, liquid.box.corner)) < 0.0f;
+}
+
 bool is_within(const GasBox& box, DVec3 point) {
   const DVec3 upper = upper_corner(box);
   return point.x >= box.corner.x && point.y >= box.corner.y && point.z >= box.corner.z &&
@@ -291,18 +296,29 @@ void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& s
 }
 
 bool find_stream(const FluidStore& fluids, DVec3 point, FluidStream& out) {
-  bool found = false;
-  for (const FluidEntry& entry : fluids.entries) {
+  const int slot = find_fluid(fluids, point);
+  if (slot < 0) return false;
+  const FluidEntry& entry = fluids.entries[std::size_t(slot)];
+  const Vec3 h = entry.box().cell;
+  const float edge = min(h.x, min(h.y, h.z));
+  if (entry.is_liquid())
+    out = {probe_liquid(entry.liquid, point, entry.liquid_def().density).velocity, entry.liquid_def().density,
+           true, edge};
+  else
+    out = {gas_velocity(entry.gas, point), entry.gas_def().density, false, edge};
+  return true;
+}
+
+int find_fluid(const FluidStore& fluids, DVec3 point) {
+  int found = -1;
+  for (std::size_t slot = 0; slot < fluids.entries.size(); ++slot) {
+    const FluidEntry& entry = fluids.entries[slot];
     if (entry.def == nullptr || !is_within(entry.box(), point)) continue;
     if (entry.is_liquid()) {
-      const LiquidProbe probe = probe_liquid(entry.liquid, point, entry.liquid_def().density);
-      if (!probe.inside) continue;
-      out = {probe.velocity, entry.liquid_def().density, true};
-      return true;
+      if (is_in_liquid(entry.liquid, point)) return int(slot);
+    } else if (found < 0) {
+      found = int(slot);
     }
-    if (found) continue;
-    out = {gas_velocity(entry.gas, point), entry.gas_def().density, false};
-    found = true;
   }
   return found;
 }
