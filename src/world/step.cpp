@@ -160,7 +160,8 @@ void detect_collisions(WorldState& s, float seconds, float flow) {
 // The stages after the solve of `seconds`, which is the last piece of a step of `whole` seconds or not.
 void finish_step(WorldState& s, float seconds, float whole, bool last) {
   RigidWorld& w = s.rigid;
-  if (last && !s.fluids.empty() && !s.soft.empty()) push_fluids_back(s.soft, s.fluids, s.fluid_scratch);
+  if (last && !s.fluids.empty() && !s.soft.empty())
+    run_stage(s, StageName::solve, [&] { push_fluids_back(s.soft, s.fluids, s.fluid_scratch); });
   run_stage(s, StageName::clamp_fast_bodies,
             [&] { clamp_fast_bodies(w, s.continuous, *s.kernels, s.arena, *s.tasks); });
   run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, s.arena, *s.tasks, whole, s.frozen, last); });
