@@ -11,6 +11,22 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/gyre
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.h")
 
+if(TARGET gyre_c)
+  install(TARGETS gyre_c EXPORT gyreTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES ${PROJECT_BINARY_DIR}/capi/include/gyre/c/gyre.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gyre/c)
+endif()
+if(TARGET gyre_c AND GYRE_BUILD_PYTHON)
+  # The package finds the library, the gyre program and the scenes of the same prefix.
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/gyre
+    DESTINATION lib/python3/dist-packages
+    FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+  install(FILES ${PROJECT_BINARY_DIR}/python/gyre/_api.py ${PROJECT_BINARY_DIR}/python/gyre/__init__.pyi
+    DESTINATION lib/python3/dist-packages/gyre)
+endif()
+
 set(gyre_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gyre)
 install(EXPORT gyreTargets NAMESPACE gyre:: DESTINATION ${gyre_package_dir})
 configure_package_config_file(
@@ -30,8 +46,21 @@ file(RELATIVE_PATH gyre_prefix_from_pc
   /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 string(REGEX REPLACE "/$" "" gyre_prefix_from_pc "${gyre_prefix_from_pc}")
 string(REPLACE ";" " " gyre_pc_float_options "${gyre_float_options}")
+# The shared library beside the static one has the C interface alone, so programs in C++ name the static one.
+set(gyre_pc_library -lgyre)
+if(TARGET gyre_c AND NOT BUILD_SHARED_LIBS AND UNIX AND NOT APPLE)
+  set(gyre_pc_library -l:libgyre.a)
+endif()
 configure_file(${PROJECT_SOURCE_DIR}/cmake/gyre.pc.in ${PROJECT_BINARY_DIR}/package/gyre.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/package/gyre.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+if(TARGET gyre_c)
+  get_target_property(gyre_c_name gyre_c OUTPUT_NAME)
+  if(NOT gyre_c_name)
+    set(gyre_c_name gyre_c)
+  endif()
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/gyre-c.pc.in ${PROJECT_BINARY_DIR}/package/gyre-c.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/package/gyre-c.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endif()
 
 if(TARGET gyre_cli)
   install(TARGETS gyre_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

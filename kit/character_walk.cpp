@@ -25,6 +25,7 @@ ShapePose Walker::shape_at(DVec3 feet, float height) const { return capsule_plac
 QueryFilter Walker::filter(std::uint32_t layers, BodyId ignored) const {
   QueryFilter out;
   out.layers = layers;
+  out.soft = false;  // it walks on bodies
   out.ignored = ignored ? ignored : state_.body;
   return out;
 }

@@ -222,6 +222,7 @@ class Drive {
     QueryFilter filter;
     filter.layers = def_.layers;
     filter.ignored = body_;
+    filter.soft = false;  // wheels roll on bodies
     const float reach = d.travel + d.radius;
     const auto hit = world_.cast_ray(top, -reach * up_, filter);
     w.on_ground = hit && !hit->inside && dot(hit->normal, up_) > 0.1f;

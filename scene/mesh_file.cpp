@@ -3,6 +3,7 @@
 #include "scene/mesh_file.h"
 
 #include "scene/number_text.h"
+#include "scene/polygon_triangles.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -15,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMaxConcaveCorners = 4096;  // of a face; more would take seconds
+
 // Cuts the next word off the front of the line; empty at its end.
 std::string_view next_word(std::string_view& line) {
   std::size_t begin = 0;
@@ -24,6 +27,11 @@ std::string_view next_word(std::string_view& line) {
   const std::string_view word = line.substr(begin, end - begin);
   line.remove_prefix(end);
   return word;
+}
+
+bool is_comment(std::string_view line) {
+  const std::string_view word = next_word(line);
+  return !word.empty() && word[0] == '#';
 }
 
 std::string shown(std::string_view word) {
@@ -41,12 +49,9 @@ class ObjParser {
 
   bool parse() {
     if (text_.substr(0, 3) == "\xef\xbb\xbf") text_.remove_prefix(3);
-    while (!text_.empty()) {
-      ++line_;
-      const std::size_t end = std::min(text_.find('\n'), text_.size());
-      std::string_view line = text_.substr(0, end);
-      text_.remove_prefix(std::min(end + 1, text_.size()));
-      if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    for (int next = 1; !text_.empty();) {
+      line_ = next;
+      const std::string line = take_line(next);
       if (!parse_line(line)) return false;
     }
     if (mesh_.indices.empty()) {
@@ -67,12 +72,35 @@ class ObjParser {
     return false;
   }
 
+  // Takes the next line off the text, with the lines that follow a backslash at its end unless it is a comment, and counts
+  // their number. Lines end in a line feed, a carriage return, or both.
+  std::string take_line(int& number) {
+    std::string line;
+    for (bool more = true; more && !text_.empty(); ++number) {
+      const std::size_t end = std::min(text_.find_first_of("\r\n"), text_.size());
+      line += text_.substr(0, end);
+      const bool both = end + 1 < text_.size() && text_[end] == '\r' && text_[end + 1] == '\n';
+      text_.remove_prefix(std::min(end + (both ? 2 : 1), text_.size()));
+      more = !line.empty() && line.back() == '\\' && !is_comment(line);
+      if (more) line.back() = ' ';
+    }
+    return line;
+  }
+
   bool parse_line(std::string_view line) {
     const std::string_view word = next_word(line);
     if (word.empty() || word[0] == '#') return true;
     if (word == "v") return parse_vertex(line);
     if (word == "f") return parse_face(line);
-    for (const char* known : {"vn", "vt", "vp", "o", "g", "s", "usemtl", "mtllib", "mg", "l", "p"}) {
+    if (word == "fo") return parse_face(line);  // faces in files of version 2
+    // All other words of the format: curves, surfaces, materials, groups, and those of version 2.
+    constexpr const char* kIgnored[] = {
+        "vn",     "vt",    "vp",     "cstype", "deg",      "bmat",      "step",       "l",     "p",
+        "curv",   "curv2", "surf",   "parm",   "trim",     "hole",      "scrv",       "sp",    "end",
+        "con",    "g",     "s",      "mg",     "o",        "bevel",     "c_interp",   "lod",   "usemtl",
+        "maplib", "call",  "usemap", "mtllib", "d_interp", "trace_obj", "shadow_obj", "ctech", "stech",
+        "csh",    "bsp",   "bzp",    "cdc",    "cdp",      "res"};
+    for (const char* known : kIgnored) {
       if (word == known) return true;
     }
     return fail("found " + shown(word) + ", expected v, f or another word of Wavefront OBJ");
@@ -95,23 +123,23 @@ class ObjParser {
   }
 
   bool parse_face(std::string_view line) {
-    std::uint32_t first = 0, last = 0;
-    int corners = 0;
+    std::vector<std::uint32_t> face;
+    std::vector<Vec3> corners;
     for (std::string_view word = next_word(line); !word.empty() && word[0] != '#'; word = next_word(line)) {
       std::uint32_t corner = 0;
       if (!parse_corner(word, corner)) return false;
-      if (corners >= 2) {
-        if (mesh_.indices.size() / 3 >= limits_.triangles) {
-          return fail("found more than " + std::to_string(limits_.triangles) + " triangles");
-        }
-        mesh_.indices.insert(mesh_.indices.end(), {first, last, corner});
-      }
-      if (corners == 0) first = corner;
-      last = corner;
-      ++corners;
+      face.push_back(corner);
+      corners.push_back(mesh_.vertices[corner]);
     }
-    if (corners < 3)
-      return fail("found a face of " + std::to_string(corners) + ", expected at least 3 corners");
+    if (face.size() < 3)
+      return fail("found a face of " + std::to_string(face.size()) + ", expected at least 3 corners");
+    if (mesh_.indices.size() / 3 + face.size() - 2 > limits_.triangles)
+      return fail("found more than " + std::to_string(limits_.triangles) + " triangles");
+    if (face.size() > kMaxConcaveCorners && !is_fan(corners)) {
+      return fail("found a concave face of " + std::to_string(face.size()) + ", expected at most " +
+                  std::to_string(kMaxConcaveCorners) + " corners");
+    }
+    for (const std::uint32_t i : triangulate_polygon(corners)) mesh_.indices.push_back(face[i]);
     return true;
   }
 

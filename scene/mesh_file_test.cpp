@@ -5,9 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gyre {
@@ -41,6 +44,105 @@ TEST(ObjFile, LineEndsAndMissingLastNewline) {
   EXPECT_TRUE(parse(windows));
   EXPECT_TRUE(parse(kSquare.substr(0, kSquare.size() - 1)));
   EXPECT_TRUE(parse("\xef\xbb\xbf" + kSquare));
+}
+
+TEST(ObjFile, LinesEndInAnyWayAndGoOnAfterABackslash) {
+  std::string old_mac = kSquare, continued;
+  for (char& c : old_mac) c = c == '\n' ? '\r' : c;
+  for (std::size_t i = 0; i < kSquare.size(); ++i) {
+    const bool word_ends = i > 11 && kSquare[i] == ' ' && i % 3 == 0;
+    continued += word_ends ? std::string(i % 2 == 0 ? " \\\n" : "\\\r\n") : std::string(1, kSquare[i]);
+  }
+  for (const std::string& text : {old_mac, continued}) {
+    const SceneResult<MeshData> mesh = parse(text);
+    ASSERT_TRUE(mesh) << mesh.error().text();
+    EXPECT_EQ(mesh->indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
+    EXPECT_EQ(mesh->vertices[2], (Vec3{1, 1, 0}));
+  }
+  // The line of an error is the first of those that belong together. A comment ends with its line.
+  expect_line("v 0 0 0\\\n\nv 1 \\\n0\n", 3, "the end of the line");
+  EXPECT_TRUE(parse("# from C:\\models\\\n" + kSquare));
+}
+
+TEST(ObjFile, KnowsAllWordsOfTheFormat) {
+  for (const char* word :
+       {"cstype bspline", "deg 3", "curv 0 1 1 2 3", "parm u 0 1", "end", "bevel on", "lod 3", "con 1 2"})
+    EXPECT_TRUE(parse(std::string(word) + "\n" + kSquare)) << word;
+}
+
+// Twice the area of each triangle of the file along z.
+std::vector<double> areas(const MeshData& mesh) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const DVec3 a(mesh.vertices[mesh.indices[i]]);
+    out.push_back(
+        cross(DVec3(mesh.vertices[mesh.indices[i + 1]]) - a, DVec3(mesh.vertices[mesh.indices[i + 2]]) - a)
+            .z);
+  }
+  return out;
+}
+
+TEST(ObjFile, ConcaveFacesAreCoveredOnce) {
+  std::mt19937 engine{11};
+  const auto random = [&](double low, double high) {
+    return low + (high - low) * double(engine() >> 8) / 16777216.0;
+  };
+  for (int trial = 0; trial < 60; ++trial) {
+    // Combs and stars, drawn; combs have corners in line.
+    std::vector<std::pair<double, double>> outline;
+    const int count = 2 + int(engine() % 12);
+    if (trial % 2 == 0) {
+      for (int i = count; i-- > 0;) {
+        const double top = random(1.5, 4.0);
+        for (const auto& [x, y] :
+             {std::pair{2.0 * i + 1, 1.0}, {2.0 * i + 1, top}, {2.0 * i, top}, {2.0 * i, 1.0}})
+          outline.push_back({x, y});
+      }
+      for (int i = 0; i < 2 * count; ++i) outline.push_back({i, 0.0});
+    } else {
+      for (int i = 0; i < count + 2; ++i) {
+        const double angle = 2.0 * 3.14159265358979 * i / (count + 2), radius = random(0.2, 2.0);
+        outline.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+      }
+    }
+    const bool mirrored = engine() % 2 == 0;
+    std::string text;
+    double twice = 0.0;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const auto [x, y] = outline[i];
+      const auto [u, v] = outline[(i + 1) % outline.size()];
+      twice += x * v - y * u;
+      text += "v " + std::to_string(x) + " " + std::to_string(mirrored ? -y : y) + " 0\n";
+    }
+    text += "f";
+    const std::size_t first = engine() % outline.size();
+    for (std::size_t i = 0; i < outline.size(); ++i)
+      text += " " + std::to_string((first + i) % outline.size() + 1);
+    const SceneResult<MeshData> mesh = parse(text + "\n");
+    ASSERT_TRUE(mesh) << mesh.error().text();
+    ASSERT_EQ(mesh->indices.size(), 3 * (outline.size() - 2));
+    double sum = 0.0;
+    for (const double area : areas(*mesh)) {
+      EXPECT_GT(mirrored ? -area : area, 1.0e-4) << trial << text;
+      sum += area;
+    }
+    EXPECT_NEAR(mirrored ? -sum : sum, twice, 1.0e-4 * twice);
+  }
+}
+
+TEST(ObjFile, FacesThatCrossThemselvesAndVeryLongOnesEnd) {
+  std::string star = "f", ring = "f", corners, comb, teeth = "f";
+  for (int i = 0; i < 6000; ++i) {
+    const double angle = 0.001 * i;
+    corners +=
+        "v " + std::to_string(1000 * std::cos(angle)) + " " + std::to_string(1000 * std::sin(angle)) + " 0\n";
+    comb += "v " + std::to_string(0.01 * i) + " " + std::to_string(i % 2) + " 0\n";
+    ring += " " + std::to_string(i + 1);
+    if (i < 7) star += " " + std::to_string(2400 * i % 6000 + 1);
+  }
+  EXPECT_TRUE(parse(corners + star + "\n"));
+  EXPECT_EQ(parse(corners + ring + "\n")->indices.size(), 3u * 5998u);
+  EXPECT_NE(parse(comb + "v 0 9 0\n" + ring + " 6001\n").error().message.find("concave"), std::string::npos);
 }
 
 TEST(ObjFile, NegativeIndicesCountBack) {

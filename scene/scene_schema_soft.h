@@ -110,7 +110,13 @@ inline constexpr char kSchemaOfCloths[] = R"json(    "cloth": {
         "pinned": { "$ref": "#/$defs/pinned" },
         "pinned_to": { "$ref": "#/$defs/pinned_to" },
         "color": { "$ref": "#/$defs/color" },
-        "self_collision": { "type": "boolean", "default": true }
+        "self_collision": { "type": "boolean", "default": true },
+        "pressure": { "type": ["number", "null"], "default": null, "description": "Pa: of a gas within a closed mesh, above ambient_pressure, at the volume at rest; null: no gas" },
+        "ambient_pressure": { "$ref": "#/$defs/stiffness", "default": 1e5, "description": "Pa, outside" },
+        "pressure_law": {
+          "enum": ["ideal_gas", "constant"], "default": "ideal_gas",
+          "description": "ideal_gas: (pressure + ambient_pressure) times the volume stays; constant: the pressure stays"
+        }
       }
     },
 )json";

@@ -320,6 +320,30 @@ TEST(SceneSoft, BecomesWhatItSaysInTheWorld) {
   EXPECT_EQ(names, (std::vector<std::string>{"a", "b", "c", "d", "e", "f"}));
 }
 
+TEST(SceneSoft, AClosedClothHoldsGas) {
+  const std::string text = R"({"gyre_scene": 1, "name": "balloon",
+    "meshes": {"tetra": {"vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], "triangles": [[0,2,1],[0,1,3],[0,3,2],[1,2,3]]},
+               "sheet": {"vertices": [[0,0,0],[1,0,0],[0,1,0]], "triangles": [[0,2,1]]}},
+    "cloths": [{"name": "a", "mesh": "tetra", "pressure": 50, "ambient_pressure": 0, "pressure_law": "constant"}]})";
+  const SceneResult<Scene> scene = read_scene(text);
+  ASSERT_TRUE(scene) << scene.error().text();
+  const ClothDef& def = read_scene(write_scene(*scene))->cloths[0].def;
+  EXPECT_EQ(*def.pressure, 50.0f);
+  EXPECT_EQ(def.ambient_pressure, 0.0f);
+  EXPECT_EQ(def.pressure_law, PressureLaw::constant);
+  const Json schema = parse_document(scene_schema(), "schema", SceneLimits{});
+  EXPECT_EQ(SchemaCheck(schema).check(parse_document(text, "scene", SceneLimits{})), "");
+  const SceneRunner runner = run(text);
+  EXPECT_NEAR(runner.world().soft_info(runner.cloths()[0]).volume, 1.0 / 6.0, 1e-6);
+  std::string open = text;
+  open.replace(open.find("\"mesh\": \"tetra\""), 15, "\"mesh\": \"sheet\"");
+  const SceneResult<Scene> bad = read_scene(open);
+  ASSERT_TRUE(bad);
+  const auto made = SceneRunner::create(*bad, "scene");
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().text().find("/cloths/0/pressure"), std::string::npos) << made.error().text();
+}
+
 TEST(SceneSoft, WhatIsHeldStaysWhereItIs) {
   const SceneRunner runner = run(kAll, 30);
   const SoftVertices c = runner.world().vertices(runner.cloths()[0]);

@@ -160,6 +160,15 @@ ClothGrid read_grid(SceneReading& reading, const Field& field) {
   return grid;
 }
 
+void read_gas(Members& members, ClothDef& cloth) {
+  members.read("pressure", cloth.pressure, Range::between(-kMostStiffness, kMostStiffness));
+  members.read("ambient_pressure", cloth.ambient_pressure, kNotNegative);
+  if (const auto law = members.find("pressure_law")) {
+    cloth.pressure_law =
+        law->choice<PressureLaw>({{"ideal_gas", PressureLaw::ideal_gas}, {"constant", PressureLaw::constant}});
+  }
+}
+
 // ------------------------------------------------------------------------------------------------------- soft bodies
 
 SolidBox read_box(SceneReading& reading, const Field& field) {
@@ -336,6 +345,7 @@ void read_cloth(SceneReading& reading, const Field& field) {
   members.read("bend_stiffness", cloth.def.bend_stiffness, kNotNegative);
   members.read("thickness", cloth.def.thickness, kNotNegative);
   members.read("self_collision", cloth.def.self_collision);
+  read_gas(members, cloth.def);
   read_settings(members, vertices, cloth.def.settings);
   read_holds(reading, members, vertices, cloth);
   members.finish();

@@ -92,6 +92,9 @@ void write_cloth(JsonWriter& json, const Scene& scene, const SceneCloth& cloth) 
   json.field("bend_stiffness", def.bend_stiffness);
   json.field("thickness", def.thickness);
   unless_default(json, "self_collision", def.self_collision, standard.self_collision);
+  if (def.pressure) json.field("pressure", *def.pressure);
+  unless_default(json, "ambient_pressure", def.ambient_pressure, standard.ambient_pressure);
+  if (def.pressure_law != standard.pressure_law) json.field("pressure_law", to_string(def.pressure_law));
   write_color(json, cloth.color);
   write_holds(json, scene, cloth);
   write_settings(json, def.settings);

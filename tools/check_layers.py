@@ -85,6 +85,7 @@ ROOMS = {
         "kernels": ["body"],
         "store": ["elements", "contact"],
         "solver": ["store", "kernels"],
+        "query": ["store"],
         "contact": ["body"],
     },
     "fluid": {
@@ -116,7 +117,7 @@ OUTER = {
     "apps": {"apps", "scene", "bench"},
     "examples": set(),
     "kit": {"kit"},
-    "capi": {"capi"},
+    "capi": {"capi", "scene"},
     "web": {"web", "scene"},
 }
 

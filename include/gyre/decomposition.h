@@ -55,7 +55,7 @@ struct MeshFindings {
   std::uint32_t open_edges = 0;     // edges with a triangle on one side only
   std::uint32_t non_manifold_edges = 0;   // edges of more than two triangles
   std::uint32_t flipped_triangles = 0;    // wound against their neighbours or inside out; their winding was reversed
-  std::uint32_t degenerate_triangles = 0;  // without area; left out
+  std::uint32_t degenerate_triangles = 0;  // without area, nor a neighbour to join; left out
   float openness = 0.0f;  // share of the surface near which inside and outside cannot be told apart, 0 to 1
   bool shell = false;     // the triangles are a sheet, see SurfaceMeaning
 };
@@ -71,8 +71,9 @@ struct DecompositionStats {
   float depth = 0.0f;      // m, the largest depth of open surface below a hull: slots, holes, cavities that were filled
   float uncovered = 0.0f;  // m, the largest distance of surface outside all hulls
   float sample_spacing = 0.0f;  // m, between the surface points at which depth and uncovered were measured
-  double solid_volume = 0.0;    // m^3; volumes by some 10,000 lines through the solid, within about 0.1 %
-  double hull_volume = 0.0;     // m^3, of all hulls together, overlaps counted once
+  double solid_volume = 0.0;    // m^3; exact if the mesh is closed and no parts overlap, else as below
+  // m^3, of all hulls together, overlaps counted once; by 10,946 lines through the solid, within about 0.1 %
+  double hull_volume = 0.0;
   double excess_volume = 0.0;   // m^3, in hulls and not in the solid
   double missing_volume = 0.0;  // m^3, in the solid and in no hull
   bool within_concavity = true;  // false: max_hulls was too small for `concavity`, or a part could not be cut further

@@ -5,6 +5,7 @@
 #include <gyre/math.h>
 #include <gyre/result.h>
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -53,6 +54,25 @@ struct SleepChange {
   BodyId body{};
   bool asleep = false;
 };
+// A rope, cloth or solid began to touch a shape: one of its vertices overlaps the shape or is held by it. `vertex` is the first of these. Sorted by
+// the index of the soft matter, then of the shape.
+struct SoftContactBegin {
+  SoftId soft{};
+  ShapeId shape{};
+  BodyId body{};
+  int vertex = 0;
+};
+// A rope, cloth or solid stopped touching a shape, or one of them was removed or placed anew.
+struct SoftContactEnd {
+  SoftId soft{};
+  ShapeId shape{};
+};
+// A tetrahedron of a solid was turned inside out in the step. It turns back by itself, unless the model is linear.
+struct SoftInverted {
+  SoftId soft{};
+  int tetrahedron = 0;  // in the order of SolidDef::tetrahedra; of a box: six of each cell
+  std::array<std::uint32_t, 4> vertices{};
+};
 
 struct Events {
   std::span<const ContactBegin> begins{};
@@ -61,6 +81,9 @@ struct Events {
   std::span<const SensorTouch> sensors{};
   std::span<const JointBroken> broken{};
   std::span<const SleepChange> sleep_changes{};
+  std::span<const SoftContactBegin> soft_begins{};
+  std::span<const SoftContactEnd> soft_ends{};
+  std::span<const SoftInverted> inverted{};
 };
 
 // How the last step was divided, if TimeStepping is not fixed.

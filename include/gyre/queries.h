@@ -6,6 +6,11 @@
 // and any number of threads. Answers come in a fixed order: by fraction, distance or depth, and by the shape's index where those are
 // equal.
 //
+// Ray casts, shape casts and overlaps also find ropes, cloths and solids: `soft` then names the one that is hit, and body and shape are null.
+// They come after shapes of the same fraction. Rays meet the middle surface of a cloth from both sides, moving shapes stop at half its
+// thickness. A solid is hit from outside; a ray that starts within it hits at once. A moving shape that starts wholly within a solid does not
+// hit it. Closest points and penetrations leave soft matter out.
+//
 // Convex shapes and planes are solid. Meshes and height fields are surfaces without thickness: a shape that lies wholly below a surface
 // does not overlap it. Rays and moving shapes hit triangles from the front (from both sides if the mesh is double-sided or the filter
 // asks for back faces).
@@ -33,6 +38,9 @@ struct QueryFilter {
   // be called for shapes that are not hit in the end.
   bool (*accepts)(void* user, ShapeId shape, BodyId body) = nullptr;
   void* user = nullptr;
+  bool soft = true;  // ropes, cloths and solids too, whose SoftSettings::filter has a layer in `layers`
+  // Like `accepts`, for ropes, cloths and solids.
+  bool (*accepts_soft)(void* user, SoftId soft) = nullptr;
 };
 
 struct Ray {
@@ -56,29 +64,34 @@ struct ShapePose {
   Pose pose{};  // world_from_shape
 };
 
-// The first hit of a ray or a moving shape on a shape of the world.
+// The first hit of a ray or a moving shape on a shape of the world, or on soft matter.
 struct CastHit {
   BodyId body{};
   ShapeId shape{};
   std::int32_t shape_index = 0;  // among the body's shapes: World::shapes(body)[shape_index]
   std::int32_t triangle = -1;  // mesh: its number in the MeshDef; height field: 2 * cell, + 1 for the half away from the
-                               // cell's first sample, cell = row * (columns - 1) + column; others: -1
+                               // cell's first sample, cell = row * (columns - 1) + column; cloth and solid: of
+                               // World::soft_triangles(), from 3 * triangle on; rope: the segment, from vertex
+                               // `triangle` to the next; others: -1
   DVec3 point{};               // on the shape that is hit
   Vec3 normal{};               // unit, out of that shape; of a ray that starts inside: against its translation (zero if that is zero)
   double fraction = 1.0;       // of the translation, 0 to 1
   bool inside = false;         // ray: it starts inside a solid. Moving shape: it overlaps the shape at the start
   float depth = 0.0f;          // m, of a moving shape that overlaps at the start: depth * normal separates the two
+  SoftId soft{};               // the rope, cloth or solid that is hit; null: a shape is
+  Vec3 weights{};              // soft: the point as a mean of the vertices of its triangle or segment
 
-  explicit operator bool() const { return bool(body); }
+  explicit operator bool() const { return bool(body) || bool(soft); }
 };
 
 struct Overlap {
   BodyId body{};
   ShapeId shape{};
   std::int32_t shape_index = 0;  // as in CastHit
-  std::int32_t triangle = -1;    // the lowest overlapping one, numbered as in CastHit
+  std::int32_t triangle = -1;    // the lowest overlapping one, numbered as in CastHit; -1 if the shape lies wholly within a soft solid
+  SoftId soft{};                 // as in CastHit
 
-  explicit operator bool() const { return bool(body); }
+  explicit operator bool() const { return bool(body) || bool(soft); }
 };
 
 struct ClosestPoint {

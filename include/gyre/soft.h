@@ -38,6 +38,11 @@ enum class ClothLinks : std::uint8_t { springs, rods, membrane };
 const char* to_string(RopeLinks links);
 const char* to_string(ClothLinks links);
 
+// How the pressure of a gas within a cloth follows its volume. ideal_gas: (pressure + ambient) V stays, at constant temperature; constant: it is kept,
+// as by a fan.
+enum class PressureLaw : std::uint8_t { ideal_gas, constant };
+const char* to_string(PressureLaw law);
+
 // The law of stress and strain of tetrahedra. linear: for small displacements, does not know rotations; corotated: the same in a frame that
 // turns with the element; neo_hookean: rubber (B. Smith, F. de Goes, T. Kim, "Stable Neo-Hookean Flesh Simulation", 2018).
 enum class SolidModel : std::uint8_t { linear, corotated, neo_hookean };
@@ -87,6 +92,11 @@ struct ClothDef {
   float bend_stiffness = 1.0e-4f;           // N m: moment per width and curvature
   float thickness = 0.005f;                 // m: surfaces keep half of it from its middle
   bool self_collision = true;
+  // Gas within a cloth of triangles that is closed, with all of them alike all round: a balloon. Pa, above that outside, at the volume at
+  // rest; below 0: it sucks. None: no gas.
+  std::optional<float> pressure{};
+  float ambient_pressure = 1.0e5f;          // Pa, outside; 0 in a vacuum
+  PressureLaw pressure_law = PressureLaw::ideal_gas;
   SoftSettings settings{};
 };
 
@@ -139,6 +149,8 @@ struct SoftInfo {
   int contacts = 0;             // of its vertices with shapes, in the last step
   std::uint64_t user_data = 0;
   bool awake = true;
+  double volume = 0.0;    // m^3, within a cloth that holds gas
+  double pressure = 0.0;  // Pa, of that gas now, above that outside
 };
 
 }  // namespace gyre

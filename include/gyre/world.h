@@ -52,6 +52,17 @@ struct ContactPoint {
   std::int32_t triangle = -1;  // of a mesh or height field, numbered as in CastHit: the deepest of the triangles with this normal
 };
 
+// The kind of a joint, what it connects, and when it breaks.
+struct JointInfo {
+  JointKind kind = JointKind::ball;
+  BodyId a{}, b{};                  // null = the world
+  DVec3 anchor_a{}, anchor_b{};     // m, world, at the present poses; equal but for errors, and for kinds with two points
+  float break_force = 0;            // N; 0 = unbreakable
+  float break_torque = 0;           // N m; 0 = unbreakable
+  bool collide_connected = false;
+  bool enabled = true;
+};
+
 // The state of a joint.
 struct JointState {
   Vec3 force{};   // N on b, world frame, mean over the last step
@@ -222,12 +233,25 @@ class World {
   bool is_awake(BodyId body) const;
   float sleep_speed(BodyId body) const;  // m/s, as it was set: 0 = by sleep_share()
   std::uint64_t user_data(BodyId body) const;
+  float linear_damping(BodyId body) const;   // 1/s, as it was set
+  float angular_damping(BodyId body) const;  // 1/s
+  float gravity_scale(BodyId body) const;
+  bool continuous(BodyId body) const;  // BodyDef::continuous
+  bool can_sleep(BodyId body) const;   // BodyDef::can_sleep
+  LockedAxes locked_axes(BodyId body) const;
+  // Copies up to out.size() joints of the body, in order of index; returns how many there are.
+  std::size_t joints(BodyId body, std::span<JointId> out) const;
   MassProperties mass_properties(BodyId body) const;  // body frame; mass 0 unless dynamic
   std::span<const ShapeId> shapes(BodyId body) const;
   BodyId body_of(ShapeId shape) const;
   const AnyShape* geometry(ShapeId shape) const;
   Transform local_transform(ShapeId shape) const;
   Material material(ShapeId shape) const;
+  Filter filter(ShapeId shape) const;
+  bool is_sensor(ShapeId shape) const;
+  float density(ShapeId shape) const;  // kg/m^3, as it was set
+  std::uint64_t user_data(ShapeId shape) const;
+  JointInfo joint_info(JointId joint) const;
   JointState joint_state(JointId joint) const;
   // The definition in force: directions have length 1, an optional density has its default.
   FieldDef field(FieldId field) const;

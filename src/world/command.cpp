@@ -13,6 +13,7 @@
 #include "world/query_sight.h"
 #include "world/fluid_commands.h"
 #include "world/soft_commands.h"
+#include "world/soft_events.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -179,6 +180,7 @@ CommandResult execute(WorldState& s, const RemoveBody& c) {
   forget_body(s.soft, body);
   while (!joints_of(w.bodies, body).empty()) remove_joint(w, joints_of(w.bodies, body).front());
   for (const ShapeId id : w.bodies.shapes[body]) {
+    drop_soft_contacts(s, id.index);
     drop_contacts(w, id.index);
     remove_shape_slot(w.shapes, id.index);
   }
@@ -203,6 +205,7 @@ CommandResult execute(WorldState& s, const RemoveShape& c) {
   wake_if_movable(w, body);
   wake_neighbours(w, body);
   wake_touching(s.soft, body);
+  drop_soft_contacts(s, shape);
   drop_contacts(w, shape);
   erase_index(w.bodies.shapes[body], shape);
   remove_shape_slot(w.shapes, shape);

@@ -3,9 +3,11 @@
 #include "base/float_mode.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
+#include "soft/body/enclosed_gas.h"
 #include "soft/body/soft_energy.h"
 #include "soft/store/soft_builder.h"
 #include "world/refusal.h"
+#include "world/soft_events.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -60,6 +62,10 @@ bool is_soft(const WorldState& s, SoftId id) {
          std::uint16_t(s.soft.ids.generation(id.index)) == id.generation;
 }
 
+SoftId soft_id(const WorldState& s, std::uint32_t slot) {
+  return {slot, std::uint16_t(s.soft.ids.generation(slot)), s.number};
+}
+
 Error check(const WorldState& s, const AddSoft& c) {
   if (s.soft.ids.size() >= kMaxSofts) return refuse("a world has at most %d ropes, cloths and solids", int(kMaxSofts));
   return std::visit([](const auto& def) { return check_soft(def); }, *c.def);
@@ -101,10 +107,11 @@ CommandResult execute(WorldState& s, const AddSoft& c) {
   s.soft.entries[slot.index] = build_soft(c.def);
   CommandResult out;
   out.done = true;
-  out.soft = {slot.index, std::uint16_t(slot.generation), s.number};
+  out.soft = soft_id(s, slot.index);
   return out;
 }
 CommandResult execute(WorldState& s, const RemoveSoft& c) {
+  end_soft_touches(s, c.soft.index);
   for (const SoftContact& contact : s.soft.entries[c.soft.index].contacts) {
     if (contact.body != kWorldAnchor) wake(s.rigid, std::uint32_t(contact.body));
   }
@@ -140,6 +147,7 @@ CommandResult execute(WorldState& s, const SetVertices& c) {
   SoftEntry& entry = s.soft.entries[c.soft.index];
   for (std::size_t i = 0; i < c.positions.size(); ++i) entry.body.particles.set_place(int(i), c.positions[i]);
   for (std::size_t i = 0; i < c.velocities.size(); ++i) entry.body.particles.set_velocity(int(i), c.velocities[i]);
+  end_soft_touches(s, c.soft.index);
   forget_motion(entry);
   if (!c.positions.empty()) {
     for (SoftAttachment& attachment : entry.attachments) anchor_here(s.rigid, entry, attachment);
@@ -162,11 +170,6 @@ void forget_body(SoftStore& soft, std::uint32_t body) {
       if (entry.attachments[k].body != std::int32_t(body)) continue;
       let_go(entry.body, int(entry.attachments[k].particle));
       entry.attachments.erase_at(k);
-      wake(entry);
-    }
-    for (std::size_t k = entry.contacts.size(); k-- > 0;) {
-      if (entry.contacts[k].body != std::int32_t(body)) continue;
-      entry.contacts.erase_at(k);
       wake(entry);
     }
   });
@@ -218,6 +221,10 @@ SoftInfo World::soft_info(SoftId soft) const {
   info.user_data = entry.settings().user_data;
   info.awake = entry.is_awake();
   info.elastic_energy = elastic_energy(entry.body);
+  if (const EnclosedGas& gas = entry.body.gas; !gas.triangles.empty()) {
+    info.volume = enclosed_volume(p, gas.triangles);
+    info.pressure = gauge_pressure(gas, info.volume);
+  }
   for (int i = 0; i < p.count; ++i) {
     info.mass += double(p.mass[i]);
     info.kinetic_energy += 0.5 * double(p.mass[i]) * length_squared(DVec3(p.velocity(i)));
@@ -278,6 +285,7 @@ const char* to_string(RopeLinks links) { return links == RopeLinks::springs ? "s
 const char* to_string(ClothLinks links) {
   return links == ClothLinks::springs ? "springs" : links == ClothLinks::rods ? "rods" : "membrane";
 }
+const char* to_string(PressureLaw law) { return law == PressureLaw::ideal_gas ? "ideal_gas" : "constant"; }
 const char* to_string(SolidModel model) {
   return model == SolidModel::linear ? "linear" : model == SolidModel::corotated ? "corotated" : "neo_hookean";
 }

@@ -21,6 +21,7 @@ CommandResult execute(WorldState& state, const SetVertices& c);
 
 // True if what the id names exists.
 bool is_soft(const WorldState& state, SoftId id);
+SoftId soft_id(const WorldState& state, std::uint32_t slot);
 // Wakes what touches a body, or hangs on it, that a command changes.
 void wake_touching(SoftStore& soft, std::uint32_t body);
 // A body is about to be removed: releases what is attached to it.

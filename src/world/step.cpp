@@ -8,6 +8,7 @@
 #include "rigid/rigid_step.h"
 #include "rigid/sleep/island.h"
 #include "rigid/time/step_error.h"
+#include "world/soft_events.h"
 #include "world/stages.h"
 #include "world/validate_state.h"
 #include "world/world_state.h"
@@ -52,6 +53,7 @@ void begin_step(WorldState& s) {
   s.problems.clear();
   s.profile.begin_step();
   refresh_awake(s.rigid.bodies);
+  note_soft_before(s);
 }
 
 // Broken joints stay until the end of the step, because its results refer to them.
@@ -317,7 +319,9 @@ void end_step(WorldState& s, float seconds) {
   clocks.sensors.trim(next.sensors, s.published_events.sensors);
   clocks.broken.trim(next.broken, s.published_events.broken);
   clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
-  s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes};
+  report_soft_events(s);
+  const SoftEvents& soft = s.published_soft_events;
+  s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes, soft.begins, soft.ends, soft.inverted};
   s.stepping = false;
 }
 

@@ -6,6 +6,7 @@
 #include "task/parallel.h"
 #include "world/query_sight.h"
 #include "world/refusal.h"
+#include "world/soft_query.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -133,6 +134,9 @@ double measure(const Overlap&) { return 0.0; }
 template <class Answer>
 bool comes_before(const Answer& a, const Answer& b) {
   if (measure(a) != measure(b)) return measure(a) < measure(b);
+  if constexpr (requires { a.soft; }) {
+    if (a.soft != b.soft) return a.soft && b.soft ? a.soft.index < b.soft.index : bool(b.soft);
+  }
   return a.shape.index != b.shape.index ? a.shape.index < b.shape.index : a.triangle < b.triangle;
 }
 
@@ -167,7 +171,7 @@ void cast(const QueryInput& input, const ShapeCast& shape, HitVisit found) {
 
 // The nearest hit; an empty one if there is none.
 template <class Question>
-CastHit nearest_hit(const WorldState& s, const Question& question, const QueryFilter& filter) {
+CastHit nearest_hit(WorldState& s, const Question& question, const QueryFilter& filter) {
   ShapeHit nearest;
   bool any = false;
   ask_world(s, filter, [&](const QueryInput& input) {
@@ -178,11 +182,18 @@ CastHit nearest_hit(const WorldState& s, const Question& question, const QueryFi
       return nearest.fraction;
     });
   });
-  return any ? public_answer(s.rigid, nearest) : CastHit{};
+  CastHit out = any ? public_answer(s.rigid, nearest) : CastHit{};
+  if (asks_soft(s, filter)) {
+    find_soft_hits(s, question, filter, out.fraction, [&](const CastHit& hit) {
+      if (!out || hit.fraction < out.fraction) out = hit;
+      return out.fraction;
+    });
+  }
+  return out;
 }
 
 template <class Question>
-bool hits_any(const WorldState& s, const Question& question, const QueryFilter& filter) {
+bool hits_any(WorldState& s, const Question& question, const QueryFilter& filter) {
   bool any = false;
   ask_world(s, filter, [&](const QueryInput& input) {
     cast(input, question, [&](const ShapeHit&) {
@@ -190,11 +201,17 @@ bool hits_any(const WorldState& s, const Question& question, const QueryFilter& 
       return -1.0;
     });
   });
+  if (!any && asks_soft(s, filter)) {
+    find_soft_hits(s, question, filter, 1.0, [&](const CastHit&) {
+      any = true;
+      return -1.0;
+    });
+  }
   return any;
 }
 
 template <class Question>
-std::size_t all_hits(const WorldState& s, const Question& question, std::span<CastHit> out,
+std::size_t all_hits(WorldState& s, const Question& question, std::span<CastHit> out,
                      const QueryFilter& filter) {
   FirstAnswers<CastHit> answers(out);
   ask_world(s, filter, [&](const QueryInput& input) {
@@ -203,6 +220,12 @@ std::size_t all_hits(const WorldState& s, const Question& question, std::span<Ca
       return 1.0;
     });
   });
+  if (asks_soft(s, filter)) {
+    find_soft_hits(s, question, filter, 1.0, [&](const CastHit& hit) {
+      answers.add(hit);
+      return 1.0;
+    });
+  }
   return answers.count();
 }
 
@@ -239,13 +262,24 @@ std::size_t all_near(const WorldState& s, const ShapePose& shape, double max_dis
   });
   return answers.count();
 }
-std::size_t all_overlaps(const WorldState& s, const ShapePose& shape, std::span<Overlap> out,
+bool overlaps_any(WorldState& s, const ShapePose& shape, const QueryFilter& filter) {
+  bool any = is_near_any(s, shape, 0.0, filter);
+  if (!any && asks_soft(s, filter)) find_soft_overlaps(s, shape, filter, [&](const Overlap&) { return !(any = true); });
+  return any;
+}
+std::size_t all_overlaps(WorldState& s, const ShapePose& shape, std::span<Overlap> out,
                          const QueryFilter& filter) {
   FirstAnswers<Overlap> answers(out);
   for_each_near(s, shape, 0.0, filter, [&](const ShapeNear& near) {
     answers.add(named<Overlap>(s.rigid, near.shape, near.triangle));
     return true;
   });
+  if (asks_soft(s, filter)) {
+    find_soft_overlaps(s, shape, filter, [&](const Overlap& overlap) {
+      answers.add(overlap);
+      return true;
+    });
+  }
   return answers.count();
 }
 std::size_t all_penetrations(const WorldState& s, const ShapePose& shape, std::span<Penetration> out,
@@ -409,7 +443,7 @@ std::size_t World::cast_shape_all(const ShapeCast& cast, std::span<CastHit> out,
 
 bool World::overlap_any(const ShapePose& shape, const QueryFilter& filter) const {
   const FloatMode mode;
-  return is_ready(*state_, shape) && is_near_any(*state_, shape, 0.0, filter);
+  return is_ready(*state_, shape) && overlaps_any(*state_, shape, filter);
 }
 std::size_t World::overlap_all(const ShapePose& shape, std::span<Overlap> out,
                                const QueryFilter& filter) const {
@@ -513,7 +547,7 @@ Error World::overlap_count_batch(std::span<const ShapePose> shapes, std::span<st
 }
 Error World::overlap_any_batch(std::span<const ShapePose> shapes, std::span<std::uint8_t> out,
                                const QueryFilter& filter) const {
-  return closest_point_any_batch(shapes, 0.0, out, filter);
+  return answer_each(*state_, shapes, out, [&](const ShapePose& shape) { return overlaps_any(*state_, shape, filter); });
 }
 Error World::overlap_all_batch(std::span<const ShapePose> shapes, std::span<Overlap> out,
                                std::span<std::uint32_t> counts, const QueryFilter& filter) const {

@@ -2,11 +2,11 @@
 #include <gyre/world.h>
 
 #include "base/float_mode.h"
-#include "rigid/integrate/spring_stability.h"
 #include "rigid/batch/surface_rules.h"
+#include "rigid/integrate/spring_stability.h"
 #include "world/field_commands.h"
-#include "world/joint_reading.h"
 #include "world/fluid_commands.h"
+#include "world/joint_reading.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
 
@@ -102,6 +102,37 @@ float World::sleep_speed(BodyId body) const {
 std::uint64_t World::user_data(BodyId body) const {
   return exists(body) ? state_->rigid.bodies.user_data[body.index] : 0;
 }
+float World::linear_damping(BodyId body) const {
+  return exists(body) ? state_->rigid.bodies.forces[body.index].linear_damping : 0.0f;
+}
+float World::angular_damping(BodyId body) const {
+  return exists(body) ? state_->rigid.bodies.forces[body.index].angular_damping : 0.0f;
+}
+float World::gravity_scale(BodyId body) const {
+  return exists(body) ? state_->rigid.bodies.forces[body.index].gravity_scale : 0.0f;
+}
+bool World::continuous(BodyId body) const {
+  return exists(body) && state_->rigid.bodies.flags[body.index].continuous != 0;
+}
+bool World::can_sleep(BodyId body) const {
+  return exists(body) && state_->rigid.bodies.flags[body.index].can_sleep != 0;
+}
+LockedAxes World::locked_axes(BodyId body) const {
+  LockedAxes out;
+  if (!exists(body)) return out;
+  const BodyFlags& flags = state_->rigid.bodies.flags[body.index];
+  for (int axis = 0; axis < 3; ++axis) {
+    out.linear[axis] = (flags.locked_linear >> axis & 1) != 0;
+    out.angular[axis] = (flags.locked_angular >> axis & 1) != 0;
+  }
+  return out;
+}
+std::size_t World::joints(BodyId body, std::span<JointId> out) const {
+  if (!exists(body)) return 0;
+  const std::span<const std::uint32_t> slots = joints_of(state_->rigid.bodies, body.index);
+  for (std::size_t i = 0; i < slots.size() && i < out.size(); ++i) out[i] = joint_id(state_->rigid, slots[i]);
+  return slots.size();
+}
 MassProperties World::mass_properties(BodyId body) const {
   if (!exists(body)) return {};
   const BodyMass& mass = state_->rigid.bodies.masses[body.index];
@@ -124,6 +155,19 @@ Material World::material(ShapeId shape) const {
   return exists(shape) ? state_->rigid.shapes.materials[shape.index] : Material{};
 }
 
+Filter World::filter(ShapeId shape) const {
+  return exists(shape) ? state_->rigid.shapes.proxies[shape.index].filter : Filter{};
+}
+bool World::is_sensor(ShapeId shape) const {
+  return exists(shape) && state_->rigid.shapes.proxies[shape.index].sensor;
+}
+float World::density(ShapeId shape) const {
+  return exists(shape) ? state_->rigid.shapes.density[shape.index] : 0.0f;
+}
+std::uint64_t World::user_data(ShapeId shape) const {
+  return exists(shape) ? state_->rigid.shapes.user_data[shape.index] : 0;
+}
+
 bool World::exists(FieldId field) const { return is_field(*state_, field); }
 FieldDef World::field(FieldId field) const {
   return is_field(*state_, field) ? field_def(state_->rigid.fields[field.index]) : FieldDef{};
@@ -139,6 +183,22 @@ std::size_t World::fields(std::span<FieldId> out) const {
   return count;
 }
 
+JointInfo World::joint_info(JointId id) const {
+  if (!exists(id)) return {};
+  const FloatMode mode;
+  const RigidWorld& w = state_->rigid;
+  const JointRecord& joint = w.joints.records[id.index];
+  const JointAnchors anchors = joint_anchors(w, joint);
+  return {.kind = joint.kind,
+          .a = joint.body_a == kNoBody ? BodyId{} : body_id(w, std::uint32_t(joint.body_a)),
+          .b = joint.body_b == kNoBody ? BodyId{} : body_id(w, std::uint32_t(joint.body_b)),
+          .anchor_a = anchors.a,
+          .anchor_b = anchors.b,
+          .break_force = joint.break_force,
+          .break_torque = joint.break_torque,
+          .collide_connected = joint.collide_connected,
+          .enabled = joint_enabled(id)};
+}
 JointState World::joint_state(JointId id) const {
   if (!exists(id)) return {};
   const FloatMode mode;
@@ -222,7 +282,8 @@ WorldStats World::stats() const {
   counts.colors = state_->solve.colors;
   counts.pairs = int(w.contacts.live);
   counts.fluids = int(state_->fluids.ids.size());
-  state_->fluids.for_each([&](const FluidEntry& entry) { counts.liquid_particles += entry.liquid.particles(); });
+  state_->fluids.for_each(
+      [&](const FluidEntry& entry) { counts.liquid_particles += entry.liquid.particles(); });
   counts.softs = int(state_->soft.ids.size());
   state_->soft.for_each([&](const SoftEntry& entry) { counts.soft_vertices += entry.body.particles.count; });
   // Free slots have the flags of static bodies; their contacts touch nothing and have no manifolds.

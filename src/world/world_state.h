@@ -9,6 +9,7 @@
 #include "rigid/rigid_step.h"
 #include "rigid/store/rigid_world.h"
 #include "rigid/time/toi_stepping.h"
+#include "soft/query/soft_query.h"
 #include "soft/store/soft_store.h"
 #include "solver/kernels/solver_kernels.h"
 #include "task/task_system.h"
@@ -77,7 +78,11 @@ struct WorldState {
   Array<Problem> problems;
   Array<std::uint32_t> frozen;
   RigidEvents published_events;  // events of the last step; rigid.events collects those of the next
-  Events events;                 // spans of `published_events`
+  SoftEvents published_soft_events;  // soft.events collects those of the next step
+  Events events;                 // spans of both
+  Array<std::uint8_t> soft_touch_mark;  // by shape; 0 but while shapes are listed
+  Array<SoftTouch> soft_touching;
+  Array<std::uint8_t> soft_inverted;
   bool stepping = false;
   bool validates = true;          // builds with GYRE_VALIDATE: state validation after each stage
   std::uint16_t number = 0;       // of this world, in its ids
@@ -85,6 +90,10 @@ struct WorldState {
   // may not be built yet. Queries update it under the lock, since several threads may query at once.
   std::atomic<std::size_t> queried_changes{kNothingQueried};
   std::mutex query_lock;
+  // Boxes of soft matter for queries, by slot; made for the state of WorldState::changes, under the lock.
+  std::vector<SoftBoxes> soft_boxes;
+  Arena soft_box_memory;
+  std::atomic<std::uint64_t> soft_boxes_made_at{~std::uint64_t(0)};
   std::mutex batch_lock;          // the workers answer one batch of queries at a time
   Array<std::uint32_t> changes_to_show;
   Array<std::uint64_t> change_keys, change_scratch;

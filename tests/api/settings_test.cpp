@@ -53,6 +53,66 @@ TEST(Settings, AreReadBackAsTheyWereChanged) {
   expect_equal(other->def(), world.def());
 }
 
+TEST(Settings, OfBodiesShapesAndJointsAreReadBack) {
+  World world = *World::create();
+  const BodyDef def{.pose = {.position = {1, 2, 3}},
+                    .linear_damping = 0.25f,
+                    .angular_damping = 0.5f,
+                    .gravity_scale = -2.0f,
+                    .continuous = true,
+                    .can_sleep = false,
+                    .locked = {.linear = {false, true, false}, .angular = {true, false, true}},
+                    .user_data = 11};
+  const Filter filter{.layer = 4, .collides_with = 6, .group = -3};
+  const BodyId body =
+      world.add_body(def, {.geometry = Sphere{0.2f}, .density = 300.0f, .filter = filter, .user_data = 22});
+  const BodyId plain = world.add_body({}, {.geometry = Box{}, .sensor = true});
+  EXPECT_EQ(world.linear_damping(body), 0.25f);
+  EXPECT_EQ(world.angular_damping(body), 0.5f);
+  EXPECT_EQ(world.gravity_scale(body), -2.0f);
+  EXPECT_TRUE(world.continuous(body) && !world.can_sleep(body));
+  EXPECT_FALSE(world.continuous(plain) || !world.can_sleep(plain));
+  EXPECT_EQ(world.locked_axes(body), def.locked);
+  EXPECT_EQ(world.locked_axes(plain), LockedAxes{});
+  const ShapeId shape = world.shapes(body)[0], other = world.shapes(plain)[0];
+  EXPECT_EQ(world.filter(shape), filter);
+  EXPECT_EQ(world.density(shape), 300.0f);
+  EXPECT_EQ(world.user_data(shape), 22u);
+  EXPECT_TRUE(world.is_sensor(other) && !world.is_sensor(shape));
+
+  const JointId first = world.add_joint(
+      HingeDef{.a = body, .b = plain, .anchor = {1, 2, 3.5}, .break_force = 9.0f, .collide_connected = true});
+  const JointId second =
+      world.add_joint(DistanceDef{.b = body, .anchor = {0, 5, 0}, .anchor_b = DVec3{1, 2, 3}});
+  const JointInfo hinge = world.joint_info(first), rod = world.joint_info(second);
+  EXPECT_TRUE(hinge.kind == JointKind::hinge && hinge.a == body && hinge.b == plain &&
+              hinge.collide_connected && hinge.enabled);
+  EXPECT_NEAR(distance(hinge.anchor_a, DVec3{1, 2, 3.5}), 0.0, 1e-6);
+  EXPECT_EQ(hinge.break_force, 9.0f);
+  EXPECT_EQ(hinge.break_torque, 0.0f);
+  EXPECT_TRUE(rod.kind == JointKind::distance && !rod.a && rod.b == body);
+  EXPECT_NEAR(distance(rod.anchor_a, DVec3{0, 5, 0}), 0.0, 1e-6);
+  EXPECT_NEAR(distance(rod.anchor_b, DVec3{1, 2, 3}), 0.0, 1e-6);
+  JointId joints[3];
+  ASSERT_EQ(world.joints(body, joints), 2u);
+  EXPECT_TRUE(joints[0] == first && joints[1] == second);
+  EXPECT_EQ(world.joints(plain, {}), 1u);
+  world.set_joint_enabled(first, false);
+  EXPECT_FALSE(world.joint_info(first).enabled);
+
+  // All of it comes along with a snapshot, and nothing is left of what is gone.
+  const World loaded = *load_snapshot(save_snapshot(world));
+  const BodyId again = loaded.bodies().ids[0];
+  EXPECT_EQ(loaded.locked_axes(again), def.locked);
+  EXPECT_EQ(loaded.filter(loaded.shapes(again)[0]), filter);
+  world.remove_body(body);
+  EXPECT_EQ(world.gravity_scale(body), 0.0f);
+  EXPECT_EQ(world.user_data(shape), 0u);
+  EXPECT_EQ(world.joints(body, joints), 0u);
+  EXPECT_EQ(world.joint_info(first).kind, JointInfo{}.kind);
+  EXPECT_FALSE(world.joint_info(first).b);
+}
+
 TEST(Settings, RefusesWhatIsOutOfRange) {
   World world = make_world();
   const WorldDef before = world.def();

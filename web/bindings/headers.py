@@ -37,6 +37,7 @@ class Parameter:
     type: str
     by_pointer: bool = False
     by_mutable_reference: bool = False
+    writable: bool = False  # a span that the function fills
     default: str = ""
 
 
@@ -253,7 +254,8 @@ def parse_parameter(text):
     kind = match.group(1).strip()
     constant = bool(re.search(r"\bconst\b", re.sub(r"<.*>", "", kind)))
     return Parameter(match.group(2), plain_type(kind).rstrip("*"), by_pointer=kind.endswith("*"),
-                     by_mutable_reference=kind.endswith("&") and not kind.endswith("&&") and not constant, default=default)
+                     by_mutable_reference=kind.endswith("&") and not kind.endswith("&&") and not constant,
+                     writable=bool(re.match(r"std::span<(?!const\b)", kind)), default=default)
 
 
 def parse_function(doc, body, owner=""):

@@ -48,6 +48,7 @@ LEFT_OUT = {
     "World::liquid_surface": "see World::sample_velocity",
     "default_joint": "{ kind: ... } is one",
     "QueryFilter.accepts": "a function pointer; the layers of the filter are carried",
+    "QueryFilter.accepts_soft": "see QueryFilter.accepts",
     "QueryFilter.user": "see QueryFilter.accepts",
     "BodyNames": "a function pointer; bodies of a scene are named by the scene",
     "to_string": "names of enumerators are part of the enums, see nameOf",
@@ -64,6 +65,7 @@ RENAMED = {
     "World::exists(FieldId)": "fieldExists",
     "World::exists(SoftId)": "softExists",
     "World::exists(FluidId)": "fluidExists",
+    "World::user_data(ShapeId)": "shapeUserData",
     "World::create(WorldDef)": "createWorld",
     "Replay::open(vector<byte>,WorldDef)": "openReplay",
     "PoseTrack::open(vector<byte>)": "openPoseTrack",
@@ -95,6 +97,9 @@ def pascal(name):
 
 
 class Model:
+    # Another language may leave out and rename others: capi/c_model.py.
+    excluded, renamed, taken_by_hand = LEFT_OUT, RENAMED, TAKEN_BY_HAND
+
     def __init__(self, include):
         self.files = [name for name in HEADERS if (include / "gyre" / f"{name}.h").exists()]
         self.api = headers.read_headers([include / "gyre" / f"{name}.h" for name in self.files])
@@ -108,7 +113,7 @@ class Model:
         self.functions = [f for f in self.all_functions() if not self.left_out(f)]
         for function in self.functions:
             self.use(function)
-        for name in TAKEN_BY_HAND:
+        for name in self.taken_by_hand:
             self.walk(name, self.written_structs, "TAKEN_BY_HAND")
         self.refuse_equal_names()
 
@@ -137,12 +142,12 @@ class Model:
         return f"{self.key(function)}({','.join(p.type for p in function.parameters)})"
 
     def left_out(self, function):
-        return any(key in LEFT_OUT for key in (self.key(function), self.full_key(function), function.owner))
+        return any(key in self.excluded for key in (self.key(function), self.full_key(function), function.owner))
 
     def script_name(self, function):
         key = self.full_key(function)
-        if key in RENAMED:
-            return RENAMED[key]
+        if key in self.renamed:
+            return self.renamed[key]
         if function.owner and function.name == function.owner:
             return "create" + function.owner
         return camel(function.name)
@@ -164,7 +169,7 @@ class Model:
         """Those that the caller gives."""
         skip = 1 if not function.owner and self.self_class(function) else 0
         return [p for p in function.parameters[skip:] if not self.is_out(p) and not self.is_fill(function, p)
-                and not self.is_filled(function, p) and not (p.type in LEFT_OUT and p.type not in FLAT and p.default)]
+                and not self.is_filled(function, p) and not (p.type in self.excluded and p.type not in FLAT and p.default)]
 
     def is_filled(self, function, parameter):
         """A table or an array that the function fills."""
@@ -255,7 +260,7 @@ class Model:
                    or (self.is_struct(f.type) and self.columnable(f.type)) for f in self.fields(struct))
 
     def fields(self, struct):
-        return [f for f in self.api.structs[struct].fields if f"{struct}.{f.name}" not in LEFT_OUT]
+        return [f for f in self.api.structs[struct].fields if f"{struct}.{f.name}" not in self.excluded]
 
     def leaves(self, struct, prefix="", path=""):
         """(name in TypeScript, C++ path, type, doc) of every column of an array of structs."""

@@ -103,11 +103,14 @@ Gap find_gap(const SweptShape& a, const SweptShape& b, const Pose& pose_a, const
     gap.normal = -gap.normal;
     return gap;
   }
-  const CorePair pair(*a.shape, *b.shape, inverse_times(frame_a, frame_b));
+  // In double, because one shape may be a million times as large as the other.
+  const DQuat back = conjugate(normalized(to_double(frame_a.orientation)));
+  const CorePair pair(*a.shape, *b.shape, rotate(back, frame_b.position - frame_a.position),
+                      back * normalized(to_double(frame_b.orientation)));
   const double radii = double(core_radius(*a.shape)) + double(core_radius(*b.shape));
   const CoreDistance cores = core_distance(pair, max_distance + radii, Vec3{});
   Gap gap;
-  gap.normal = DVec3(rotate(frame_a.orientation, to_float(cores.normal)));
+  gap.normal = rotate(conjugate(back), cores.normal);
   gap.distance = cores.overlap ? -radii : cores.distance - radii;
   gap.beyond = cores.beyond;
   return gap;

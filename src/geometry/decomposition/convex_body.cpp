@@ -23,6 +23,15 @@ HalfSpace plane_of(const ConvexBody& body, const GridTriangle& t) {
 DVec3 lower(DVec3 a, DVec3 b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
 DVec3 higher(DVec3 a, DVec3 b) { return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; }
 
+double ConvexBody::thickness() const {
+  double area = 0.0;
+  for (const GridTriangle& t : triangles) {
+    const auto at = [&](int i) { return vertices[std::size_t(t.vertices[i])]; };
+    area += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
+  }
+  return area > 0.0 ? 2.0 * volume / area : 0.0;
+}
+
 ConvexBody make_body(std::span<const DVec3> points, const BodyPrecision& precision) {
   ConvexBody body;
   if (points.size() < 4) return body;

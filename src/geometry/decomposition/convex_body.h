@@ -27,6 +27,8 @@ struct ConvexBody {
   DVec3 low, high;
 
   bool empty() const { return triangles.empty(); }
+  // The mean thickness: twice the volume over the surface. 0 if empty.
+  double thickness() const;
 };
 
 struct BodyPrecision {

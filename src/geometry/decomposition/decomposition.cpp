@@ -12,7 +12,7 @@ namespace gyre {
 namespace {
 
 // Part of the key. It must be incremented whenever the hulls of any mesh change.
-constexpr std::uint64_t kMethodVersion = 1;
+constexpr std::uint64_t kMethodVersion = 2;
 // A surface is a sheet if more than this fraction of it is close to holes.
 constexpr double kMaxOpen = 0.15;
 
@@ -52,7 +52,6 @@ struct Prepared {
   Model model;
   std::unique_ptr<SurfaceField> field;
   SampledSolid solid;
-  double openness = 0.0;
 };
 
 void prepare(const DecompositionDef& def, TaskSystem& tasks, Prepared& out) {
@@ -64,7 +63,7 @@ void prepare(const DecompositionDef& def, TaskSystem& tasks, Prepared& out) {
   constexpr double kMinSamples = 4000.0, kMaxSamples = 60000.0;
   out.solid.spacing = min(max(0.4 * out.solid.tolerance, std::sqrt(model.area / kMaxSamples)),
                           std::sqrt(model.area / kMinSamples));
-  out.solid.samples = sample_surface(model, *out.field, tasks, out.solid.spacing, out.openness);
+  sample_surface(tasks, out.solid);
 }
 
 // Half the thickness of the shell, in the model's coordinates.
@@ -76,9 +75,9 @@ double half_thickness(const DecompositionDef& def, const Model& model) {
 Error prepare_solid(const DecompositionDef& def, TaskSystem& tasks, Prepared& out) {
   prepare(def, tasks, out);
   MeshFindings& findings = out.model.findings;
-  findings.openness = float(out.openness);
+  findings.openness = float(out.solid.openness);
   const bool sheet = def.meaning == SurfaceMeaning::shell ||
-                     (def.meaning == SurfaceMeaning::automatic && out.openness > kMaxOpen);
+                     (def.meaning == SurfaceMeaning::automatic && out.solid.openness > kMaxOpen);
   if (!sheet) {
     if (!out.solid.samples.empty()) return {};
     return make_error(
@@ -96,15 +95,14 @@ Error prepare_solid(const DecompositionDef& def, TaskSystem& tasks, Prepared& ou
   // The sheets of a shell may touch each other anywhere, so it is one group.
   out.model.group.assign(out.model.triangle_count(), 0);
   out.model.group_count = 1;
-  double openness = 0.0;
-  std::swap(openness, out.openness);
   prepare(def, tasks, out);
-  out.openness = openness;
   return {};
 }
 
 Result<Geometry> cook_piece(const DecompositionDef& def, const SampledSolid& solid, const ConvexBody& body) {
-  const ConvexBody reduced = make_body(body.vertices, {def.max_hull_vertices, 0.05 * solid.tolerance, 0.0});
+  // A plate whose corners are left out is a wedge, so the tolerance is small against the thickness too.
+  const double tolerance = min(0.05 * solid.tolerance, 0.1 * body.thickness());
+  const ConvexBody reduced = make_body(body.vertices, {def.max_hull_vertices, tolerance, 0.0});
   std::vector<Vec3> points;
   for (const DVec3& p : reduced.vertices) points.push_back(to_float(solid.model->to_metres(p)));
   return cook_hull(points);

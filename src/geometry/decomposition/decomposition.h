@@ -33,10 +33,8 @@ std::vector<ConvexBody> cut_up(const SampledSolid& solid, TaskSystem& tasks, int
 // than `max_hulls`, joins the pairs that lack least.
 void join_pieces(const SampledSolid& solid, TaskSystem& tasks, int max_hulls, std::vector<ConvexBody>& pieces,
                  DecompositionProgress& progress);
-// Samples the surface evenly where it borders the solid. `openness` is the fraction of the surface at which the winding
-// number is not an integer.
-std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField& field, TaskSystem& tasks,
-                                          double spacing, double& openness);
+// Samples the surface evenly where it borders the solid. Fills in `samples`, `openness` and `covered_once`.
+void sample_surface(TaskSystem& tasks, SampledSolid& solid);
 // Fills in all measures of the final hulls.
 void measure_pieces(const SampledSolid& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
                     DecompositionStats& report);

@@ -6,7 +6,9 @@
 namespace gyre {
 namespace {
 
-constexpr int kLines = 100;  // along each of two axes
+// Lines through the points of a lattice whose rows no mesh is aligned with, neither along y nor along z: consecutive Fibonacci numbers.
+// S. Zaremba, "Good lattice points, discrepancy, and numerical integration", 1966.
+constexpr int kLines = 10946, kLatticeStep = 6765;
 
 struct Interval {
   double from, to;
@@ -24,13 +26,15 @@ class LineMeasure {
  public:
   LineMeasure(const SampledSolid& solid, std::span<const ConvexBody> bodies);
   Lengths measure(int line) const;
-  double cell_area() const { return width_ * height_; }
+  // The area of the section that each line stands for.
+  double cell_area() const { return width_ * height_ / double(kLines); }
 
  private:
   void add_triangle(std::size_t t);
   DVec3 start(int line) const {
-    return {0.0, low_.y + (double(line % kLines) + 0.5) * width_,
-            low_.z + (double(line / kLines) + 0.5) * height_};
+    const std::int64_t across = std::int64_t(line) * kLatticeStep % kLines;
+    return {0.0, low_.y + (double(line) + 0.5) / double(kLines) * width_,
+            low_.z + (double(across) + 0.5) / double(kLines) * height_};
   }
   std::vector<Interval> solid_spans(int line) const;
   std::vector<Interval> hull_spans(int line) const;
@@ -52,9 +56,9 @@ LineMeasure::LineMeasure(const SampledSolid& solid, std::span<const ConvexBody> 
   for (const ConvexBody& body : bodies) {
     for (const DVec3& p : body.vertices) widen(p);
   }
-  width_ = (high_.y - low_.y) / double(kLines);
-  height_ = (high_.z - low_.z) / double(kLines);
-  crossings_.resize(std::size_t(kLines) * kLines);
+  width_ = high_.y - low_.y;
+  height_ = high_.z - low_.z;
+  crossings_.resize(std::size_t(kLines));
   for (std::size_t t = 0; t < solid.model->triangle_count(); ++t) add_triangle(t);
 }
 
@@ -63,26 +67,23 @@ void LineMeasure::add_triangle(std::size_t t) {
   const DVec3 p[3] = {model.corner(t, 0), model.corner(t, 1), model.corner(t, 2)};
   const DVec3 low_corner = lower(p[0], lower(p[1], p[2])), high_corner = higher(p[0], higher(p[1], p[2]));
   if (!(width_ > 0.0) || !(height_ > 0.0)) return;
-  const int y0 = max(0, int((low_corner.y - low_.y) / width_ - 1.0)),
-            y1 = min(kLines - 1, int((high_corner.y - low_.y) / width_ + 1.0));
-  const int z0 = max(0, int((low_corner.z - low_.z) / height_ - 1.0)),
-            z1 = min(kLines - 1, int((high_corner.z - low_.z) / height_ + 1.0));
-  for (int z = z0; z <= z1; ++z) {
-    for (int y = y0; y <= y1; ++y) {
-      const int line = z * kLines + y;
-      const DVec3 at = start(line);
-      double side[3], sum = 0.0;
-      for (int i = 0; i < 3; ++i) {
-        const DVec3 a = p[(i + 1) % 3], b = p[(i + 2) % 3];
-        side[i] = (b.y - a.y) * (at.z - a.z) - (b.z - a.z) * (at.y - a.y);
-        sum += side[i];
-      }
-      // An edge counts for both of its triangles. The intervals between crossings are tested anyway.
-      const bool in = (side[0] >= 0.0 && side[1] >= 0.0 && side[2] >= 0.0) ||
-                      (side[0] <= 0.0 && side[1] <= 0.0 && side[2] <= 0.0);
-      if (!in || sum == 0.0) continue;
-      crossings_[std::size_t(line)].push_back((side[0] * p[0].x + side[1] * p[1].x + side[2] * p[2].x) / sum);
+  const double lines_per_width = double(kLines) / width_;
+  const int first = max(0, int((low_corner.y - low_.y) * lines_per_width - 1.0)),
+            last = min(kLines - 1, int((high_corner.y - low_.y) * lines_per_width + 1.0));
+  for (int line = first; line <= last; ++line) {
+    const DVec3 at = start(line);
+    if (at.z < low_corner.z || at.z > high_corner.z) continue;
+    double side[3], sum = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const DVec3 a = p[(i + 1) % 3], b = p[(i + 2) % 3];
+      side[i] = (b.y - a.y) * (at.z - a.z) - (b.z - a.z) * (at.y - a.y);
+      sum += side[i];
     }
+    // An edge counts for both of its triangles. The intervals between crossings are tested anyway.
+    const bool in = (side[0] >= 0.0 && side[1] >= 0.0 && side[2] >= 0.0) ||
+                    (side[0] <= 0.0 && side[1] <= 0.0 && side[2] <= 0.0);
+    if (!in || sum == 0.0) continue;
+    crossings_[std::size_t(line)].push_back((side[0] * p[0].x + side[1] * p[1].x + side[2] * p[2].x) / sum);
   }
 }
 
@@ -203,7 +204,7 @@ void measure_pieces(const SampledSolid& solid, TaskSystem& tasks, std::span<cons
       larger);
   const LineMeasure lines(solid, bodies);
   const Lengths sum = reduce_blocks(
-      tasks, kLines * kLines, 16, Lengths{},
+      tasks, kLines, 16, Lengths{},
       [&](int begin, int end, int) {
         Lengths sum_of_block;
         for (int i = begin; i < end; ++i) sum_of_block = sum_of_block + lines.measure(i);
@@ -217,10 +218,11 @@ void measure_pieces(const SampledSolid& solid, TaskSystem& tasks, std::span<cons
   report.depth = float(depth * metres);
   report.uncovered = float(uncovered * metres);
   report.sample_spacing = float(solid.spacing * metres);
-  report.solid_volume = sum.solid * cubic;
-  report.hull_volume = sum.hulls * cubic;
   report.excess_volume = sum.excess * cubic;
   report.missing_volume = sum.missing * cubic;
+  report.solid_volume =
+      solid.covered_once ? enclosed_volume(*solid.model) * metres * metres * metres : sum.solid * cubic;
+  report.hull_volume = report.solid_volume + report.excess_volume - report.missing_volume;
   constexpr double kSlack = 1.05;  // vertices that a hull may not have
   report.within_concavity = overhang <= kSlack * solid.tolerance && depth <= kSlack * solid.tolerance;
 }

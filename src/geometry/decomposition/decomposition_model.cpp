@@ -4,6 +4,7 @@
 #include "base/container/flat_map.h"
 #include "geometry/decomposition/convex_body.h"
 #include "geometry/mass/closed_surface.h"
+#include "geometry/shape/flat_triangles.h"
 #include "geometry/shape/mesh_weld.h"
 
 #include <gyre/bounds.h>
@@ -89,26 +90,20 @@ void load_triangles(const DecompositionDef& def, Model& model) {
 
   constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> number(def.vertices.size(), kNone);
-  for (std::size_t t = 0; t + 2 < def.indices.size(); t += 3) {
-    std::uint32_t v[3];
+  const TriangleList triangles = without_flat_triangles(def.vertices, def.indices, welded);
+  model.findings.degenerate_triangles = std::uint32_t(def.indices.size() / 3 - triangles.source.size());
+  for (std::size_t t = 0; t < triangles.indices.size(); t += 3) {
     DVec3 p[3];
     for (std::size_t i = 0; i < 3; ++i) {
-      v[i] = welded[def.indices[t + i]];
-      p[i] = model.scale * (DVec3(def.vertices[v[i]]) - model.origin);
-    }
-    const double area = 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0] || !(area > 0.0)) {
-      ++model.findings.degenerate_triangles;
-      continue;
-    }
-    model.area += area;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (number[v[i]] == kNone) {
-        number[v[i]] = std::uint32_t(model.vertices.size());
+      const std::uint32_t v = triangles.indices[t + i];
+      p[i] = model.scale * (DVec3(def.vertices[v]) - model.origin);
+      if (number[v] == kNone) {
+        number[v] = std::uint32_t(model.vertices.size());
         model.vertices.push_back(p[i]);
       }
-      model.indices.push_back(number[v[i]]);
+      model.indices.push_back(number[v]);
     }
+    model.area += 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
   }
 }
 
@@ -178,6 +173,12 @@ void flip(Model& model, std::size_t t) {
 
 }  // namespace
 
+double enclosed_volume(const Model& model) {
+  double volume = 0.0;
+  for (std::size_t t = 0; t < model.triangle_count(); ++t) volume += signed_volume(model, t);
+  return volume;
+}
+
 std::uint32_t wind_alike(Model& model) {
   const FlatMap<EdgeUse> edges = find_edges(model);
   const std::size_t count = model.triangle_count();
@@ -217,6 +218,8 @@ std::uint32_t wind_alike(Model& model) {
 void group_solids(Model& model) {
   std::vector<std::uint32_t> piece_of;
   std::vector<Piece> pieces = find_pieces(model, piece_of);
+  model.closed = true;
+  for (const Piece& piece : pieces) model.closed = model.closed && piece.closed;
   // Very many pieces count as one heap, because nobody wants a hull for each.
   constexpr std::size_t kMany = 256;
   model.group.assign(model.triangle_count(), 0);
@@ -290,6 +293,7 @@ void thicken(Model& model, double half) {
   }
   model.vertices = std::move(vertices);
   model.indices = std::move(indices);
+  model.closed = false;  // walls may lack where the winding changes
   model.area = 0.0;
   for (std::size_t t = 0; t < model.triangle_count(); ++t)
     model.area +=

@@ -21,10 +21,11 @@ struct Model {
   // For each triangle the solid that it bounds. Cavities belong to the solid around them.
   std::vector<std::uint32_t> group;
   std::uint32_t group_count = 0;
-  DVec3 origin;        // m, of the coordinates
-  double scale = 1.0;  // coordinates per metre, a power of two
-  double size = 1.0;   // diameter of the smallest enclosing sphere, in coordinates
-  double area = 0.0;   // of all triangles, in coordinates
+  DVec3 origin;         // m, of the coordinates
+  double scale = 1.0;   // coordinates per metre, a power of two
+  double size = 1.0;    // diameter of the smallest enclosing sphere, in coordinates
+  double area = 0.0;    // of all triangles, in coordinates
+  bool closed = false;  // each edge is run equally often both ways, so that winding numbers are whole
   MeshFindings findings;
 
   DVec3 corner(std::size_t triangle, std::size_t i) const { return vertices[indices[3 * triangle + i]]; }
@@ -45,6 +46,8 @@ struct EdgeUse {
 std::uint32_t wind_alike(Model& model);
 // Flips whole closed surfaces that are inside out, unless they are cavities of others, and assigns groups.
 void group_solids(Model& model);
+// The volume within a closed surface; parts that overlap count twice.
+double enclosed_volume(const Model& model);
 // Replaces the surface by a shell of thickness 2 * `half`, in coordinates.
 void thicken(Model& model, double half);
 

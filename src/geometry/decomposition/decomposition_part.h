@@ -26,6 +26,9 @@ struct SampledSolid {
   const Model* model = nullptr;
   const SurfaceField* field = nullptr;
   std::vector<SurfaceSample> samples;
+  double openness = 0.0;  // the fraction of the surface near which inside and outside cannot be told apart
+  bool covered_once =
+      false;               // the surface is closed and borders the solid everywhere: no part overlaps another
   double spacing = 0.0;    // between samples
   double tolerance = 0.0;  // how much a part may lack to count as convex
 };

@@ -47,9 +47,10 @@ std::vector<SampleCandidate> spread_points(const Model& model, double spacing) {
 
 }  // namespace
 
-std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField& field, TaskSystem& tasks,
-                                          double spacing, double& openness) {
-  std::vector<SampleCandidate> candidates = spread_points(model, spacing);
+void sample_surface(TaskSystem& tasks, SampledSolid& solid) {
+  const Model& model = *solid.model;
+  const SurfaceField& field = *solid.field;
+  std::vector<SampleCandidate> candidates = spread_points(model, solid.spacing);
   const double offset = kOffset * model.size;
   for_blocks(tasks, int(candidates.size()), 64, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
@@ -57,18 +58,20 @@ std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField
       const double before = field.winding(candidate.sample.point + offset * candidate.normal);
       const double behind = field.winding(candidate.sample.point - offset * candidate.normal);
       candidate.open = before < kInsideWinding && behind > kInsideWinding;
-      candidate.broken = absolute(before - double(std::int64_t(before + 64.5) - 64)) > kBroken ||
-                         (before < kInsideWinding && behind <= kInsideWinding);
+      // In a closed surface only the error of dipoles keeps the number from being whole.
+      const bool whole =
+          model.closed || absolute(before - double(std::int64_t(before + 64.5) - 64)) <= kBroken;
+      candidate.broken = !whole || (before < kInsideWinding && behind <= kInsideWinding);
     }
   });
-  std::vector<SurfaceSample> samples;
+  solid.samples.clear();
   std::size_t broken = 0;
   for (const SampleCandidate& candidate : candidates) {
-    if (candidate.open) samples.push_back(candidate.sample);
+    if (candidate.open) solid.samples.push_back(candidate.sample);
     broken += candidate.broken ? 1 : 0;
   }
-  openness = candidates.empty() ? 1.0 : double(broken) / double(candidates.size());
-  return samples;
+  solid.openness = candidates.empty() ? 1.0 : double(broken) / double(candidates.size());
+  solid.covered_once = model.closed && solid.samples.size() == candidates.size();
 }
 
 }  // namespace gyre

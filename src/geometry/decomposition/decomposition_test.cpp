@@ -2,6 +2,8 @@
 // meshes.
 #include "geometry/decomposition/decomposition_test_meshes.h"
 #include "geometry/distance/closest.h"
+#include "geometry/shape/cooked.h"
+#include "geometry/shape/mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -130,6 +132,79 @@ TEST(Decomposition, ConvexMeshesAreOneHull) {
     // Lines resolve a round body in steps: 100 of them across.
     EXPECT_NEAR(d.stats.solid_volume, mesh.volume(), 0.01 * mesh.volume());
     expect_honest(mesh, mesh.def(), d);
+  }
+}
+
+TEST(Decomposition, ClosedPlatesAndGratesOfAnyCellsAreSolidsOfTheirVolume) {
+  Random random;
+  for (int trial = 0; trial < 8; ++trial) {
+    const bool grate = trial % 2 == 1;
+    const int cells = 2 * (3 + int(random.index(4))) + 1;
+    std::vector<float> lines{0.0f};
+    const float bar = random(0.1f, 0.9f);
+    for (int i = 0; i < cells; ++i) lines.push_back(lines.back() + (grate && i % 2 == 1 ? 1.0f : bar));
+    const float thickness = std::exp(random(-5.0f, 0.0f)) * (grate ? 0.3f : 1.0f);
+    const TestMesh mesh =
+        moved(cell_plate(lines, thickness, [&](int i, int j) { return grate && i % 2 == 1 && j % 2 == 1; }),
+              {random.vector(), random.turn()});
+    DecompositionDef def = mesh.def();
+    def.max_hulls = grate ? 4 : 32;
+    def.concavity = grate ? 0.3f : 0.02f;
+    const Decomposition d = made(def);
+    EXPECT_FALSE(d.stats.mesh.shell) << trial << ": " << cells << " cells, " << thickness << " m thick";
+    EXPECT_EQ(d.stats.mesh.openness, 0.0f);
+    EXPECT_NEAR(d.stats.solid_volume, mesh.volume(), 1.0e-5 * mesh.volume());
+    if (!grate) {
+      ASSERT_EQ(d.hulls.size(), 1u);
+      EXPECT_NEAR(double(mass_properties(d.hulls[0], 1.0f)->mass), mesh.volume(), 2.0e-3 * mesh.volume());
+    }
+  }
+}
+
+TEST(Decomposition, PlatesKeepAllTheirCornersDownToAThousandth) {
+  Random random;
+  for (int trial = 0; trial < 6; ++trial) {
+    const float thickness = trial == 0 ? 0.0005f : 0.0005f * std::exp(random(0.0f, 4.0f));
+    const TestMesh mesh =
+        moved(box_mesh({}, {0.5f, thickness, random(0.3f, 0.5f)}), {random.vector(), random.turn()});
+    DecompositionDef def = mesh.def();
+    def.concavity = trial % 2 == 0 ? 0.02f : 0.1f;
+    const Decomposition d = made(def);
+    ASSERT_EQ(d.hulls.size(), 1u);
+    EXPECT_EQ(view_hull(d.hulls[0]).vertices.size(), 8u) << thickness;
+    EXPECT_NEAR(double(mass_properties(d.hulls[0], 1.0f)->mass), mesh.volume(), 2.0e-3 * mesh.volume());
+  }
+}
+
+TEST(Decomposition, CornersInLineDoNotOpenAClosedMesh) {
+  // One face of a box is a fan from a corner over a side with corners in line: flat triangles that close the mesh.
+  Random random;
+  for (int trial = 0; trial < 20; ++trial) {
+    TestMesh mesh = box_mesh({}, {1, 1, 1});
+    mesh.indices.erase(mesh.indices.begin() + 6, mesh.indices.begin() + 9);  // 4 5 7 of the face at z = 1
+    const int count = 1 + int(random.index(6));
+    std::uint32_t before = 5;
+    for (int i = 1; i <= count; ++i) {
+      const float x = 1.0f - 2.0f * (float(i) - random(0.0f, 0.5f)) / float(count + 1);
+      // Onto the side from 5 to 4, with the flat triangles against the face at y = -1.
+      mesh.vertices.push_back({x, -1, 1});
+      const std::uint32_t here = std::uint32_t(mesh.vertices.size() - 1);
+      mesh.add(here, before, 7);
+      mesh.add(5, before, here);
+      before = here;
+    }
+    mesh.add(4, before, 7);
+    mesh.add(5, before, 4);
+    const TestMesh turned = moved(mesh, trial % 2 == 0 ? Transform{} : Transform{{}, random.turn()});
+    const Decomposition d = made(turned.def());
+    EXPECT_EQ(d.stats.mesh.open_edges, 0u) << count;
+    EXPECT_FALSE(d.stats.mesh.shell);
+    ASSERT_EQ(d.hulls.size(), 1u);
+    EXPECT_NEAR(d.stats.solid_volume, 8.0, 1.0e-4);
+    // A cooked mesh has a neighbour across each edge.
+    const Result<Geometry> cooked = cook_mesh({.vertices = turned.vertices, .indices = turned.indices});
+    ASSERT_TRUE(cooked);
+    for (const std::uint32_t twin : cooked->data()->mesh->twins) EXPECT_NE(twin, Mesh::kNoTwin);
   }
 }
 

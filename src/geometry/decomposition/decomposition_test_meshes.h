@@ -76,6 +76,40 @@ inline TestMesh box_mesh(Vec3 center, Vec3 half) {
   return mesh;
 }
 
+// A plate of cells between the lines, without those for which `open` holds: a slab or a grate, closed.
+template <class Open>
+TestMesh cell_plate(const std::vector<float>& lines, float thickness, Open&& open) {
+  TestMesh mesh;
+  const int count = int(lines.size()) - 1;
+  const auto vertex = [&](int i, int j, int side) { return std::uint32_t(2 * (i * (count + 1) + j) + side); };
+  for (const float x : lines) {
+    for (const float z : lines) {
+      mesh.vertices.push_back({x, 0, z});
+      mesh.vertices.push_back({x, thickness, z});
+    }
+  }
+  const auto full = [&](int i, int j) { return i >= 0 && j >= 0 && i < count && j < count && !open(i, j); };
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t e) {
+    mesh.add(a, b, c);
+    mesh.add(a, c, e);
+  };
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) {
+      if (!full(i, j)) continue;
+      quad(vertex(i, j, 1), vertex(i, j + 1, 1), vertex(i + 1, j + 1, 1), vertex(i + 1, j, 1));
+      quad(vertex(i, j, 0), vertex(i + 1, j, 0), vertex(i + 1, j + 1, 0), vertex(i, j + 1, 0));
+      const int walls[4][6] = {
+          {-1, 0, 0, 0, 0, 1}, {1, 0, 1, 1, 1, 0}, {0, -1, 1, 0, 0, 0}, {0, 1, 0, 1, 1, 1}};
+      for (const auto& w : walls) {
+        if (full(i + w[0], j + w[1])) continue;
+        const int ai = i + w[2], aj = j + w[3], bi = i + w[4], bj = j + w[5];
+        quad(vertex(ai, aj, 0), vertex(bi, bj, 0), vertex(bi, bj, 1), vertex(ai, aj, 1));
+      }
+    }
+  }
+  return mesh;
+}
+
 struct Point2f {
   float x, y;
 };

@@ -132,36 +132,8 @@ void leave_by_front(const MovingShape& moving, DVec3 normal, const DVec3 (&corne
 
 bool cast_at_triangle(const Shape& surface, const SurfaceTriangle& triangle, const MovingShape& moving,
                       bool both_sides, double max_fraction, LocalHit& hit) {
-  // Relative to one corner, so that the numbers of GJK are no larger than they must be.
-  const DVec3 pivot(triangle.a);
-  const DVec3 corners[3] = {{}, DVec3(triangle.b) - pivot, DVec3(triangle.c) - pivot};
-  const DVec3 facing = cross(corners[1], corners[2]);
-  const bool still = moving.translation == DVec3{};
-  if (!both_sides && !still && dot(facing, moving.translation) >= 0.0) return false;
-  if (moving.shape->kind == ShapeKind::sphere) {
-    BallImpact impact;
-    const BallCast cast =
-        cast_ball_at_triangle(corners, double(moving.shape->radius),
-                              {moving.position - pivot, moving.translation}, max_fraction, impact);
-    if (cast == BallCast::misses) return false;
-    if (cast == BallCast::hits) {
-      impact.on_core += pivot;
-      fill_impact(impact, 0.0, hit);
-      hit.triangle = public_triangle(surface, triangle.id);
-      return true;
-    }
-  }
-  MovingShape local = moving;
-  local.position = moving.position - pivot;
-  local.skin = 0.0f;  // tested below, with the exit that counts
-  CorePair pair(corners, *moving.shape, local.position, moving.orientation);
-  if (!first_impact(pair, local, local.position, 0.0, max_fraction, hit)) return false;
-  if (hit.inside) {
-    if (!both_sides && dot(facing, facing) > 0.0)
-      leave_by_front(local, facing / length(facing), corners, hit);
-    if (is_overlap_ignored(moving, hit)) return false;
-  }
-  hit.point += pivot;
+  const DVec3 corners[3] = {DVec3(triangle.a), DVec3(triangle.b), DVec3(triangle.c)};
+  if (!cast_shape_at_triangle(corners, 0.0, moving, max_fraction, both_sides, hit)) return false;
   hit.triangle = public_triangle(surface, triangle.id);
   return true;
 }
@@ -189,6 +161,40 @@ bool cast_at_surface(const Shape& surface, const MovingShape& moving, double max
 }
 
 }  // namespace
+
+bool cast_shape_at_triangle(const DVec3 (&triangle)[3], double radius, const MovingShape& moving, double max_fraction,
+                            bool both_sides, LocalHit& hit) {
+  // Relative to one corner, so that the numbers of GJK are no larger than they must be.
+  const DVec3 pivot = triangle[0];
+  const DVec3 corners[3] = {{}, triangle[1] - pivot, triangle[2] - pivot};
+  const DVec3 facing = cross(corners[1], corners[2]);
+  const bool still = moving.translation == DVec3{};
+  if (!both_sides && !still && dot(facing, moving.translation) >= 0.0) return false;
+  if (moving.shape->kind == ShapeKind::sphere) {
+    BallImpact impact;
+    const BallCast cast =
+        cast_ball_at_triangle(corners, radius + double(moving.shape->radius),
+                              {moving.position - pivot, moving.translation}, max_fraction, impact);
+    if (cast == BallCast::misses) return false;
+    if (cast == BallCast::hits) {
+      impact.on_core += pivot;
+      fill_impact(impact, radius, hit);
+      return true;
+    }
+  }
+  MovingShape local = moving;
+  local.position = moving.position - pivot;
+  local.skin = 0.0f;  // tested below, with the exit that counts
+  CorePair pair(corners, *moving.shape, local.position, moving.orientation);
+  if (!first_impact(pair, local, local.position, radius, max_fraction, hit)) return false;
+  if (hit.inside) {
+    if (!both_sides && dot(facing, facing) > 0.0)
+      leave_by_front(local, facing / length(facing), corners, hit);
+    if (is_overlap_ignored(moving, hit)) return false;
+  }
+  hit.point += pivot;
+  return true;
+}
 
 bool cast_shape(const Shape& target, const MovingShape& moving, double max_fraction, bool back_faces,
                 LocalHit& hit) {

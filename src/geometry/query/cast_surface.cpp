@@ -20,13 +20,13 @@ TriangleRay::TriangleRay(const LocalRay& ray) : origin_(ray.origin) {
   scale_ = 1.0 / along;
 }
 
-DVec3 TriangleRay::sheared(Vec3 corner) const {
-  const DVec3 p = DVec3(corner) - origin_;
+DVec3 TriangleRay::sheared(DVec3 corner) const {
+  const DVec3 p = corner - origin_;
   const double z = p[z_];
   return {p[x_] - shear_x_ * z, p[y_] - shear_y_ * z, scale_ * z};
 }
 
-bool TriangleRay::crosses(Vec3 a, Vec3 b, Vec3 c, double& fraction, bool& front) const {
+bool TriangleRay::crosses(DVec3 a, DVec3 b, DVec3 c, double& fraction, bool& front) const {
   const DVec3 p = sheared(a), q = sheared(b), r = sheared(c);
   // Twice the areas that the ray, now the z axis, spans with each edge. Two triangles that share an edge compute
   // exactly opposite numbers for it.

@@ -3,27 +3,10 @@
 
 #include "geometry/query/box_cast.h"
 #include "geometry/query/cast.h"
+#include "geometry/query/triangle_ray.h"
 #include "geometry/shape/mesh.h"
 
 namespace gyre {
-
-// Intersection of a ray with triangles. A ray through an edge or a corner hits at least one of the triangles around it,
-// because all of them use the same sheared corners, and an edge counts for both sides.
-class TriangleRay {
- public:
-  explicit TriangleRay(const LocalRay& ray);
-
-  // The fraction at which the ray crosses the plane of the triangle inside the triangle, if it does. `front`: the
-  // corners run counter-clockwise seen from the ray's origin.
-  bool crosses(Vec3 a, Vec3 b, Vec3 c, double& fraction, bool& front) const;
-
- private:
-  DVec3 sheared(Vec3 corner) const;
-
-  DVec3 origin_;
-  int x_, y_, z_;  // axes; z is the one with the largest component of the ray
-  double shear_x_ = 0.0, shear_y_ = 0.0, scale_ = 0.0;
-};
 
 bool cast_ray_at_surface(const Shape& surface, const LocalRay& ray, double max_fraction, bool back_faces,
                          LocalHit& hit);

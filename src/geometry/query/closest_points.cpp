@@ -211,4 +211,12 @@ bool find_closest_points(const Shape& target, const PosedShape& convex, double m
   return finish(pair, radius_a, radius_b, max_distance, out);
 }
 
+bool overlaps_triangle(const DVec3 (&triangle)[3], double radius, const PosedShape& convex) {
+  const DVec3 pivot = triangle[0];
+  const DVec3 corners[3] = {{}, triangle[1] - pivot, triangle[2] - pivot};
+  const CorePair pair(corners, *convex.shape, convex.position - pivot, convex.orientation);
+  ClosestPair closest;
+  return finish(pair, radius, double(core_radius(*convex.shape)), 0.0, closest);
+}
+
 }  // namespace gyre

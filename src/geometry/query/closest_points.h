@@ -29,4 +29,7 @@ struct ClosestPair {
 bool find_closest_points(const Shape& target, const PosedShape& convex, double max_distance,
                          ClosestPair& out);
 
+// True if the convex shape overlaps or touches a triangle whose surface is rounded by `radius`.
+bool overlaps_triangle(const DVec3 (&triangle)[3], double radius, const PosedShape& convex);
+
 }  // namespace gyre

@@ -6,6 +6,7 @@
 #include "base/float_mode.h"
 #include "base/hash.h"
 #include "geometry/shape/cooked.h"
+#include "geometry/shape/flat_triangles.h"
 #include "geometry/shape/mesh.h"
 #include "geometry/shape/mesh_topology.h"
 #include "geometry/shape/mesh_weld.h"
@@ -50,25 +51,8 @@ Error check_mesh(const MeshDef& def) {
   return {};
 }
 
-struct Triangles {
-  std::vector<std::uint32_t> indices;
-  std::vector<std::uint32_t> source;
-};
-
-Triangles drop_degenerate(const MeshDef& def) {
-  const std::vector<std::uint32_t> weld = weld_vertices(def.vertices, def.indices);
-  Triangles result;
-  for (std::size_t i = 0; i < def.indices.size(); i += 3) {
-    const std::uint32_t a = weld[def.indices[i]], b = weld[def.indices[i + 1]], c = weld[def.indices[i + 2]];
-    if (triangle_normal(def.vertices[a], def.vertices[b], def.vertices[c]) == Vec3{0, 0, 0}) continue;
-    result.indices.insert(result.indices.end(), {a, b, c});
-    result.source.push_back(std::uint32_t(i / 3));
-  }
-  return result;
-}
-
 // Drops all but the first of triangles with equal corners and equal winding.
-void drop_doubles(Triangles& triangles) {
+void drop_doubles(TriangleList& triangles) {
   const std::size_t count = triangles.source.size();
   struct Corners {
     std::uint32_t a, b, c;
@@ -97,7 +81,7 @@ void drop_doubles(Triangles& triangles) {
     }
     begin = end;
   }
-  Triangles result;
+  TriangleList result;
   for (std::size_t i = 0; i < count; ++i) {
     if (drop[i] != 0) continue;
     for (std::size_t k = 0; k < 3; ++k) result.indices.push_back(triangles.indices[3 * i + k]);
@@ -107,7 +91,7 @@ void drop_doubles(Triangles& triangles) {
 }
 
 // Builds the tree and copies the triangles in its order, then the vertices in the order of their first use.
-void arrange(std::span<const Vec3> vertices, const Triangles& triangles, Mesh& mesh) {
+void arrange(std::span<const Vec3> vertices, const TriangleList& triangles, Mesh& mesh) {
   const std::size_t count = triangles.source.size();
   std::vector<Aabb> boxes(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -149,8 +133,10 @@ std::uint64_t hash_mesh(const Mesh& mesh) {
 Result<Geometry> cook_mesh(const MeshDef& def) {
   const FloatMode mode;
   if (const Error error = check_mesh(def)) return error;
-  Triangles triangles;
-  if (!def.vertices.empty()) triangles = drop_degenerate(def);
+  TriangleList triangles;
+  if (!def.vertices.empty()) {
+    triangles = without_flat_triangles(def.vertices, def.indices, weld_vertices(def.vertices, def.indices));
+  }
   drop_doubles(triangles);
   if (triangles.source.empty()) {
     return make_error(ErrorCode::invalid_geometry, "mesh: none of its %zu triangles has an area",

@@ -37,6 +37,7 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
 void clear_reports(WorldState& state) {
   note_change(state);
   clear_events(state.published_events);
+  state.published_soft_events.clear();
   state.events = {};
   state.problems.clear();
   state.frozen.clear();

@@ -257,8 +257,9 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<ClothDef> T>
 void fields(C& c, T& v) {
-  auto& [grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision,
-         settings] = v;
+  auto& [grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision, pressure,
+         ambient, law, settings] = v;
+  (void)pressure, (void)ambient, (void)law;  // later_fields
   all(c, grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision,
       settings);
 }
@@ -277,19 +278,37 @@ void fields(C& c, T& v) {
   auto& [box, vertices, tetrahedra, surface, pose, model, density, modulus, ratio, settings] = v;
   all(c, box, vertices, tetrahedra, surface, pose, model, density, modulus, ratio, settings);
 }
+// Fields that definitions of the first format did not have. They follow a definition whose kind has kHasLaterFields; the others keep their bytes.
+constexpr std::uint8_t kHasLaterFields = 0x80;
+bool has_later_fields(const RopeDef&) { return false; }
+bool has_later_fields(const ClothDef& def) { return def.pressure.has_value(); }
+bool has_later_fields(const SolidDef&) { return false; }
+template <class C, Is<RopeDef> T>
+void later_fields(C&, T&) {}
+template <class C, Is<ClothDef> T>
+void later_fields(C& c, T& v) {
+  all(c, v.pressure, v.ambient_pressure, v.pressure_law);
+}
+template <class C, Is<SolidDef> T>
+void later_fields(C&, T&) {}
 // The kind, then the definition.
 void fields(FieldWriter& c, const std::shared_ptr<const SoftDef>& def) {
-  c.number(std::uint8_t(def->index()));
+  const bool more = std::visit([](const auto& one) { return has_later_fields(one); }, *def);
+  c.number(std::uint8_t(def->index() | (more ? kHasLaterFields : 0)));
   std::visit([&](const auto& one) { fields(c, one); }, *def);
+  if (more) std::visit([&](const auto& one) { later_fields(c, one); }, *def);
 }
 void fields(FieldReader& c, std::shared_ptr<const SoftDef>& def) {
   std::uint8_t kind = 0;
   c.number(kind);
+  const bool more = (kind & kHasLaterFields) != 0;
+  kind &= std::uint8_t(~kHasLaterFields);
   SoftDef read;
   if (kind == 1) read.emplace<ClothDef>();
   if (kind == 2) read.emplace<SolidDef>();
   if (kind > 2) c.fail();
   std::visit([&](auto& one) { fields(c, one); }, read);
+  if (more) std::visit([&](auto& one) { later_fields(c, one); }, read);
   def = std::make_shared<const SoftDef>(std::move(read));
 }
 

@@ -77,12 +77,22 @@ struct Chain {
   double bend_stiffness = 0.0;     // N m^2: EI
 };
 
+// Gas within closed triangles (soft/body/enclosed_gas.h).
+struct EnclosedGas {
+  Array<std::uint32_t> triangles;  // counter-clockwise seen from outside; none: there is no gas
+  double rest_volume = 0.0;        // m^3
+  double pressure = 0.0;           // Pa, above that outside, at the volume at rest
+  double ambient = 0.0;            // Pa, outside
+  bool is_constant = false;        // the pressure does not change with the volume
+};
+
 struct SoftBody {
   Particles particles;
   SpringRows springs;
   BendRows bend;
   Continuum continuum;
   Chain chain;
+  EnclosedGas gas;
   Array<float> pull
       [3];  // m/s^2: changes of velocity in the last implicit sub-step, where the next begins to look; else empty
   Array<double>

@@ -1,6 +1,7 @@
 #include "soft/body/soft_energy.h"
 
 #include "math/dense.h"
+#include "soft/body/enclosed_gas.h"
 
 #include <cmath>
 
@@ -112,8 +113,10 @@ double elastic_energy(const SoftBody& body) {
   each_pair(body.particles, body.bend.rows, [&](int place, double span) {
     twice += 0.5 * double(body.bend.stiffness[place]) * square(span);
   });
+  const bool has_gas = !body.gas.triangles.empty();
   return 0.5 * twice + continuum_energy(body.particles, body.continuum) +
-         membrane_energy(body.particles, body.continuum);
+         membrane_energy(body.particles, body.continuum) +
+         (has_gas ? gas_energy(body.gas, enclosed_volume(body.particles, body.gas.triangles)) : 0.0);
 }
 
 }  // namespace gyre

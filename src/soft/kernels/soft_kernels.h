@@ -63,6 +63,10 @@ struct SoftPass {
   VectorRows direction;     // p
   VectorRows product;       // A p, then the preconditioned residual
 
+  // Enclosed gas: adds volume_scale g g^T to the matrix, three numbers of g a row. The solver has it beside the kernels.
+  const Vec3* volume_gradient = nullptr;
+  float volume_scale = 0.0f;
+
   float step = 0.0f;             // s
   float material_scale = 0.0f;   // s^2: of what depends on the rate of strain and on strain
   float geometric_scale = 0.0f;  // s^2: of what tension does to its own direction

@@ -1,5 +1,6 @@
 #include "soft/solver/explicit_step.h"
 
+#include "soft/body/enclosed_gas.h"
 #include "soft/solver/soft_pass.h"
 
 namespace gyre {
@@ -17,6 +18,7 @@ class ExplicitStepper {
         tasks_(tasks),
         pass_(begin_pass(body, arena)) {
     pass_.damping = body.damping;
+    if (!body.gas.triangles.empty()) gradient_ = arena.make<Vec3>(body.particles.x.size());
   }
 
   void run() {
@@ -34,7 +36,16 @@ class ExplicitStepper {
 
  private:
   // Of the present places and velocities; zero for held particles.
-  void find_accelerations() { find_forces(pass_, body_, kernels_, tasks_); }
+  void find_accelerations() {
+    find_forces(pass_, body_, kernels_, tasks_);
+    if (body_.gas.triangles.empty()) return;
+    find_volume_gradient(body_.particles, body_.gas, gradient_);
+    const float push = float(gauge_pressure(body_.gas, enclosed_volume(body_.particles, body_.gas.triangles)));
+    for (std::size_t i = 0; i < gradient_.size(); ++i) {
+      const Vec3 force = push * gradient_[i];
+      pass_.force.x[i] += force.x, pass_.force.y[i] += force.y, pass_.force.z[i] += force.z;
+    }
+  }
   Vec3 acceleration(int i) const {
     const Particles& p = body_.particles;
     if (p.loose[i] == 0.0f) return {};
@@ -102,6 +113,7 @@ class ExplicitStepper {
   Arena& arena_;
   TaskSystem& tasks_;
   SoftPass pass_;
+  std::span<Vec3> gradient_{};  // of the volume of a gas
 };
 
 }  // namespace

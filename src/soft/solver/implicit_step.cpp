@@ -1,5 +1,6 @@
 #include "soft/solver/implicit_step.h"
 
+#include "soft/body/enclosed_gas.h"
 #include "soft/solver/rigid_modes.h"
 #include "soft/solver/soft_pass.h"
 #include "task/parallel.h"
@@ -90,7 +91,20 @@ class Solver {
       pass_.product.x[i] += more.x, pass_.product.y[i] += more.y, pass_.product.z[i] += more.z;
       curvature += double(dot(p, more));
     }
-    return curvature;
+    return pass_.volume_scale > 0.0f ? curvature + apply_gas() : curvature;
+  }
+
+  double apply_gas() {
+    const std::size_t rows = std::size_t(pass_.slices) * kSliceRows;
+    double along = 0.0;
+    for (std::size_t i = 0; i < rows; ++i)
+      along += double(dot(pass_.volume_gradient[i], {pass_.direction.x[i], pass_.direction.y[i], pass_.direction.z[i]}));
+    const float scaled = pass_.volume_scale * float(along);
+    for (std::size_t i = 0; i < rows; ++i) {
+      const Vec3 more = scaled * pass_.volume_gradient[i];
+      pass_.product.x[i] += more.x, pass_.product.y[i] += more.y, pass_.product.z[i] += more.z;
+    }
+    return double(pass_.volume_scale) * along * along;
   }
 
   template <class Kernel, class... Rest>
@@ -169,6 +183,29 @@ void add_carried(SoftBody& body, const ImplicitSettings& settings, const SoftPas
   }
 }
 
+// The push of an enclosed gas, what its pressure changes by as the volume does, and its part of the matrix.
+void add_gas(const SoftBody& body, SoftPass& pass, Arena& arena) {
+  if (body.gas.triangles.empty()) return;
+  const std::size_t rows = body.particles.x.size();
+  const std::span<Vec3> gradient = arena.make<Vec3>(rows);
+  find_volume_gradient(body.particles, body.gas, gradient);
+  const double volume = enclosed_volume(body.particles, body.gas.triangles);
+  const double scale = double(pass.geometric_scale) * volume_stiffness(body.gas, volume);
+  double growth = 0.0;  // m^3/s, at the velocities that the sub-step begins with and what is told of their change
+  const Particles& p = body.particles;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const Vec3 known{pass.change.x[i], pass.change.y[i], pass.change.z[i]};
+    growth += double(dot(gradient[i], known + pass.velocity_scale * Vec3{p.vx[i], p.vy[i], p.vz[i]}));
+  }
+  const float push = float(gauge_pressure(body.gas, volume) - scale / double(pass.step) * growth);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const Vec3 force = push * gradient[i];
+    pass.force.x[i] += force.x, pass.force.y[i] += force.y, pass.force.z[i] += force.z;
+  }
+  pass.volume_gradient = gradient.data();
+  pass.volume_scale = float(scale);
+}
+
 // What gravity and the forces from outside give in the sub-step.
 void find_impulses(const Particles& particles, const ImplicitSettings& settings, const VectorRows& impulses) {
   const float h = settings.step;
@@ -203,6 +240,7 @@ ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, co
   set_known_change(body, settings, step.pass);
   linearize(step.pass, body, kernels, tasks);
   add_carried(body, settings, step.pass);
+  add_gas(body, step.pass, arena);
   double mass = 0.0;
   for (int i = 0; i < body.particles.count; ++i) mass += double(body.particles.mass[i]);
   step.report = solve(body, step.pass, settings, mass, kernels, tasks);

@@ -2,6 +2,7 @@
 
 #include "base/container/sort.h"
 #include "math/rotation.h"
+#include "soft/body/enclosed_gas.h"
 #include "soft/elements/cloth.h"
 #include "soft/elements/rope.h"
 #include "soft/elements/solid.h"
@@ -64,6 +65,18 @@ void add_grid_triangles(const std::array<int, 2>& cells, Array<std::uint32_t>& t
   }
 }
 
+void set_gas(const ClothDef& def, SoftEntry& entry) {
+  EnclosedGas& gas = entry.body.gas;
+  gas.triangles = entry.triangles;
+  gas.rest_volume = enclosed_volume(entry.body.particles, gas.triangles);
+  if (gas.rest_volume < 0.0) {
+    gas.rest_volume = -gas.rest_volume;
+    for (std::size_t t = 0; t + 2 < gas.triangles.size(); t += 3) std::swap(gas.triangles[t + 1], gas.triangles[t + 2]);
+  }
+  gas.pressure = double(*def.pressure), gas.ambient = double(def.ambient_pressure);
+  gas.is_constant = def.pressure_law == PressureLaw::constant;
+}
+
 void build(const ClothDef& def, SoftEntry& entry) {
   entry.kind = SoftKind::cloth;
   entry.radius = 0.5f * def.thickness;
@@ -93,6 +106,7 @@ void build(const ClothDef& def, SoftEntry& entry) {
     material.stretch_stiffness = float(weight / kRodStrain);
   }
   entry.body = make();
+  if (def.pressure) set_gas(def, entry);
 }
 
 // A face of a tetrahedron, to be sorted by its vertices.

@@ -1,4 +1,5 @@
 // The checks of definitions. See soft_builder.h.
+#include "base/container/sort.h"
 #include "soft/mesh/tetrahedral_fill.h"
 #include "soft/store/soft_builder.h"
 
@@ -118,6 +119,45 @@ Error has_volumes(const SolidDef& def) {
   return {};
 }
 
+// Each edge of a closed surface whose triangles are alike belongs to two of them, which go along it in opposite directions.
+bool is_closed(std::span<const std::uint32_t> triangles) {
+  Array<std::uint64_t> keys, scratch_keys;
+  Array<std::uint32_t> side, scratch_side;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t from = triangles[i], to = triangles[i % 3 == 2 ? i - 2 : i + 1];
+    keys.push_back(std::uint64_t(min(from, to)) << 32 | max(from, to));
+    side.push_back(from < to ? 1 : 0);
+  }
+  scratch_keys.resize(keys.size()), scratch_side.resize(keys.size());
+  radix_sort_pairs(keys, side, scratch_keys, scratch_side);
+  if (keys.size() % 2 != 0) return false;
+  for (std::size_t i = 0; i < keys.size(); i += 2) {
+    if (keys[i] != keys[i + 1] || side[i] == side[i + 1] || (i > 0 && keys[i] == keys[i - 1])) return false;
+  }
+  return true;
+}
+
+Error good_gas(const ClothDef& def) {
+  const Error e = not_negative("ambient_pressure", def.ambient_pressure);
+  if (e) return e;
+  const float pressure = *def.pressure;
+  if (!is_finite(pressure) || absolute(pressure) > kLargest)
+    return refused("pressure is %g; it must be finite and within 1e12 Pa", double(pressure));
+  if (def.pressure_law == PressureLaw::ideal_gas && !(pressure + def.ambient_pressure > 0.0f))
+    return refused("pressure is %g and ambient_pressure %g; a gas needs a sum above 0", double(pressure), double(def.ambient_pressure));
+  if (def.grid) return refused("pressure is given for a grid; only a closed cloth of triangles holds gas");
+  if (!is_closed(def.triangles))
+    return refused("pressure is given for an open cloth; every edge must belong to two triangles that are alike");
+  double volume = 0.0;
+  const DVec3 origin(def.vertices[0]);
+  for (std::size_t t = 0; t + 2 < def.triangles.size(); t += 3) {
+    const auto corner = [&](std::size_t k) { return DVec3(def.vertices[def.triangles[t + k]]) - origin; };
+    volume += dot(corner(0), cross(corner(1), corner(2))) / 6.0;
+  }
+  if (!(absolute(volume) > 0.0)) return refused("pressure is given for a cloth that encloses no volume");
+  return {};
+}
+
 // Sets how many vertices the box has.
 Error good_box(const SolidBox& box, std::size_t& vertices) {
   Error e = above_zero("box.half_extents.x", box.half_extents.x);
@@ -207,6 +247,7 @@ Error check_soft(const ClothDef& def) {
         double(def.shear_stiffness), double(def.stretch_stiffness));
   if (e.ok()) e = not_negative("bend_stiffness", def.bend_stiffness);
   if (e.ok()) e = not_negative("thickness", def.thickness);
+  if (e.ok() && def.pressure) e = good_gas(def);
   return e ? e : good_settings(def.settings, vertices);
 }
 

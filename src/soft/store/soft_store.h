@@ -8,6 +8,7 @@
 #include "soft/contact/soft_surface.h"
 #include "soft/mesh/embedded_surface.h"
 
+#include <gyre/events.h>
 #include <gyre/soft.h>
 
 #include <memory>
@@ -54,6 +55,29 @@ struct SoftRest {
   std::uint8_t asleep = 0;
 };
 
+// A shape that vertices touch, and the first of them.
+struct SoftTouch {
+  std::uint32_t shape = 0;
+  std::uint32_t particle = 0;
+};
+
+// What events have told: known from contacts and places, so it is no state of its own.
+struct SoftReported {
+  bool known = false;
+  bool was_awake = false;        // when the step began
+  Array<SoftTouch> touching;     // ascending by shape
+  Array<std::uint8_t> inverted;  // by tetrahedron
+};
+
+// Events of soft matter, collected for the end of the step.
+struct SoftEvents {
+  Array<SoftContactBegin> begins;
+  Array<SoftContactEnd> ends;
+  Array<SoftInverted> inverted;
+
+  void clear() { begins.clear(), ends.clear(), inverted.clear(); }
+};
+
 struct SoftEntry {
   std::shared_ptr<const SoftDef> def;  // null: the slot is free
   SoftKind kind = SoftKind::rope;
@@ -70,6 +94,7 @@ struct SoftEntry {
   Array<DVec3> fluid_last, fluid_sum;
   float radius = 0.0f;  // m: half the thickness, which the surface keeps from shapes
   float size = 0.0f;    // m: the mean length of its edges, by which speculative distances go
+  SoftReported reported;
 
   bool is_awake() const { return rest[0].asleep == 0; }
   const SoftSettings& settings() const {
@@ -91,11 +116,13 @@ inline DVec3 surface_position(const SoftEntry& entry, std::size_t point) {
 struct SoftStore {
   IdPool ids;
   std::vector<SoftEntry> entries;
+  SoftEvents events;  // of the next step
 
   bool empty() const { return ids.size() == 0; }
   void clear() {
     ids = {};
     entries.clear();
+    events.clear();
   }
   template <class Fn>
   void for_each(Fn&& fn) {

@@ -23,16 +23,16 @@ before(() => {
 });
 after(() => rmSync(folder, { recursive: true, force: true }));
 
-test('what a page fetches is below a megabyte', () => {
+test('what a page fetches is below a megabyte and a quarter', () => {
   const dist = join(folder, 'node_modules/gyre-physics/dist');
   const packed = (path) => gzipSync(readFileSync(path)).length;
   const modules = readdirSync(dist).filter((name) => name.endsWith('.js')).reduce((sum, name) => sum + packed(join(dist, name)), 0);
   for (const name of readdirSync(join(dist, 'engine'))) {
     const size = modules + packed(join(dist, 'engine', name));
-    assert.ok(size < 1e6, `${name} with the rest: ${size} bytes`);
+    assert.ok(size < 1.25e6, `${name} with the rest: ${size} bytes`);
   }
-  // Three builds of the engine in one file, of which a page fetches one: 0.8 MB each.
-  assert.ok(statSync(tarball).size < 2.7e6, `${statSync(tarball).size} bytes`);
+  // Three builds of the engine in one file, of which a page fetches one: 1 MB each.
+  assert.ok(statSync(tarball).size < 3.4e6, `${statSync(tarball).size} bytes`);
 });
 
 test('no sources, tests or tools are delivered', () => {

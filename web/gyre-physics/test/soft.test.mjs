@@ -44,6 +44,35 @@ test('every build moves a cloth to the same bits', { skip: made('plain') && made
   for (const other of others) assert.equal(other, first);
 });
 
+test('rays, moving shapes and overlaps find soft matter', () => {
+  const { world, ball, cloth } = clothOverBall(api);
+  for (let i = 0; i < 30; ++i) world.step(second);
+  const hit = world.castRay([0.03, 2, 0.02], [0, -3, 0]);
+  assert.equal(hit.soft, cloth);
+  assert.ok(Math.abs(hit.weights[0] + hit.weights[1] + hit.weights[2] - 1) < 1e-6);
+  assert.ok(hit.triangle >= 0 && hit.triangle < 800);
+  assert.equal(world.castRay([0.03, 2, 0.02], [0, -3, 0], { soft: false }).body, ball);
+  const stopped = world.castShape({ shape: sphere({ radius: 0.1 }), pose: { position: [0, 2, 0] }, translation: [0, -3, 0] });
+  assert.equal(stopped.soft, cloth);
+  assert.ok(world.overlapAny({ shape: sphere({ radius: 0.1 }), pose: { position: [0, 0.5, 0] } }));
+});
+
+test('events tell which shapes soft matter touches', () => {
+  const { world, ball, cloth } = clothOverBall(api);
+  let begins = { count: 0 };
+  for (let i = 0; i < 60 && begins.count === 0; ++i) {
+    world.step(second);
+    begins = world.events().softBegins;
+  }
+  assert.equal(begins.count, 1);
+  assert.equal(begins.soft[0], cloth);
+  assert.equal(begins.body[0], ball);
+  assert.equal(world.events().inverted.count, 0);
+  world.removeBody(ball);
+  world.step(second);
+  assert.equal(world.events().softEnds.count, 1);
+});
+
 test('ropes: vectors in every form, attached, pinned, released', () => {
   const points = [[0, 2, 0], [0.5, 2, 0], [1, 2, 0]];
   const forms = [points, points.flat(), new Float64Array(points.flat()), points.map(([x, y, z]) => ({ x, y, z }))];
