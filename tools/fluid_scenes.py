@@ -167,6 +167,39 @@ def communicating_vessels():
     return scene("communicating vessels", [1.2, 1.1, 3.2], [1, 0.5, 0.1], [GROUND, divider], liquids=[water])
 
 
+def five_densities():
+    level, half = 0.4, 0.12
+    boxes = [crate(f"{density} kg/m^3", [0.3 + 0.35 * k, level + half * (1 - 2 * density / 1000), 0.3], half, density, color)
+             for k, (density, color) in enumerate(((100, "#efe6d2"), (300, "#dcae7a"), (500, WOOD), (700, "#b98250"), (900, "#8a5a33")))]
+    water = {"name": "water", "bounds": [[0, 0, 0], [2, 0.8, 0.6]], "cell_size": 0.05, "color": WATER,
+             "fill": [{"box": [[0, 0, 0], [2, level, 0.6]]}], "probes": [{"name": "level", "position": [0.05, 0.2, 0.05]}]}
+    return scene("five boxes, each as deep as its density says", [1.6, 1.2, 2.6], [1, 0.35, 0.3],
+                 [GROUND, *basin((0, 0), (2, 0.6), 0.55), *boxes], liquids=[water])
+
+
+# Six cups on a wheel that turns: each is dipped, lifted full, and emptied at the top.
+def scoop_wheel():
+    shapes = [{"type": "cylinder", "radius": 0.08, "half_height": 0.3, "orientation": {"axis": [1, 0, 0], "angle": math.pi / 2}}]
+    arm, wide, deep, thin = 0.5, 0.11, 0.09, 0.03
+    for k in range(6):
+        angle = 2 * math.pi * k / 6
+        turn = turned(2, angle)
+
+        def place(x, y):
+            return [x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)]
+
+        # In the frame of the cup, x leads out from the hub and the cup opens along +y, the way it moves.
+        for x, y, z, ex, ey, ez in ((arm / 2 - 0.05, 0, 0, arm / 2 - 0.05, 0.02, 0.04), (arm, -deep, 0, wide, thin, 0.2),
+                                    (arm - wide, 0, 0, thin, deep, 0.2), (arm + wide, 0, 0, thin, deep, 0.2),
+                                    (arm, 0, 0.2, wide, deep, thin), (arm, 0, -0.2, wide, deep, thin)):
+            shapes.append({"type": "box", "half_extents": [ex, ey, ez], "position": [*place(x, y), z], "orientation": turn})
+    wheel = {"name": "wheel", "type": "kinematic", "position": [1, 0.85, 0.4], "angular_velocity": [0, 0, 1.2], "color": WOOD, "shapes": shapes}
+    water = {"name": "water", "bounds": [[0, 0, 0], [2, 1.6, 0.8]], "cell_size": 0.05, "color": WATER,
+             "fill": [{"box": [[0, 0, 0], [2, 0.45, 0.8]]}], "probes": [{"name": "level", "position": [0.1, 0.2, 0.1]}]}
+    return scene("cups on a wheel dip into water and lift it", [2.4, 1.7, 3.6], [1, 0.7, 0.4],
+                 [GROUND, *basin((0, 0), (2, 0.8), 0.6), wheel], liquids=[water])
+
+
 GASES = [smoke_fan, candle, flag_in_fan_wind, vortex_street, lid_driven_cavity]
-LIQUIDS = [dam_break, harbour, honey, communicating_vessels]
+LIQUIDS = [dam_break, harbour, honey, communicating_vessels, five_densities, scoop_wheel]
 ALL = GASES + LIQUIDS

@@ -139,6 +139,13 @@ struct FluidInfo {
   std::uint64_t user_data = 0;
 };
 
+// What all fluids together do to a body: the force and torque of their pressure, lift included, that act through the present step.
+struct FluidLoad {
+  Vec3 force{};             // N
+  Vec3 torque{};            // N m, about the centre of mass
+  double wet_volume = 0.0;  // m^3: of its convex shapes, below the level of the liquids beside it; shapes that overlap count twice
+};
+
 // The surface of a liquid: numbers of vertices and of indices, three for each triangle.
 struct FluidSurfaceSize {
   std::size_t vertices = 0, indices = 0;

@@ -274,6 +274,8 @@ class World {
   // Gases and liquids. Copies up to out.size() ids, in order of index; returns how many there are.
   std::size_t fluids(std::span<FluidId> out) const;
   FluidInfo fluid_info(FluidId fluid) const;
+  // Zero for bodies that are not dynamic, and before the first step.
+  FluidLoad fluid_load(BodyId body) const;
   // Points outside the box read the nearest point inside.
   FluidProbe probe(FluidId fluid, DVec3 point) const;
   // The velocity (m/s) at many points; as many are read as both spans have room for.

@@ -148,8 +148,13 @@ float volume_of_body(const RigidWorld& w, std::uint32_t body) {
   return float(sum);
 }
 
-// Bodies as the pressure of a liquid sees them: those that are awake and free to move yield to it.
-void list_bodies(const RigidWorld& w, FluidScratch& scratch) {
+// A body yields to the pressure of a gas within the equation if it is lighter than this many times the gas whose place it takes. Heavier ones
+// get the force of the pressure afterwards: the gas that moves with them does not matter then, and a body that stands on something presses
+// nothing out from under it.
+constexpr float kLightShare = 8.0f;
+
+// Bodies as the pressure of a fluid sees them: those that are awake and free to move yield to it; in a gas, of this density, light ones.
+void list_bodies(const RigidWorld& w, float gas_density, FluidScratch& scratch) {
   scratch.bodies.clear();
   for (const std::uint32_t body : scratch.solids.bodies) {
     FluidBody out;
@@ -160,15 +165,54 @@ void list_bodies(const RigidWorld& w, FluidScratch& scratch) {
       out.velocity = motion.linear_velocity, out.angular_velocity = motion.angular_velocity;
     if (flags.type == BodyType::dynamic && flags.frozen == 0 && flags.awake != 0) {
       const BodyMass& mass = w.bodies.masses[body];
+      const float volume = volume_of_body(w, body);
+      if (gas_density > 0.0f && !(mass.mass < kLightShare * gas_density * volume)) {
+        scratch.bodies.push_back(out);
+        continue;
+      }
       const BodyForces& forces = w.bodies.forces[body];
       const Sym3 inverse_inertia = rotate_inertia(w.bodies.poses[body].orientation, mass.inverse_inertia);
       out.inverse_mass = mass.inverse_mass;
-      out.volume = volume_of_body(w, body);
+      // The cells of a gas count as they are, for its lift too.
+      out.volume = gas_density > 0.0f ? 0.0f : volume;
       out.inverse_inertia = inverse_inertia;
       out.acceleration = forces.gravity_scale * w.settings.gravity + mass.inverse_mass * forces.force;
       out.angular_acceleration = inverse_inertia * forces.torque;
     }
     scratch.bodies.push_back(out);
+  }
+}
+
+bool touches(const RigidWorld& w, std::uint32_t body) {
+  bool any = false;
+  for_each_contact_of_body(w, body, [&](std::uint32_t slot) {
+    const Contact& contact = w.contacts.contacts[slot];
+    any = any || (contact.touching != 0 && contact.sensor == 0);
+  });
+  return any;
+}
+
+// Bodies that yield to the gas do so with its lift; those that touch something, as if that bore them.
+void add_lift_to_bodies(const RigidWorld& w, const FluidEntry& entry, const GasSettings& settings,
+                        float seconds, FluidScratch& own) {
+  bool any = false;
+  for (const FluidBody& body : own.bodies) any = any || body.inverse_mass > 0.0f;
+  if (!any) return;
+  Array<GasImpulse> lift;
+  lift.resize(own.bodies.size(), GasImpulse{});
+  add_lift(entry.gas, own.solids.solids, settings, seconds, lift.view());
+  for (std::size_t label = 0; label < own.bodies.size(); ++label) {
+    FluidBody& body = own.bodies[label];
+    if (!(body.inverse_mass > 0.0f)) continue;
+    if (touches(w, own.solids.bodies[label])) {
+      body.acceleration = body.angular_acceleration = {};
+      continue;
+    }
+    const double rate = 1.0 / double(seconds);
+    const DVec3 arm = entry.box().corner - body.center;
+    body.acceleration += body.inverse_mass * to_float(rate * lift[label].linear);
+    body.angular_acceleration +=
+        body.inverse_inertia * to_float(rate * (lift[label].angular + cross(arm, lift[label].linear)));
   }
 }
 
@@ -180,8 +224,10 @@ void step_gas_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const G
   settings.vorticity = def.vorticity, settings.viscosity = def.viscosity;
   settings.advection = def.advection;
   settings.gravity = w.settings.gravity;
-  const GasReport report = step_gas(entry.gas, own.solids.solids, entry.emitters.view(), settings, time,
-                                    seconds, own.gas, kernels, tasks, own.impulses.view());
+  list_bodies(w, def.density, own);
+  add_lift_to_bodies(w, entry, settings, seconds, own);
+  const GasReport report = step_gas(entry.gas, own.solids.solids, own.bodies.view(), entry.emitters.view(),
+                                    settings, time, seconds, own.gas, kernels, tasks, own.impulses.view());
   own.report.substeps = report.substeps, own.report.iterations = report.iterations;
   own.report.divergence = report.divergence, own.report.residual = report.residual;
   if (own.solids.solids.present())
@@ -202,12 +248,17 @@ void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, cons
       own.sources.push_back(
           {one.position, one.radius, one.has_velocity ? one.velocity : Vec3{}, one.start, one.end});
   }
-  list_bodies(w, own);
+  list_bodies(w, 0.0f, own);
   const LiquidReport report =
       step_liquid(entry.liquid, own.solids.solids, own.bodies.view(), own.sources.view(), settings, time,
                   seconds, own.liquid, kernels, tasks, own.impulses.view());
   own.report.substeps = report.substeps, own.report.iterations = report.iterations;
   own.report.divergence = report.divergence, own.report.residual = report.residual;
+}
+
+bool is_in_liquid(const LiquidGrid& liquid, DVec3 point) {
+  return sample_field(liquid.box, liquid.shape, liquid.surface.data(), -1,
+                      difference(point, liquid.box.corner)) < 0.0f;
 }
 
 bool is_within(const GasBox& box, DVec3 point) {
@@ -245,18 +296,29 @@ void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& s
 }
 
 bool find_stream(const FluidStore& fluids, DVec3 point, FluidStream& out) {
-  bool found = false;
-  for (const FluidEntry& entry : fluids.entries) {
+  const int slot = find_fluid(fluids, point);
+  if (slot < 0) return false;
+  const FluidEntry& entry = fluids.entries[std::size_t(slot)];
+  const Vec3 h = entry.box().cell;
+  const float edge = min(h.x, min(h.y, h.z));
+  if (entry.is_liquid())
+    out = {probe_liquid(entry.liquid, point, entry.liquid_def().density).velocity, entry.liquid_def().density,
+           true, edge};
+  else
+    out = {gas_velocity(entry.gas, point), entry.gas_def().density, false, edge};
+  return true;
+}
+
+int find_fluid(const FluidStore& fluids, DVec3 point) {
+  int found = -1;
+  for (std::size_t slot = 0; slot < fluids.entries.size(); ++slot) {
+    const FluidEntry& entry = fluids.entries[slot];
     if (entry.def == nullptr || !is_within(entry.box(), point)) continue;
     if (entry.is_liquid()) {
-      const LiquidProbe probe = probe_liquid(entry.liquid, point, entry.liquid_def().density);
-      if (!probe.inside) continue;
-      out = {probe.velocity, entry.liquid_def().density, true};
-      return true;
+      if (is_in_liquid(entry.liquid, point)) return int(slot);
+    } else if (found < 0) {
+      found = int(slot);
     }
-    if (found) continue;
-    out = {gas_velocity(entry.gas, point), entry.gas_def().density, false};
-    found = true;
   }
   return found;
 }

@@ -42,7 +42,10 @@ struct FluidStream {
   Vec3 velocity{};       // m/s
   float density = 0.0f;  // kg/m^3
   bool is_liquid = false;
+  float edge = 0.0f;  // m, the shortest of a cell
 };
+// The slot of the fluid at a point, by the same choice; -1: there is none.
+int find_fluid(const FluidStore& fluids, DVec3 point);
 bool find_stream(const FluidStore& fluids, DVec3 point, FluidStream& out);
 
 }  // namespace gyre

@@ -15,12 +15,26 @@ bool acts_at(const FieldRecord& field, const SoftEntry& entry, DVec3 at) {
          at.z >= field.low.z && at.z <= field.high.z;
 }
 
-// Drag on faces and segments in a stream. Stream: bool operator()(DVec3 place, DVec3& velocity, double& density, double& coefficient).
+// What flows past a place.
+struct Flow {
+  DVec3 velocity{};          // m/s
+  double density = 0.0;      // kg/m^3
+  double coefficient = 1.0;  // of drag
+  double edge =
+      0.0;  // m: of the cells of a fluid, which slows down as it pushes; 0: of a field, which does not
+};
+
+// Drag on faces and segments in a stream. Stream: bool operator()(DVec3 place, Flow& flow). `seconds`: for which fluids stay as they are.
 template <class Stream>
 class StreamForces {
  public:
-  StreamForces(const Stream& stream, SoftEntry& entry, float h)
-      : stream_(stream), entry_(entry), p_(entry.body.particles), h_(double(h)) {}
+  StreamForces(const Stream& stream, SoftEntry& entry, float h, float seconds, bool is_fluid)
+      : stream_(stream),
+        entry_(entry),
+        p_(entry.body.particles),
+        h_(double(h)),
+        seconds_(double(seconds)),
+        is_fluid_(is_fluid) {}
 
   void add() {
     for (std::size_t t = 0; t + 2 < entry_.triangles.size(); t += 3) add_face(&entry_.triangles[t]);
@@ -31,12 +45,16 @@ class StreamForces {
  private:
   void push(int i, DVec3 force) {
     p_.fx[i] += float(force.x), p_.fy[i] += float(force.y), p_.fz[i] += float(force.z);
+    if (is_fluid_) entry_.fluid_last[i] += h_ * force;
   }
   // The drag of a part of `mass` in the flow, if `size` times the speed of the flow times it is its force.
-  DVec3 drag(double size, double mass, DVec3 flow) const {
+  DVec3 drag(double size, double mass, DVec3 flow, const Flow& stream) const {
     const double speed = length(flow);
     if (!(speed > 0.0) || !(mass > 0.0)) return {};
-    const double rate = size * speed;  // |F| / |w|
+    double rate = size * speed;  // |F| / |w|
+    // A layer of cells of the fluid would be turned round within the step.
+    const double turned = stream.edge > 0.0 ? 0.5 * stream.coefficient * seconds_ * speed / stream.edge : 0.0;
+    if (turned > 1.0) rate /= turned;
     return (rate / (1.0 + h_ * rate / mass)) * flow;
   }
 
@@ -44,37 +62,37 @@ class StreamForces {
     const int a = int(corner[0]), b = int(corner[1]), c = int(corner[2]);
     const DVec3 origin = p_.place(a), area = 0.5 * cross(p_.place(b) - origin, p_.place(c) - origin);
     const DVec3 middle = (1.0 / 3.0) * (origin + p_.place(b) + p_.place(c));
-    DVec3 velocity;
-    double density = 0.0, coefficient = 0.0;
-    if (!stream_(middle, velocity, density, coefficient)) return;
+    Flow stream;
+    if (!stream_(middle, stream)) return;
     const DVec3 own = (1.0 / 3.0) * (DVec3(p_.velocity(a)) + DVec3(p_.velocity(b)) + DVec3(p_.velocity(c)));
-    const DVec3 flow = velocity - own;
+    const DVec3 flow = stream.velocity - own;
     const double speed = length(flow), through = dot(flow, area);
     if (!(speed > 0.0) || (entry_.kind == SoftKind::solid && through > 0.0)) return;
     const double shadow = absolute(through) / speed;
     const double mass = double(p_.mass[a]) + double(p_.mass[b]) + double(p_.mass[c]);
-    const DVec3 force = drag(0.5 * density * coefficient * shadow, mass, flow);
+    const DVec3 force = drag(0.5 * stream.density * stream.coefficient * shadow, mass, flow, stream);
     for (const int i : {a, b, c}) push(i, (1.0 / 3.0) * force);
   }
 
   void add_segment(int i) {
     const DVec3 middle = 0.5 * (p_.place(i) + p_.place(i + 1)), along = p_.place(i + 1) - p_.place(i);
     const double span = length(along);
-    DVec3 velocity;
-    double density = 0.0, coefficient = 0.0;
-    if (!(span > 0.0) || !stream_(middle, velocity, density, coefficient)) return;
+    Flow stream;
+    if (!(span > 0.0) || !stream_(middle, stream)) return;
     const DVec3 own = 0.5 * (DVec3(p_.velocity(i)) + DVec3(p_.velocity(i + 1)));
-    const DVec3 flow = velocity - own, n = along / span;
+    const DVec3 flow = stream.velocity - own, n = along / span;
     const DVec3 across = flow - dot(flow, n) * n;
     const double mass = double(p_.mass[i]) + double(p_.mass[i + 1]);
-    const DVec3 force = drag(density * coefficient * double(entry_.radius) * span, mass, across);
+    const DVec3 force =
+        drag(stream.density * stream.coefficient * double(entry_.radius) * span, mass, across, stream);
     push(i, 0.5 * force), push(i + 1, 0.5 * force);
   }
 
   const Stream& stream_;
   SoftEntry& entry_;
   Particles& p_;
-  double h_;
+  double h_, seconds_;
+  bool is_fluid_;
 };
 
 void add_linear_drag(const FieldRecord& field, SoftEntry& entry, double time, float h) {
@@ -102,13 +120,12 @@ void add_field(const FieldRecord& field, SoftEntry& entry, double time, float h)
   if (field.kind == FieldKind::radial) return add_attraction(field, entry);
   if (field.linear_drag > 0.0f) add_linear_drag(field, entry, time, h);
   if (!(field.drag_coefficient > 0.0f) || !(field.density > 0.0f)) return;
-  const auto stream = [&](DVec3 at, DVec3& velocity, double& density, double& coefficient) {
+  const auto stream = [&](DVec3 at, Flow& flow) {
     if (!acts_at(field, entry, at)) return false;
-    velocity = stream_at(field, at, time).linear();
-    density = double(field.density), coefficient = double(field.drag_coefficient);
+    flow = {stream_at(field, at, time).linear(), double(field.density), double(field.drag_coefficient), 0.0};
     return true;
   };
-  StreamForces(stream, entry, h).add();
+  StreamForces(stream, entry, h, 0.0f, false).add();
 }
 
 // m^3 that a kilogram of it fills.
@@ -121,7 +138,7 @@ double volume_per_mass(const SoftEntry& entry) {
 }
 
 // A liquid carries what it displaces.
-void add_buoyancy(const FluidStore& fluids, DVec3 gravity, SoftEntry& entry) {
+void add_buoyancy(const FluidStore& fluids, DVec3 gravity, SoftEntry& entry, float h) {
   Particles& p = entry.body.particles;
   const double share = volume_per_mass(entry);
   for (int i = 0; i < p.count; ++i) {
@@ -129,23 +146,34 @@ void add_buoyancy(const FluidStore& fluids, DVec3 gravity, SoftEntry& entry) {
     if (!find_stream(fluids, p.place(i), stream) || !stream.is_liquid) continue;
     const DVec3 force = (-share * double(p.mass[i]) * double(stream.density)) * gravity;
     p.fx[i] += float(force.x), p.fy[i] += float(force.y), p.fz[i] += float(force.z);
+    entry.fluid_last[i] += double(h) * force;
   }
 }
 
-void add_fluids(const FluidStore& fluids, DVec3 gravity, SoftEntry& entry, float h) {
-  const auto stream = [&](DVec3 at, DVec3& velocity, double& density, double& coefficient) {
+// `again`: the sub-step is tried once more, with other contacts.
+void add_fluids(const FluidStore& fluids, DVec3 gravity, SoftEntry& entry, float h, float seconds,
+                bool again) {
+  const auto count = std::size_t(entry.body.particles.count);
+  entry.fluid_sum.resize(count, DVec3{});
+  if (!again)
+    for (std::size_t i = 0; i < entry.fluid_last.size() && i < count; ++i)
+      entry.fluid_sum[i] += entry.fluid_last[i];
+  entry.fluid_last.clear();
+  entry.fluid_last.resize(count, DVec3{});
+  const auto stream = [&](DVec3 at, Flow& flow) {
     FluidStream found;
     if (!find_stream(fluids, at, found)) return false;
-    velocity = DVec3(found.velocity), density = double(found.density), coefficient = 1.0;
+    flow = {DVec3(found.velocity), double(found.density), 1.0, double(found.edge)};
     return true;
   };
-  StreamForces(stream, entry, h).add();
-  add_buoyancy(fluids, gravity, entry);
+  StreamForces(stream, entry, h, seconds, true).add();
+  add_buoyancy(fluids, gravity, entry, h);
 }
 
 }  // namespace
 
-void set_field_forces(const RigidWorld& w, const FluidStore& fluids, SoftEntry& entry, double time, float h) {
+void set_field_forces(const RigidWorld& w, const FluidStore& fluids, SoftEntry& entry, double time, float h,
+                      bool again) {
   Particles& p = entry.body.particles;
   for (Array<float>* const column : {&p.fx, &p.fy, &p.fz}) {
     for (float& force : *column) force = 0.0f;
@@ -153,7 +181,8 @@ void set_field_forces(const RigidWorld& w, const FluidStore& fluids, SoftEntry& 
   for (const FieldRecord& field : w.fields) {
     if (field.is_live()) add_field(field, entry, time, h);
   }
-  if (!fluids.empty()) add_fluids(fluids, DVec3(w.settings.gravity), entry, h);
+  if (!fluids.empty())
+    add_fluids(fluids, DVec3(w.settings.gravity), entry, h, h * float(w.settings.substeps), again);
 }
 
 }  // namespace gyre

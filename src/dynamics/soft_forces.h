@@ -3,7 +3,8 @@
 //
 // A face feels F = 1/2 rho C A |w . n| |w| w for the flow w past it, once, whichever side it shows; a solid's face only where the flow meets
 // it from outside; a segment of a rope 1/2 rho C 2 r l |w'| w' with the flow w' across it. Drag cannot turn the flow round within a
-// sub-step: it is scaled by 1 / (1 + h |F| / (m |w|)), which is backward Euler of its present size.
+// sub-step: it is scaled by 1 / (1 + h |F| / (m |w|)), which is backward Euler of its present size. Nor can it turn round
+// a layer of cells of a fluid within the step.
 #pragma once
 
 #include "fluid/store/fluid_store.h"
@@ -12,7 +13,9 @@
 
 namespace gyre {
 
-// Sets the forces from outside of all particles. `time`: s, for gusts; `h`: s.
-void set_field_forces(const RigidWorld& w, const FluidStore& fluids, SoftEntry& entry, double time, float h);
+// Sets the forces from outside of all particles. `time`: s, for gusts; `h`: s; `again`: the sub-step is tried once more. Notes what fluids give to
+// each particle, which they get back at the end of the step (fluid_reaction.h).
+void set_field_forces(const RigidWorld& w, const FluidStore& fluids, SoftEntry& entry, double time, float h,
+                      bool again);
 
 }  // namespace gyre

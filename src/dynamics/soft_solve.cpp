@@ -498,7 +498,7 @@ void begin_soft_members(SoftSolve& s, int begin, int end) {
     const bool is_implicit = entry.settings().integrator == SoftIntegrator::implicit;
     if (is_implicit && work.first_row != work.last_row) copy_motion(entry.body, work.before);
     for (int pass = 0; pass < kGripPasses; ++pass) {
-      set_field_forces(*s.w, *s.fluids, entry, s.time, s.h);
+      set_field_forces(*s.w, *s.fluids, entry, s.time, s.h, pass > 0);
       add_rows(s, m);
       add_forces_of_surfaces(s, m);
       work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels,

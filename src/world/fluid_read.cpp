@@ -4,6 +4,8 @@
 #include "fluid/liquid/liquid_reading.h"
 #include "fluid/liquid/liquid_surface.h"
 #include "fluid/store/fluid_builder.h"
+#include "geometry/mass/submerged.h"
+#include "math/rotation.h"
 #include "world/fluid_commands.h"
 #include "world/world_state.h"
 
@@ -48,7 +50,70 @@ float value_of(const FluidEntry& entry, FluidField field, int c) {
   return 0.0f;
 }
 
+// The mean level of a liquid at eight places round a box; false if there is none at any of them.
+bool level_beside(const LiquidGrid& liquid, float density, const Aabb& box, double& level) {
+  const DVec3 low(box.low), high(box.high), middle = 0.5 * (low + high);
+  const double edge = double(liquid.box.cell.x);
+  double sum = 0.0;
+  int found = 0;
+  for (int side = 0; side < 9; ++side) {
+    const int x = side % 3 - 1, z = side / 3 - 1;
+    if (x == 0 && z == 0) continue;
+    const DVec3 at{middle.x + x * (0.5 * (high.x - low.x) + edge), middle.y,
+                   middle.z + z * (0.5 * (high.z - low.z) + edge)};
+    const DVec3 inside = at - liquid.box.corner;
+    if (inside.x < 0.0 || inside.z < 0.0 || inside.x > liquid.box.cells[0] * edge ||
+        inside.z > liquid.box.cells[2] * double(liquid.box.cell.z))
+      continue;
+    const LiquidProbe probe = probe_liquid(liquid, at, density);
+    if (!probe.has_surface) continue;
+    sum += probe.surface;
+    ++found;
+  }
+  if (found == 0) return false;
+  level = sum / double(found);
+  return true;
+}
+
+double volume_below(const RigidWorld& w, std::uint32_t body, double level) {
+  double sum = 0.0;
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    const Shape& shape = w.shapes.colliders[id.index].shape;
+    if (w.shapes.proxies[id.index].sensor || !is_convex(shape.kind)) continue;
+    const Pose pose = origin_pose(w.bodies, body) * w.shapes.body_from_shape[id.index];
+    const DVec3 up = rotate_inverse(to_double(pose.orientation), DVec3{0, 1, 0});
+    sum += submerged_part(shape, up, level - pose.position.y).volume;
+  }
+  return sum;
+}
+
 }  // namespace
+
+FluidLoad World::fluid_load(BodyId body) const {
+  FluidLoad load;
+  if (!exists(body)) return load;
+  const FloatMode mode;
+  const RigidWorld& w = state_->rigid;
+  for (const FluidEntry& entry : state_->fluids.entries) {
+    if (entry.def == nullptr) continue;
+    for (const FluidPush& push : entry.pushes) {
+      if (push.body != body.index) continue;
+      load.force += push.force, load.torque += push.torque;
+      if (!entry.is_liquid()) continue;
+      Aabb box;
+      bool any = false;
+      for (const ShapeId id : w.bodies.shapes[body.index]) {
+        const Aabb& one = w.shapes.proxies[id.index].fat_box;
+        box = any ? Aabb{min(box.low, one.low), max(box.high, one.high)} : one;
+        any = true;
+      }
+      double level = 0.0;
+      if (any && level_beside(entry.liquid, entry.liquid_def().density, box, level))
+        load.wet_volume += volume_below(w, body.index, level);
+    }
+  }
+  return load;
+}
 
 bool World::exists(FluidId fluid) const { return is_fluid(*state_, fluid); }
 
@@ -191,14 +256,16 @@ LiquidDef World::liquid_def(FluidId fluid) const {
 void add_fluid_energy(const WorldState& s, Energy& energy) {
   s.fluids.for_each([&](const FluidEntry& entry) {
     if (!entry.is_liquid()) return;
-    const LiquidTotals totals = liquid_totals(entry.liquid, entry.liquid_def().density, s.rigid.settings.gravity);
+    const LiquidTotals totals =
+        liquid_totals(entry.liquid, entry.liquid_def().density, s.rigid.settings.gravity);
     energy.kinetic += totals.kinetic_energy, energy.potential += totals.potential_energy;
   });
 }
 void add_fluid_momentum(const WorldState& s, Momentum& momentum) {
   s.fluids.for_each([&](const FluidEntry& entry) {
     if (!entry.is_liquid()) return;
-    const LiquidTotals totals = liquid_totals(entry.liquid, entry.liquid_def().density, s.rigid.settings.gravity);
+    const LiquidTotals totals =
+        liquid_totals(entry.liquid, entry.liquid_def().density, s.rigid.settings.gravity);
     momentum.linear += totals.momentum, momentum.angular += totals.angular_momentum;
   });
 }

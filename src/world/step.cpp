@@ -1,5 +1,6 @@
 // One step of the world as a list of stages. Each stage is a function from arrays to arrays in a lower layer.
 #include "base/check.h"
+#include "dynamics/fluid_reaction.h"
 #include "dynamics/fluid_step.h"
 #include "dynamics/soft_contacts.h"
 #include "rigid/collision_bodies.h"
@@ -71,9 +72,11 @@ void report_fluids(WorldState& s) {
   for (std::size_t slot = 0; slot < s.fluid_scratch.size(); ++slot) {
     FluidReport& report = s.fluid_scratch[slot].report;
     if (report.failed)
-      report_problem(s, ErrorCode::invalid_data, {}, "fluid %d is no longer finite; it was stilled and goes on at rest", int(slot));
+      report_problem(s, ErrorCode::invalid_data, {},
+                     "fluid %d is no longer finite; it was stilled and goes on at rest", int(slot));
     if (report.full)
-      report_problem(s, ErrorCode::unsupported, {}, "liquid %d has %d particles, as many as it may; its sources give no more", int(slot),
+      report_problem(s, ErrorCode::unsupported, {},
+                     "liquid %d has %d particles, as many as it may; its sources give no more", int(slot),
                      s.fluids.entries[slot].liquid.particles());
     report.failed = report.full = false;
   }
@@ -146,6 +149,7 @@ void detect_collisions(WorldState& s, float seconds, float flow) {
   run_stage(s, StageName::flow, [&] {
     if (s.fluids.empty() || flow == 0.0f) return;
     step_fluids(w, s.fluids, s.fluid_scratch, *s.gas_kernels, *s.tasks, s.time, flow);
+    clear_fluid_impulses(s.soft);
   });
   run_stage(s, StageName::touch_soft, [&] {
     if (!s.soft.empty()) find_soft_contacts(w, s.soft, s.solve.soft.shapes_near, s.arena, *s.tasks, seconds);
@@ -158,6 +162,8 @@ void detect_collisions(WorldState& s, float seconds, float flow) {
 // The stages after the solve of `seconds`, which is the last piece of a step of `whole` seconds or not.
 void finish_step(WorldState& s, float seconds, float whole, bool last) {
   RigidWorld& w = s.rigid;
+  if (last && !s.fluids.empty() && !s.soft.empty())
+    run_stage(s, StageName::solve, [&] { push_fluids_back(s.soft, s.fluids, s.fluid_scratch); });
   run_stage(s, StageName::clamp_fast_bodies,
             [&] { clamp_fast_bodies(w, s.continuous, *s.kernels, s.arena, *s.tasks); });
   run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, s.arena, *s.tasks, whole, s.frozen, last); });

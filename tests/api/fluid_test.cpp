@@ -289,5 +289,60 @@ TEST(Gas, SleepersSleepOnAndWakeByTheWind) {
   EXPECT_GT(world.linear_velocity(box).x, 0.1f);
 }
 
+// The momentum of the air in a box whose sides are all periodic.
+DVec3 air_momentum(const World& world, FluidId gas, const GasDef& def) {
+  std::vector<DVec3> points;
+  const double edge = (def.upper.x - def.lower.x) / def.cells[0];
+  for (int k = 0; k < def.cells[2]; ++k)
+    for (int j = 0; j < def.cells[1]; ++j)
+      for (int i = 0; i < def.cells[0]; ++i)
+        points.push_back(def.lower + DVec3{(i + 0.5) * edge, (j + 0.5) * edge, (k + 0.5) * edge});
+  std::vector<Vec3> velocities(points.size());
+  world.sample_velocity(gas, points, velocities);
+  DVec3 sum{};
+  for (const Vec3 v : velocities) sum += DVec3(v);
+  return (double(def.density) * edge * edge * edge) * sum;
+}
+
+TEST(Gas, GetsTheMomentumThatItsDragTakesFromACloth) {
+  World world = make_world({});
+  GasDef def;
+  def.lower = {0, 0, 0}, def.upper = {2, 2, 2}, def.cells = {20, 20, 20};
+  def.sides.fill(FluidBoundary::periodic);
+  const FluidId gas = world.add_gas(def);
+  ClothDef cloth;
+  cloth.grid = ClothGrid{{0.6f, 0.6f}, {8, 8}};
+  cloth.pose.position = {1, 0.6, 1};
+  cloth.settings.velocities.assign(81, Vec3{0, 3, 0});
+  const SoftId sail = world.add_cloth(cloth);
+  ASSERT_TRUE(sail);
+  const double before = world.momentum().linear.y;
+  step(world, 60);
+  const double given = before - world.momentum().linear.y;
+  EXPECT_GT(given, 0.1 * before);
+  EXPECT_NEAR(air_momentum(world, gas, def).y, given, 0.03 * given);
+}
+
+// A ball of a tenth of the air's density: with half of what it displaces of air moving along it starts at (1.2 - 0.12) / (0.12 + 0.6) g.
+TEST(Gas, CarriesABalloonUpAndLeavesItAtTheCeiling) {
+  World world = make_world();
+  const BodyId ball = add_body(world, BodyType::dynamic, {0, 0.8, 0}, Sphere{0.25f}, 0.12f);
+  add_body(world, BodyType::fixed, {0, 3.1, 0}, Box{{2, 0.1f, 2}});
+  GasDef def;
+  def.lower = {-1, 0, -1}, def.upper = {1, 3, 1}, def.cells = {20, 30, 20};
+  def.sides = all_sides(FluidBoundary::closed);
+  world.add_gas(def);
+  step(world, 3);
+  EXPECT_NEAR(double(world.linear_velocity(ball).y), 1.5 * 9.81 * 3.0 / 60.0, 0.05);
+  double most = 0.0;
+  for (int i = 0; i < 120; ++i) {
+    world.step(kStep);
+    most = std::max(most, double(length(world.linear_velocity(ball))));
+  }
+  EXPECT_LT(most, 5.0);
+  EXPECT_NEAR(world.pose(ball).position.y, 2.75, 0.01);
+  EXPECT_LT(double(length(world.linear_velocity(ball))), 0.02);
+}
+
 }  // namespace
 }  // namespace gyre

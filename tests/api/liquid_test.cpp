@@ -231,5 +231,29 @@ TEST(Liquid, WhatIsOutOfRangeIsRefusedInWords) {
   refused(def, "particles.positions[0]");
 }
 
+TEST(Liquid, GetsTheMomentumThatItsDragTakesFromACloth) {
+  WorldDef world_def;
+  world_def.gravity = {};
+  World world = std::move(*World::create(world_def));
+  LiquidDef def = tank({1.2, 1.2, 1.2}, 1.2, 0.06f);
+  def.sides.fill(FluidBoundary::periodic);
+  const FluidId pool = world.add_liquid(def);
+  ClothDef cloth{.grid = ClothGrid{{0.4f, 0.4f}, {8, 8}}, .area_density = 20.0f};
+  cloth.pose.position = {0.6, 0.4, 0.6};
+  cloth.settings.velocities.assign(81, Vec3{0, 1, 0});
+  const SoftId sail = world.add_cloth(cloth);
+  ASSERT_TRUE(pool && sail);
+  const auto momentum_of_cloth = [&] {
+    const SoftVertices v = world.vertices(sail);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < v.size(); ++i) sum += double(v.vy[i]);
+    return sum;
+  };
+  const double all = world.momentum().linear.y, cloth_before = momentum_of_cloth();
+  step(world, 30);
+  EXPECT_LT(momentum_of_cloth(), 0.7 * cloth_before);
+  EXPECT_NEAR(world.momentum().linear.y, all, 0.03 * all);
+}
+
 }  // namespace
 }  // namespace gyre

@@ -130,6 +130,13 @@ TEST(Liquid, CarriesWhatItDisplaces) {
   }
   const double level = double(world.probe(pool, {0.06, 0.3, 0.06}).surface);
   const double draft = (level - mean + 0.5 * double(kHeight)) / double(kHeight);
+  const FluidLoad load = world.fluid_load(box);
+  EXPECT_TRUE(relative_row("F-19 lift of a floating box over its weight",
+                           double(load.force.y) / (double(world.mass_properties(box).mass) * kG), 1.0, 5e-2,
+                           1e-2));
+  EXPECT_TRUE(relative_row("F-20 its wet volume times the density of the liquid over its mass",
+                           1000.0 * load.wet_volume / double(world.mass_properties(box).mass), 1.0, 5e-2,
+                           3e-2));
   EXPECT_TRUE(relative_row("F-7 draft of a box of 600 kg/m^3", draft, double(kRatio), 5e-2, 3e-2));
 }
 

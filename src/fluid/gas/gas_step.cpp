@@ -119,12 +119,14 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
 
 }  // namespace
 
-GasReport step_gas(GasGrid& grid, const GasSolids& solids, std::span<const GasEmitter> emitters,
-                   const GasSettings& settings, double time, float step, GasMemory& memory,
-                   const GasKernels& kernels, TaskSystem& tasks, std::span<GasImpulse> impulses) {
+GasReport step_gas(GasGrid& grid, const GasSolids& solids, std::span<const FluidBody> bodies,
+                   std::span<const GasEmitter> emitters, const GasSettings& settings, double time, float step,
+                   GasMemory& memory, const GasKernels& kernels, TaskSystem& tasks,
+                   std::span<GasImpulse> impulses) {
   const TaskSystem::Busy busy(tasks);
   prepare_memory(grid, solids, memory, kernels, tasks);
-  GasPass pass{grid, solids, memory, kernels, tasks, step};
+  GasPass pass{grid, solids, memory, kernels, tasks, step, bodies, settings.density};
+  begin_bodies(pass);
   GasReport report;
   const float cells = max_displacement(pass);
   report.substeps = 1;
@@ -146,6 +148,7 @@ GasReport settle_gas(GasGrid& grid, const GasSolids& solids, const GasSettings& 
   const TaskSystem::Busy busy(tasks);
   prepare_memory(grid, solids, memory, kernels, tasks);
   const GasPass pass{grid, solids, memory, kernels, tasks, 1.0f};
+  memory.coupling.any_moves = false;
   GasReport report;
   set_walls(pass);
   const PressureReport solved = project_velocity(pass, settings.projection);

@@ -30,10 +30,12 @@ struct GasReport {
   float residual = 0.0f;    // 1: of the last solve, over its right side
 };
 
-// `impulses`: one for each label of the solids, added to. `time`: at the beginning of the step, s.
-GasReport step_gas(GasGrid& grid, const GasSolids& solids, std::span<const GasEmitter> emitters,
-                   const GasSettings& settings, double time, float step, GasMemory& memory,
-                   const GasKernels& kernels, TaskSystem& tasks, std::span<GasImpulse> impulses);
+// `bodies`: by label; those that are free to move do so within the pressure equation, the others as told. `impulses`: one for each label of
+// the solids, added to. `time`: at the beginning of the step, s.
+GasReport step_gas(GasGrid& grid, const GasSolids& solids, std::span<const FluidBody> bodies,
+                   std::span<const GasEmitter> emitters, const GasSettings& settings, double time, float step,
+                   GasMemory& memory, const GasKernels& kernels, TaskSystem& tasks,
+                   std::span<GasImpulse> impulses);
 
 // The velocity made free of divergence without a step, as the start of a flow.
 GasReport settle_gas(GasGrid& grid, const GasSolids& solids, const GasSettings& settings, GasMemory& memory,

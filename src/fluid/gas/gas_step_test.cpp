@@ -361,7 +361,7 @@ GasGrid run_mixed(int threads, int width) {
   GasImpulse impulse;
   for (int i = 0; i < 8; ++i) {
     place_sphere(grid, {1.2f + 0.02f * float(i), 0.9f, 0.9f}, 0.35f, {1.2f, 0.0f, 0.0f}, solids);
-    step_gas(grid, solids, std::span(&emitter, 1), settings, 0.0, 1.0f / 60.0f, memory,
+    step_gas(grid, solids, {}, std::span(&emitter, 1), settings, 0.0, 1.0f / 60.0f, memory,
              select_gas_kernels(width), tasks, std::span(&impulse, 1));
   }
   grid.ambient_temperature = float(impulse.linear.x);

@@ -14,13 +14,14 @@ struct Bench {
   const GasKernels* kernels = &select_gas_kernels(0);
   GasMemory memory;
   GasSolids solids;
+  std::span<const FluidBody> bodies{};
   GasSettings settings;
   double time = 0.0;
 
   GasReport step(GasGrid& grid, float step, std::span<const GasEmitter> emitters = {},
                  std::span<GasImpulse> impulses = {}) {
     const GasReport report =
-        step_gas(grid, solids, emitters, settings, time, step, memory, *kernels, tasks, impulses);
+        step_gas(grid, solids, bodies, emitters, settings, time, step, memory, *kernels, tasks, impulses);
     time += double(step);
     return report;
   }

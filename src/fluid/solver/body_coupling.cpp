@@ -67,6 +67,53 @@ void gather_pushes(const BodyCoupling& coupling, const SolidMotion& solid, const
     const double lower = face.lower >= 0 ? double(x[face.lower]) : 0.0;
     row_of(face).add_to(sum, double(face.share) * (upper - lower));
   }
+  if (solid.beside == 0) return;
+  double mean = 0.0;
+  for (int i = solid.begin; i < solid.end; ++i) {
+    const CutFace& face = coupling.faces[i];
+    if (face.upper >= 0) mean += double(x[face.upper]);
+    if (face.lower >= 0) mean += double(x[face.lower]);
+  }
+  mean /= double(solid.beside);
+  for (int i = 0; i < 6; ++i) sum[i] += mean * solid.seal[i];
+}
+
+// q of the cells around += what a motion brings by the sealed sides.
+void scatter_seal(const BodyCoupling& coupling, const SolidMotion& solid, const double (&motion)[6],
+                  float* q) {
+  if (solid.beside == 0) return;
+  double change = 0.0;
+  for (int i = 0; i < 6; ++i) change += motion[i] * solid.seal[i];
+  const auto each = float(change / double(solid.beside));
+  for (int i = solid.begin; i < solid.end; ++i) {
+    const CutFace& face = coupling.faces[i];
+    if (face.upper >= 0) q[face.upper] += each;
+    if (face.lower >= 0) q[face.lower] += each;
+  }
+}
+
+// What a pressure of 1 everywhere does to bodies that move, the other way round.
+void find_seals(BodyCoupling& coupling) {
+  constexpr double kNone = 1.0e-9;  // of the sum of all magnitudes
+  for (SolidMotion& solid : coupling.solids) {
+    if (!solid.moves) continue;
+    double sum[6] = {}, all[6] = {};
+    int beside = 0;
+    for (int i = solid.begin; i < solid.end; ++i) {
+      const CutFace& face = coupling.faces[i];
+      const int ends = (face.upper >= 0 ? 1 : 0) - (face.lower >= 0 ? 1 : 0);
+      beside += (face.upper >= 0 ? 1 : 0) + (face.lower >= 0 ? 1 : 0);
+      if (ends == 0) continue;
+      double row[6] = {};
+      row_of(face).add_to(row, double(face.share) * double(ends));
+      for (int n = 0; n < 6; ++n) sum[n] -= row[n], all[n] += row[n] > 0.0 ? row[n] : -row[n];
+    }
+    for (int n = 0; n < 6; ++n) {
+      if (!(sum[n] > kNone * all[n] || sum[n] < -kNone * all[n])) continue;
+      solid.seal[n] = sum[n];
+      solid.beside = beside;
+    }
+  }
 }
 
 // How far the surface of the solid is from a centre, in edges: where distances to either side of the face change their sign, or as far as the
@@ -222,8 +269,14 @@ double BodyCoupling::add_product(const float* p, float* q) const {
       if (face.upper >= 0) q[face.upper] += change;
       if (face.lower >= 0) q[face.lower] -= change;
     }
+    scatter_seal(*this, solid, moved, q);
   }
   return product;
+}
+
+void add_sealed_inflow(const BodyCoupling& coupling, float* inflow) {
+  for (const SolidMotion& solid : coupling.solids)
+    if (solid.moves) scatter_seal(coupling, solid, solid.motion, inflow);
 }
 
 float BodyCoupling::velocity_of(const CutFace& face) const {
@@ -326,6 +379,7 @@ void find_cut_faces(const CouplingGrid& grid, bool layers, BodyCoupling& couplin
       if (!grid.box.flat(axis)) sealed.find(axis);
   }
   sort_by_label(found, coupling);
+  if (!layers) find_seals(coupling);
   // Corners count for too much: without this a body as heavy as the fluid would rise.
   for (CutFace& face : coupling.faces) {
     const SolidMotion& solid = coupling.solids[face.label];
@@ -385,9 +439,10 @@ void push_bodies(const float* x, BodyCoupling& coupling) {
 }
 
 void add_body_impulses(const float* const (&velocity)[3], const BodyCoupling& coupling,
-                       std::span<GasImpulse> impulses) {
+                       std::span<GasImpulse> impulses, bool told) {
   for (std::size_t label = 0; label < coupling.solids.size() && label < impulses.size(); ++label) {
     const SolidMotion& solid = coupling.solids[label];
+    if (!solid.moves && !told) continue;
     double impulse[6];
     if (solid.moves) {
       double change[6];

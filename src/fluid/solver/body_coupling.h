@@ -41,6 +41,10 @@ struct SolidMotion {
   double before[6] = {};      // the motion at the end of the sub-step without the fluid
   double motion[6] = {};      // and with it
   double push[6] = {};        // N s: of a body that moves as told
+  // In a gas: a body flush with a wall has no gas there, and a pressure that is the same everywhere would push it. `seal` is what is missing:
+  // behind it is the mean pressure of the cells around, of which there are `beside`.
+  double seal[6] = {};
+  int beside = 0;
 };
 
 struct BodyCoupling {
@@ -54,7 +58,10 @@ struct BodyCoupling {
   float velocity_of(const CutFace& face) const;
 };
 
-// Fills the list of faces. `open`: of each face, `active`: positive where a cell has an equation. Layers count if the solids have distances.
+// Adds what the sealed sides of bodies bring into the cells around.
+void add_sealed_inflow(const BodyCoupling& coupling, float* inflow);
+
+// Fills the list of faces. `open`: of each face, `active`: positive where a cell has an equation. `layers`, of liquids: those count if the solids have distances.
 struct CouplingGrid {
   const GasBox& box;
   const GridShape& shape;
@@ -71,8 +78,8 @@ void predict_motions(std::span<const FluidBody> bodies, float step, const float*
                      BodyCoupling& coupling);
 // Adds to the motions the change by `x`, pressure over density times the step.
 void push_bodies(const float* x, BodyCoupling& coupling);
-// Adds the impulses of the sub-step on bodies, layers counted.
+// Adds the impulses of the sub-step on bodies, layers counted; `told`: on those that move as told, too.
 void add_body_impulses(const float* const (&velocity)[3], const BodyCoupling& coupling,
-                       std::span<GasImpulse> impulses);
+                       std::span<GasImpulse> impulses, bool told = true);
 
 }  // namespace gyre

@@ -1,8 +1,11 @@
 // GasPass: the data of the stages of a step of a gas. Each stage is a function from these arrays to these arrays.
 #pragma once
 
+#include "fluid/solver/body_coupling.h"
 #include "fluid/solver/pressure_matrix.h"
 #include "task/parallel.h"
+
+#include <span>
 
 namespace gyre {
 
@@ -12,6 +15,9 @@ struct GasMemory {
   Array<float> field[kFields];
   Array<float> before[3];  // the velocity at the beginning of the step, with viscosity
   PressureMatrix matrix;
+  BodyCoupling coupling;
+  // If bodies move by the pressure: the velocity of solids on faces, as it is now, and the open fraction of faces.
+  Array<float> solid_velocity[3], open[3];
 };
 
 struct GasPass {
@@ -20,8 +26,14 @@ struct GasPass {
   GasMemory& memory;
   const GasKernels& kernels;
   TaskSystem& tasks;
-  float step = 0.0f;  // s
+  float step = 0.0f;                    // s
+  std::span<const FluidBody> bodies{};  // by label; those that are free to move do so by the pressure
+  float density = 1.0f;                 // kg/m^3, of the gas
 
+  bool couples() const { return solids.present() && memory.coupling.any_moves; }
+  const float* solid_velocity(int axis) const {
+    return couples() ? memory.solid_velocity[axis].data() : solids.velocity[axis].data();
+  }
   const GasBox& box() const { return grid.box; }
   const GridShape& shape() const { return grid.shape; }
   float* scratch(int index) const { return memory.field[index].data(); }

@@ -21,7 +21,7 @@ void find_cut_inflow(const GasPass& pass, int c, int j, int k, float* to) {
     const float edge = pass.edge(axis), inverse_edge = 1.0f / edge;
     const float* const face = finest.face[axis].data() + c;
     const float* const velocity = pass.grid.velocity[axis].data() + c;
-    const float* const solid = pass.solids.velocity[axis].data() + c;
+    const float* const solid = pass.solid_velocity(axis) + c;
     const auto flux = [&](int i, bool open_side) {  // at open sides coefficients are doubled
       const float open = face[i] * (open_side ? 0.5f * edge * edge : edge * edge);
       return inverse_edge * (open * velocity[i] + (1.0f - open) * solid[i]);
@@ -59,6 +59,7 @@ void find_inflow(const GasPass& pass, float* to) {
       }
     }
   });
+  if (pass.couples()) add_sealed_inflow(pass.memory.coupling, to);
 }
 
 // velocity -= scale times the gradient of a pressure, on faces that have a coefficient.
@@ -124,7 +125,7 @@ void set_walls(const GasPass& pass) {
     if (!pass.solids.present() || pass.flat(axis)) continue;
     const float* const face = pass.memory.matrix.levels[0].face[axis].data();
     const std::int16_t* const label = pass.solids.label[axis].data();
-    const float* const solid = pass.solids.velocity[axis].data();
+    const float* const solid = pass.solid_velocity(axis);
     const auto is_cut = [&](int j, int k) {
       return j >= 0 && j < shape.cells[1] && k >= 0 && k < shape.cells[2] &&
              pass.memory.matrix.cut_row[j + k * shape.cells[1]] != 0;
@@ -138,6 +139,80 @@ void set_walls(const GasPass& pass) {
   }
 }
 
+namespace {
+
+// A wall stays where it is, whatever body crosses it.
+void still_walls(const GasPass& pass) {
+  const GridShape& shape = pass.shape();
+  for (int axis = 0; axis < 3; ++axis) {
+    const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2, step = shape.stride(axis);
+    for (int side = 0; side < 2; ++side) {
+      if (pass.box().open(2 * axis + side) || pass.box().periodic(axis)) continue;
+      float* const wall = pass.memory.solid_velocity[axis].data() + side * shape.cells[axis] * step;
+      for (int j = 0; j < shape.cells[b]; ++j)
+        for (int i = 0; i < shape.cells[a]; ++i)
+          wall[shape.first + i * shape.stride(a) + j * shape.stride(b)] = 0.0f;
+    }
+  }
+}
+
+}  // namespace
+
+void begin_bodies(const GasPass& pass) {
+  const GridShape& shape = pass.shape();
+  GasMemory& memory = pass.memory;
+  BodyCoupling& coupling = memory.coupling;
+  begin_motions(pass.box(), pass.bodies, pass.solids.present() ? pass.solids.labels : 0, coupling);
+  if (!pass.couples()) return;
+  const PressureGrid& finest = memory.matrix.levels[0];
+  for (int axis = 0; axis < 3; ++axis) {
+    memory.solid_velocity[axis] = pass.solids.velocity[axis];
+    // What the equation has of each face; sides of the box are not asked for.
+    const float* const face = finest.face[axis].data();
+    const float square = pass.edge(axis) * pass.edge(axis);
+    Array<float>& open = memory.open[axis];
+    open.resize(std::size_t(shape.size), 0.0f);
+    each_row(pass, axis, [&](int c, int, int) {
+      for (int i = c; i < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++i) open[i] = square * face[i];
+    });
+  }
+  const CouplingGrid grid{pass.box(),
+                          shape,
+                          pass.solids,
+                          {memory.open[0].data(), memory.open[1].data(), memory.open[2].data()},
+                          finest.inverse_diagonal.data(),
+                          pass.density};
+  find_cut_faces(grid, false, coupling);
+  still_walls(pass);
+}
+
+namespace {
+
+// Faces that are closed, or in part, by bodies that move by the pressure.
+void tell_motions(const GasPass& pass) {
+  const BodyCoupling& coupling = pass.memory.coupling;
+  for (const CutFace& face : coupling.faces) {
+    if (coupling.solids[face.label].moves)
+      pass.memory.solid_velocity[face.axis][face.face] = coupling.velocity_of(face);
+  }
+}
+
+// Bodies as they would move without the change of pressure that is to be found: by other forces, and by the pressure of the step before.
+void predict_bodies(const GasPass& pass, float* x) {
+  BodyCoupling& coupling = pass.memory.coupling;
+  const float* const velocity[3] = {pass.grid.velocity[0].data(), pass.grid.velocity[1].data(),
+                                    pass.grid.velocity[2].data()};
+  predict_motions(pass.bodies, pass.step, velocity, coupling);
+  const float* const pressure = pass.grid.pressure.data();
+  each_row(pass, -1, [&](int c, int, int) {
+    for (int i = c; i < c + pass.shape().cells[0]; ++i) x[i] = pass.step * pressure[i];
+  });
+  push_bodies(x, coupling);
+  tell_motions(pass);
+}
+
+}  // namespace
+
 PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& settings) {
   const GridShape& shape = pass.shape();
   PressureVectors vectors;
@@ -148,13 +223,16 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
   vectors.z = pass.scratch(kZ);
   vectors.other = pass.scratch(kOther);
   for (float* vector : {vectors.p, vectors.z, vectors.other}) clear_ghosts(shape, vector);
+  const bool couples = pass.couples();
+  const BodyCoupling* const coupling = couples ? &pass.memory.coupling : nullptr;
+  if (couples) predict_bodies(pass, vectors.x);
   find_inflow(pass, vectors.r);
   const float before = largest_of(rows_of(shape, -1), vectors.r, pass.kernels, pass.tasks);
   const float allowed = settings.divergence / pass.step, reduced = settings.reduction * before;
   const float target = allowed < reduced ? allowed : reduced;
   PressureMatrix& matrix = pass.memory.matrix;
   PressureReport report =
-      solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks);
+      solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks, coupling);
   if (report.last > target && pass.solids.present() && !matrix.has_pockets && settings.max_iterations > 0) {
     // Solids that move may enclose gas, for which the equation then has no solution.
     matrix.has_pockets = true;
@@ -162,10 +240,15 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
     for (float* vector : {vectors.p, vectors.z, vectors.other}) clear_ghosts(shape, vector);
     find_inflow(pass, vectors.r);
     const int before_pockets = report.iterations;
-    report = solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks);
+    report =
+        solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks, coupling);
     report.iterations += before_pockets;
   }
   subtract_gradient(pass, vectors.x, 1.0f);
+  if (couples) {
+    push_bodies(vectors.x, pass.memory.coupling);
+    tell_motions(pass);
+  }
   float* const pressure = pass.grid.pressure.data();
   const float* const inverse = pass.memory.matrix.levels[0].inverse_diagonal.data();
   const float scale = 1.0f / pass.step;
@@ -184,6 +267,12 @@ float largest_divergence(const GasPass& pass) {
 }
 
 void add_impulses(const GasPass& pass, float density, std::span<GasImpulse> impulses) {
+  const bool couples = pass.couples();
+  if (couples) {
+    const float* const velocity[3] = {pass.grid.velocity[0].data(), pass.grid.velocity[1].data(),
+                                      pass.grid.velocity[2].data()};
+    add_body_impulses(velocity, pass.memory.coupling, impulses, false);
+  }
   const GridShape& shape = pass.shape();
   const float* const pressure = pass.grid.pressure.data();
   const float* const inverse = pass.memory.matrix.levels[0].inverse_diagonal.data();
@@ -202,6 +291,7 @@ void add_impulses(const GasPass& pass, float density, std::span<GasImpulse> impu
           const int at = axis == 0 ? i : axis == 1 ? j : k;
           const int one = label[c + i];
           if (at == 0 || one < 0 || one >= int(impulses.size())) continue;
+          if (couples && pass.memory.coupling.solids[one].moves) continue;
           const bool lower = inverse[c + i - step] > 0.0f, upper = inverse[c + i] > 0.0f;
           const double closed = lower && upper && open[c + i] >= kMinOpen ? 1.0 - double(open[c + i]) : 1.0;
           const double push =

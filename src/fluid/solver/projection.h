@@ -19,6 +19,9 @@ void add_pressure(const GasPass& pass, float share, bool over_walls);
 // Faces of walls and of closed solids get their velocity.
 void set_walls(const GasPass& pass);
 
+// The motions of bodies at the beginning of a step, and the faces that they cut.
+void begin_bodies(const GasPass& pass);
+
 struct ProjectionSettings {
   float divergence = 1.0e-4f;  // 1: largest net outflow of a cell within the step, over its volume
   float reduction = 1.0e-2f;   // and over the largest before

@@ -37,11 +37,11 @@ enum class SoftGrip : std::uint8_t { open, slides, sticks };
 struct SoftContact {
   std::uint32_t particle = 0;
   std::uint32_t shape = 0;
-  std::int32_t body = 0;                            // of the shape; it may be a fixed one
-  std::uint32_t triangle = 0;                       // of a mesh or height field
-  Vec3 normal{};     // unit, out of the shape, world axes, when the step began
-  Vec3 from_body{};  // from the body's centre of mass to the point on the surface, likewise
-  float gap = 0.0f;  // m, of vertex and surface less the thickness, when the step began
+  std::int32_t body = 0;       // of the shape; it may be a fixed one
+  std::uint32_t triangle = 0;  // of a mesh or height field
+  Vec3 normal{};               // unit, out of the shape, world axes, when the step began
+  Vec3 from_body{};            // from the body's centre of mass to the point on the surface, likewise
+  float gap = 0.0f;            // m, of vertex and surface less the thickness, when the step began
   float static_friction = 0.0f;
   float dynamic_friction = 0.0f;
   Vec3 surface_velocity{};  // m/s, of a conveyor belt, world axes
@@ -90,8 +90,10 @@ struct SoftEntry {
   // Of a solid that was made of a surface: what was given, carried along by its tetrahedra, for pictures.
   EmbeddedSurface surface;
   Array<SoftRest> rest{SoftRest{}};  // one
-  float radius = 0.0f;               // m: half the thickness, which the surface keeps from shapes
-  float size = 0.0f;                 // m: the mean length of its edges, by which speculative distances go
+  // N s: what fluids gave to each particle in the last sub-step and in those before it of this step; no state.
+  Array<DVec3> fluid_last, fluid_sum;
+  float radius = 0.0f;  // m: half the thickness, which the surface keeps from shapes
+  float size = 0.0f;    // m: the mean length of its edges, by which speculative distances go
   SoftReported reported;
 
   bool is_awake() const { return rest[0].asleep == 0; }
