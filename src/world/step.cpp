@@ -114,6 +114,17 @@ void report_large_islands(WorldState& s) {
                  to_string(solver.options.lcp_method));
 }
 
+// Sequential impulses converge slowly where heavy bodies hang on light ones, or in loops. Joints open and contacts sink then.
+void report_missed_impulses(WorldState& s) {
+  constexpr double kMissed = 0.5;
+  const RowStats& rows = s.solve.rows;
+  if (!(rows.missed_share > kMissed)) return;
+  report_problem(s, ErrorCode::unstable, {},
+                 "sequential_impulses: %d iterations missed the impulse of a row by %.3g N s, %.0f %% of the load of its island; joints open "
+                 "and contacts sink: use more iterations, or the solver soft_step or lcp",
+                 rows.sweeps, rows.residual, 100.0 * rows.missed_share);
+}
+
 void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
 
 // Must run right after the stage `collide`, which leaves contacts that it did not update as they were.
@@ -343,6 +354,7 @@ void step_world(WorldState& s, float seconds) {
   report_fluids(s);
   report_stiffness(s);
   report_large_islands(s);
+  report_missed_impulses(s);
   remove_broken_joints(s);
   count_work(s);
 }
