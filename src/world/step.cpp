@@ -163,6 +163,7 @@ void detect_collisions(WorldState& s, float seconds, float flow) {
     clear_fluid_impulses(s.soft);
   });
   run_stage(s, StageName::touch_soft, [&] {
+    if (flow > 0.0f) damage_soft(s, flow);
     if (!s.soft.empty()) find_soft_contacts(w, s.soft, s.solve.soft.shapes_near, s.arena, *s.tasks, seconds);
   });
   run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, s.recycle_contacts, seconds); });
@@ -332,7 +333,7 @@ void end_step(WorldState& s, float seconds) {
   clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
   report_soft_events(s);
   const SoftEvents& soft = s.published_soft_events;
-  s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes, soft.begins, soft.ends, soft.inverted};
+  s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn};
   s.stepping = false;
 }
 
