@@ -143,7 +143,7 @@ TEST(CInterface, WrongSizesAndNullHandlesAreRefusedInWords) {
   def.size = sizeof def + 8;
   EXPECT_TRUE(GYRE_IS_NULL(gyre_world_add_body(fall.world, &def, nullptr, 0)));
   EXPECT_FALSE(gyre_world_step(nullptr, 0.1f));
-  EXPECT_STREQ(gyre_last_error(), "gyre_world_step: a handle is NULL");
+  EXPECT_STREQ(gyre_last_error(), "gyre_world_step: a handle is NULL, or its world is gone");
   EXPECT_FALSE(gyre_world_step(fall.world, -1.0f));
   EXPECT_EQ(gyre_last_error_code(), GYRE_ERROR_CODE_INVALID_ARGUMENT);
   GyreWorldDef world_def = gyre_world_def_default();
@@ -220,6 +220,17 @@ TEST(CInterface, RecordingsReplay) {
   while (gyre_replay_step(replay, &matches)) ASSERT_TRUE(matches);
   EXPECT_EQ(gyre_world_hash(gyre_replay_world(replay)), gyre_world_hash(fall.world));
   gyre_replay_destroy(replay);
+}
+
+TEST(CInterface, ARecorderThatOutlivesItsWorldRefuses) {
+  GyreWorld* world = gyre_world_create(nullptr);
+  const auto write = [](void*, const std::uint8_t*, std::size_t) { return true; };
+  GyreRecorder* recorder = gyre_recorder_create(world, write, nullptr, nullptr);
+  ASSERT_NE(recorder, nullptr);
+  gyre_world_destroy(world);
+  EXPECT_FALSE(gyre_recorder_finish(recorder));
+  EXPECT_NE(std::string(gyre_last_error()).find("its world is gone"), std::string::npos);
+  gyre_recorder_destroy(recorder);
 }
 
 TEST(CInterface, ABatchIsManyWorldsAlone) {

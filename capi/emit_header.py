@@ -60,7 +60,7 @@ GYRE_C_API const char* gyre_version(void) GYRE_C_NOEXCEPT;
 
 /* Takes bytes of a recording; false stops it. */
 typedef bool (*GyreWriteFunction)(void* user, const uint8_t* bytes, size_t count);
-/* Records the world from its present state until the recorder is finished or destroyed. The world must outlive the recorder. */
+/* Records the world from its present state until the recorder is finished or destroyed. A recorder ends with its world, too. */
 GYRE_C_API GyreRecorder* gyre_recorder_create(GyreWorld* world, GyreWriteFunction write, void* user,
                                               const GyreRecordOptions* options) GYRE_C_NOEXCEPT;
 

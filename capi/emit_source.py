@@ -158,7 +158,7 @@ class SourceWriter:
         handles = [snake(call.owner)] if call.owner and call.source.name != call.owner else []
         handles += [p.name for p in call.parameters if p.role in ("handle", "geometry")]
         for name in handles:
-            lines.append(f"  if ({name} == nullptr) {{\n    refuse_null(\"{call.name}\");\n    {self.nothing}\n  }}\n")
+            lines.append(f"  if ({name} == nullptr || {name}->value == nullptr) {{\n    refuse_null(\"{call.name}\");\n    {self.nothing}\n  }}\n")
         arguments = []
         for p in call.parameters:
             lines.append(self.before(call, p))

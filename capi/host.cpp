@@ -31,7 +31,7 @@ namespace c {
 void refuse_text(ErrorCode code, const std::string& text) { last_error() = {code, text}; }
 void refuse(const Error& error) { refuse_text(error.code, error.message); }
 void refuse_null(const char* function) {
-  refuse(make_error(ErrorCode::invalid_argument, "%s: a handle is NULL", function));
+  refuse(make_error(ErrorCode::invalid_argument, "%s: a handle is NULL, or its world is gone", function));
 }
 void refuse_size(const char* name, std::size_t found, std::size_t most) {
   refuse(make_error(
@@ -108,6 +108,17 @@ void give(const AnyShape& in, GyreAnyShape& out, c::Arena&) {
 using namespace gyre;
 using namespace gyre::c;
 
+GyreWorld::~GyreWorld() {
+  for (GyreRecorder* recorder : recorders) {
+    recorder->own.reset();
+    recorder->value = nullptr;
+    recorder->world = nullptr;
+  }
+}
+GyreRecorder::~GyreRecorder() {
+  if (world != nullptr) std::erase(world->recorders, this);
+}
+
 extern "C" {
 
 const char* gyre_last_error(void) noexcept { return last_error().text.c_str(); }
@@ -132,6 +143,8 @@ GyreRecorder* gyre_recorder_create(GyreWorld* world, GyreWriteFunction write, vo
                       "could be written"));
     return nullptr;
   }
+  recorder->world = world;
+  world->recorders.push_back(recorder.get());
   return recorder.release();
 }
 

@@ -10,16 +10,19 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 // A world: its own, or one that something else owns (a replay, a scene, a batch).
 struct GyreWorld {
   GyreWorld() = default;
   explicit GyreWorld(gyre::World world) : own(std::move(world)), value(&*own) {}
+  ~GyreWorld();  // ends the recorders of the world
   GyreWorld(const GyreWorld&) = delete;
   GyreWorld& operator=(const GyreWorld&) = delete;
 
   std::optional<gyre::World> own;
   gyre::World* value = nullptr;
+  std::vector<GyreRecorder*> recorders;
 };
 
 struct GyreGeometry {
@@ -55,10 +58,14 @@ struct GyreByteSink final : gyre::ByteSink {
   GyreWriteFunction function = nullptr;
   void* user = nullptr;
 };
+// After the end of its world a recorder has no value, and its functions refuse.
 struct GyreRecorder {
+  ~GyreRecorder();
+
   GyreByteSink sink;  // outlives the recorder
   std::optional<gyre::Recorder> own;
   gyre::Recorder* value = nullptr;
+  GyreWorld* world = nullptr;
 };
 
 namespace gyre::c {

@@ -403,7 +403,8 @@ class Drive {
     const float share = s > 1.0e-6f ? tyre_curve(d.tyre, s) / s : 2.0f;
     slope = most * share / (d.tyre.peak_slip * ground);
     // A force stops the mass on the wheel within the step at most.
-    const float bears = w.load / 9.81f / seconds_;
+    const float gravity = length(world_.gravity());
+    const float bears = gravity > 0.0f ? w.load / (gravity * seconds_) : 0.0f;
     side_ = clamp_to(most * share * y, absolute(r.side) * bears);
     return clamp_to(most * share * x,
                     absolute(w.angular_velocity * d.radius - r.speed) * bears + most * 0.02f);

@@ -198,7 +198,7 @@ bool choose_scenes(const BenchOptions& options, std::vector<bench::Scene>& scene
       std::string all;
       for (const char* known : bench::scene_names()) all += std::string(" ") + known;
       std::fprintf(stderr,
-                   "gyre bench: no scene '%s' to be stepped; there are:%s, and with N bodies (rows): %s\n",
+                   "gyre bench: no scene '%s' to be stepped; there are:%s, and with N bodies (rows), to a million: %s\n",
                    name.c_str(), all.c_str(), bench::numbered_scene_names().c_str());
       return false;
     }
@@ -234,7 +234,7 @@ void add_bench(CLI::App& app, int& exit_code) {
       app.add_subcommand("bench", "Run the benchmark scenes: times, and figures of quality beside them");
   auto options = std::make_shared<BenchOptions>();
   command->add_option("SCENE", options->scenes,
-                      "Their names; none: all. With N bodies, or rows: " + bench::numbered_scene_names());
+                      "Their names; none: all. With N bodies (to a million), or rows: " + bench::numbered_scene_names());
   command->add_option("--threads", options->threads, "Threads, 0 = all")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();

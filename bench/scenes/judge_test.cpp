@@ -76,6 +76,8 @@ TEST(Scenes, AreWhatTheirNamesSay) {
   EXPECT_EQ(find_scene("box_pile:1000")->bodies.size(), 1005u);
   EXPECT_EQ(find_scene("mesh_rain:500")->bodies.size(), 501u);
   EXPECT_FALSE(find_scene("box_pile:0"));
+  for (const char* huge : {"pyramid:1001", "pyramid:99999999", "spheres:1000001", "stacks:99999999999999999999"})
+    EXPECT_FALSE(find_scene(huge)) << huge;
   EXPECT_FALSE(find_scene("tower:7")) << "has no size";
   EXPECT_FALSE(find_scene("no_such_scene"));
 }

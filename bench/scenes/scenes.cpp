@@ -306,9 +306,10 @@ struct NamedScene {
   const char* name;
   Scene (*make)();  // none: only with a number
   Scene (*make_of)(int number) = nullptr;
+  int max_number = 1000000;
 };
 const NamedScene kScenes[] = {
-    {"pyramid", [] { return pyramid(60); }, pyramid},
+    {"pyramid", [] { return pyramid(60); }, pyramid, 1000},  // half a million bodies
     {"many_pyramids", many_pyramids},
     {"box_pile", [] { return heap(4000, any_box); }, [](int n) { return heap(n, any_box); }},
     {"hull_pile", hull_pile},
@@ -348,7 +349,9 @@ const std::vector<const char*>& scene_names() {
 std::string numbered_scene_names() {
   std::string all;
   for (const NamedScene& scene : kScenes) {
-    if (scene.make_of != nullptr) all += (all.empty() ? "" : ", ") + std::string(scene.name) + ":N";
+    if (scene.make_of == nullptr) continue;
+    all += (all.empty() ? "" : ", ") + std::string(scene.name) + ":N";
+    if (scene.max_number < 1000000) all += " (to " + std::to_string(scene.max_number) + ")";
   }
   return all;
 }
@@ -360,9 +363,9 @@ std::optional<Scene> find_scene(const std::string& name) {
     std::optional<Scene> scene;
     if (colon == std::string::npos) {
       if (named.make != nullptr) scene = named.make();
-    } else if (const int number = std::atoi(name.c_str() + colon + 1);
-               named.make_of != nullptr && number > 0) {
-      scene = named.make_of(number);
+    } else if (const long number = std::strtol(name.c_str() + colon + 1, nullptr, 10);
+               named.make_of != nullptr && number > 0 && number <= named.max_number) {
+      scene = named.make_of(int(number));
     }
     if (scene) scene->name = name;
     return scene;

@@ -85,7 +85,7 @@ struct Filter {
 struct ShapeDef {
   AnyShape geometry = Sphere{};
   Transform local{};          // body_from_shape
-  float density = 1000.0f;  // kg/m^3; 0 = adds no mass
+  float density = 1000.0f;  // kg/m^3; 0 = adds no mass; a body of such shapes alone has 1 kg, or its `mass`, spread evenly
   Material material{};
   Filter filter{};
   bool sensor = false;      // reports overlaps and has no contacts

@@ -73,6 +73,12 @@ struct SoftInverted {
   int tetrahedron = 0;  // in the order of SolidDef::tetrahedra; of a box: six of each cell
   std::array<std::uint32_t, 4> vertices{};
 };
+// A cloth tore or a solid broke at a vertex: some of the elements around it have the new vertex instead.
+struct SoftTorn {
+  SoftId soft{};
+  int vertex = 0;
+  int new_vertex = 0;
+};
 
 struct Events {
   std::span<const ContactBegin> begins{};
@@ -84,6 +90,7 @@ struct Events {
   std::span<const SoftContactBegin> soft_begins{};
   std::span<const SoftContactEnd> soft_ends{};
   std::span<const SoftInverted> inverted{};
+  std::span<const SoftTorn> torn{};
 };
 
 // How the last step was divided, if TimeStepping is not fixed.

@@ -10,7 +10,9 @@ template <class Tag>
 struct Id {
   std::uint32_t index = 0;       // of the slot; reused after removal
   std::uint16_t generation = 0;  // of the slot's owner; 0 only in the null id
-  std::uint16_t world = 0;       // number of the world in this process
+  // Number of the world in this process, 1 to 65,535. Numbers repeat after that many worlds, and an id of the world with the same number
+  // is then not told apart.
+  std::uint16_t world = 0;
 
   constexpr explicit operator bool() const { return generation != 0; }
   constexpr bool operator==(const Id&) const = default;

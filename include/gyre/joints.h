@@ -53,7 +53,9 @@ struct Limits {
 };
 
 // Drives an angle (rad, N m) or a translation (m, N) with at most max_force. With target_position the motor is a spring to that
-// position (frequency, damping_ratio). Without, it drives to target_velocity.
+// position (frequency, damping_ratio), whose damper brakes the difference from target_velocity: set it to the speed of a position that
+// moves. If the position stands and target_velocity does not vanish, the axis rests off the position by
+// 2 damping_ratio target_velocity / (2 pi frequency). Without target_position the motor drives to target_velocity.
 struct Motor {
   float target_velocity = 0.0f;
   std::optional<float> target_position{};

@@ -97,6 +97,9 @@ struct ClothDef {
   std::optional<float> pressure{};
   float ambient_pressure = 1.0e5f;          // Pa, outside; 0 in a vacuum
   PressureLaw pressure_law = PressureLaw::ideal_gas;
+  // The strain (length over rest length, less 1) at which an edge tears the cloth; 0: never. Such a cloth is one of triangles, also if it is given by a
+  // grid: springs lie along their edges. Torn cloth lets its gas out.
+  float tear_strain = 0.0f;
   SoftSettings settings{};
 };
 
@@ -125,6 +128,9 @@ struct SolidDef {
   float density = 1000.0f;                  // kg/m^3
   float young_modulus = 1.0e5f;             // Pa
   float poisson_ratio = 0.45f;              // within -1 and 1/2
+  float fracture_stress = 0.0f;             // Pa: tension at which it breaks along faces; 0: never. Not of a filled surface
+  float yield_stress = 0.0f;                // Pa, of von Mises: beyond it the rest shape yields; 0: never. Not of the linear model
+  float creep_time = 0.0f;                  // s, in which stress beyond the yield stress falls to 1/e; 0: at once
   SoftSettings settings{};
 };
 

@@ -48,7 +48,7 @@ void add_body(const RigidWorld& w, std::uint32_t body, DVec3 origin, BodyTable& 
   }
   append(out.linear_velocities, motion.linear_velocity);
   append(out.angular_velocities, motion.angular_velocity);
-  const SleepTest rest = movable ? test_sleep(w, body, length(w.settings.gravity), w.settings.last_step) : SleepTest{};
+  const SleepTest rest = movable ? test_sleep(w, body, w.settings.last_step) : SleepTest{};
   out.speeds.push_back(rest.speed);
   out.rest_speeds.push_back(rest.rest_speed);
   out.still_times.push_back(w.bodies.sleep[body].still_time);

@@ -117,11 +117,11 @@ float Drawing::extent_of(std::uint32_t body) const {
 
 float Drawing::meters_per_newton(std::uint32_t a, std::uint32_t b) const {
   if (paint_.options().meters_per_newton > 0.0f) return paint_.options().meters_per_newton;
-  const float gravity = length(w_.settings.gravity);
+  const float gravity = reference_gravity(w_.settings);
   float scale = 0.0f;
   for (const std::uint32_t body : {a, b}) {
     const float mass = w_.bodies.masses[body].mass;
-    if (mass > 0.0f) scale = max(scale, extent_of(body) / (mass * (gravity > 0.0f ? gravity : 9.81f)));
+    if (mass > 0.0f) scale = max(scale, extent_of(body) / (mass * gravity));
   }
   return scale;
 }

@@ -15,8 +15,7 @@ namespace {
 
 class Inquiry {
  public:
-  Inquiry(const RigidWorld& w, std::uint32_t body)
-      : w_(w), body_(body), gravity_(length(w.settings.gravity)), islands_(find_islands(w)) {}
+  Inquiry(const RigidWorld& w, std::uint32_t body) : w_(w), body_(body), islands_(find_islands(w)) {}
 
   void answer(Explanation& out);
 
@@ -33,7 +32,6 @@ class Inquiry {
 
   const RigidWorld& w_;
   std::uint32_t body_;
-  float gravity_;
   IslandMap islands_;
 };
 
@@ -46,7 +44,7 @@ AwakeReason Inquiry::own_reason(std::uint32_t body) const {
   if (flags.awake == 0) return AwakeReason::asleep;
   if (w_.settings.sleeping == 0) return AwakeReason::sleeping_off;
   if (flags.can_sleep == 0) return AwakeReason::may_not_sleep;
-  const SleepTest test = test_sleep(w_, body, gravity_, w_.settings.last_step);
+  const SleepTest test = test_sleep(w_, body, w_.settings.last_step);
   if (!test.allowed && flags.constraint_use == 0) return AwakeReason::unsupported;
   if (test.motion > test.rest_speed) return AwakeReason::moving;
   return AwakeReason::settling;
@@ -143,7 +141,7 @@ void Inquiry::answer(Explanation& out) {
   find_joints(out);
   const std::uint32_t root = islands_.roots[body_];
   if (root != kNoIsland) {
-    const SleepTest test = test_sleep(w_, body_, gravity_, w_.settings.last_step);
+    const SleepTest test = test_sleep(w_, body_, w_.settings.last_step);
     out.speed = test.speed;
     out.rest_speed = test.rest_speed;
     out.still_seconds = w_.bodies.sleep[body_].still_time;

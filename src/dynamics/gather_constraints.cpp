@@ -61,7 +61,7 @@ class ContactGatherer {
       : lists_(batch.scratch.contacts),
         local_index_(batch.local_index),
         w_(batch.w),
-        fall_(std::sqrt(length(w_.settings.gravity))),
+        fall_(std::sqrt(reference_gravity(w_.settings))),
         has_rules_(!w_.surface_rules.empty()),
         is_alone_(is_alone) {}
 
@@ -108,7 +108,7 @@ class ContactGatherer {
                   (ends.active_b && !joints_of(w_.bodies, contact.body_b).empty());
     ends.body_a = ends.active_a ? std::int32_t(contact.body_a) : solver_body(w_, contact.body_a);
     ends.body_b = ends.active_b ? std::int32_t(contact.body_b) : solver_body(w_, contact.body_b);
-    ends.push_speed = kPushShare * (fall_ > 0.0f ? fall_ : 3.132f) * std::sqrt(contact.size);
+    ends.push_speed = kPushShare * fall_ * std::sqrt(contact.size);
     return ends;
   }
   // No atomics here: an active body is in one batch only.

@@ -206,8 +206,7 @@ float rest_speed(const RigidWorld& w, const SoftEntry& entry) {
     low = {min(low.x, at.x), min(low.y, at.y), min(low.z, at.z)};
     high = {max(high.x, at.x), max(high.y, at.y), max(high.z, at.z)};
   }
-  const float gravity = length(w.settings.gravity);
-  return sleep_share(w) * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * 0.5f * float(length(high - low)));
+  return sleep_share(w) * std::sqrt(reference_gravity(w.settings) * 0.5f * float(length(high - low)));
 }
 
 bool is_still(const RigidWorld& w, const SoftEntry& entry) {

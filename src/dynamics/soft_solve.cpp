@@ -25,7 +25,6 @@ constexpr float kStickShare = 0.999f;
 constexpr float kErrorRate = 48.0f, kErrorShare = 0.2f;
 // Largest speed of removal of penetration, as a share of the speed of a fall from the length of an edge: as for contacts of bodies.
 constexpr float kSoftPushShare = 0.4f;
-constexpr float kEarthGravity = 9.81f;  // m/s^2, where the world has none
 
 SoftWork& work_of(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
 SoftEntry& entry_of(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
@@ -138,8 +137,7 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     row.arm = turned_now(w, contact.body, contact.from_body);
     const DVec3 point = center_now(w, contact.body) + DVec3(row.arm);
     const float gap = dot(row.normal, difference(place, point)) - entry.radius;
-    const float gravity = length(w.settings.gravity);
-    const float most = kSoftPushShare * std::sqrt((gravity > 0.0f ? gravity : kEarthGravity) * entry.size);
+    const float most = kSoftPushShare * std::sqrt(reference_gravity(w.settings) * entry.size);
     // A vertex that is free may come as near as it likes; one that is held goes to the surface from either side.
     const bool is_free = row.grip == SoftGrip::open && gap > 0.0f;
     const float wanted = is_free ? gap / s.h : clamp(error_rate(s) * gap, -most, most);

@@ -32,7 +32,8 @@ constexpr float kArticulationCompliance = 1.0e-4f;
 // Least closing speed for restitution, in speeds that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;
 
-// Largest factor by which impulses grow from one piece of an adaptive step to the next.
+// Largest factor by which impulses grow from one step to the next, or from one piece of an adaptive step to the next. In a very short one
+// they are mostly those of an impact, which does not last, and rounding.
 constexpr float kMaxWarm = 4.0f;
 
 // ------------------------------------------------------------------------------------------------------- islands at rest
@@ -260,9 +261,7 @@ HalfStepping plan_half_steps(RigidWorld& w, float seconds, bool by_rows) {
   plan.parts = by_rows ? 1 : kHalfStepsPerSubstep;
   plan.count = plan.parts * w.settings.substeps;
   plan.h = seconds / float(plan.count);
-  plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
-  // Pieces of a step up to an impact may be very short. What one of these leaves is mostly rounding.
-  if (!w.inactive_contacts.empty()) plan.warm_scale = min(plan.warm_scale, kMaxWarm);
+  plan.warm_scale = w.settings.last_substep > 0.0f ? min(plan.h / w.settings.last_substep, kMaxWarm) : 0.0f;
   w.settings.last_substep = plan.h;
   w.settings.last_step = seconds;
   return plan;
@@ -337,7 +336,7 @@ void add_soft(BatchContext& batch, SoftStore& soft, const FluidStore& fluids, So
                 .members = scratch.slots,
                 .h = float(plan.parts) * plan.h,
                 .parts = plan.parts,
-                .warm_scale = min(plan.warm_scale, kMaxWarm),
+                .warm_scale = plan.warm_scale,
                 .time = batch.w.now};
   make_soft_rows(batch.soft);
 }

@@ -96,6 +96,18 @@ void note_soft_before(WorldState& s) {
   });
 }
 
+void damage_soft(WorldState& s, float seconds) {
+  for (std::uint32_t slot = 0; slot < s.soft.entries.size(); ++slot) {
+    SoftEntry& entry = s.soft.entries[slot];
+    if (entry.def == nullptr || entry.damage.empty() || !entry.is_awake()) continue;
+    flow_soft(entry, seconds, *s.tasks);
+    s.soft_splits.clear();
+    tear_soft(entry, *s.tasks, s.soft_splits);
+    for (const SoftSplit& one : s.soft_splits)
+      s.soft.events.torn.push_back({soft_id(s, slot), int(one.vertex), int(one.made)});
+  }
+}
+
 void report_soft_events(WorldState& s) {
   for (std::uint32_t slot = 0; slot < s.soft.entries.size(); ++slot) {
     SoftEntry& entry = s.soft.entries[slot];

@@ -114,6 +114,17 @@ void report_large_islands(WorldState& s) {
                  to_string(solver.options.lcp_method));
 }
 
+// Sequential impulses converge slowly where heavy bodies hang on light ones, or in loops. Joints open and contacts sink then.
+void report_missed_impulses(WorldState& s) {
+  constexpr double kMissed = 0.5;
+  const RowStats& rows = s.solve.rows;
+  if (!(rows.missed_share > kMissed)) return;
+  report_problem(s, ErrorCode::unstable, {},
+                 "sequential_impulses: %d iterations missed the impulse of a row by %.3g N s, %.0f %% of the load of its island; joints open "
+                 "and contacts sink: use more iterations, or the solver soft_step or lcp",
+                 rows.sweeps, rows.residual, 100.0 * rows.missed_share);
+}
+
 void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
 
 // Must run right after the stage `collide`, which leaves contacts that it did not update as they were.
@@ -152,6 +163,7 @@ void detect_collisions(WorldState& s, float seconds, float flow) {
     clear_fluid_impulses(s.soft);
   });
   run_stage(s, StageName::touch_soft, [&] {
+    if (flow > 0.0f) damage_soft(s, flow);
     if (!s.soft.empty()) find_soft_contacts(w, s.soft, s.solve.soft.shapes_near, s.arena, *s.tasks, seconds);
   });
   run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, s.recycle_contacts, seconds); });
@@ -321,7 +333,7 @@ void end_step(WorldState& s, float seconds) {
   clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
   report_soft_events(s);
   const SoftEvents& soft = s.published_soft_events;
-  s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes, soft.begins, soft.ends, soft.inverted};
+  s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn};
   s.stepping = false;
 }
 
@@ -343,6 +355,7 @@ void step_world(WorldState& s, float seconds) {
   report_fluids(s);
   report_stiffness(s);
   report_large_islands(s);
+  report_missed_impulses(s);
   remove_broken_joints(s);
   count_work(s);
 }

@@ -52,10 +52,12 @@ class HashVisitor {
       const Particles& p = entry.body.particles;
       add_word(std::uint64_t(entry.kind) << 32 | std::uint64_t(p.count));
       for (const float mass : p.mass) add_record(mass);
-      for_each_soft_array(entry, [&](const auto& array) {
+      const auto add_array = [&](const auto& array) {
         add_word(array.size());
         for (const auto& record : array) add_record(record);
-      });
+      };
+      for_each_damage_array(entry, add_array);
+      for_each_soft_array(entry, add_array);
     });
   }
   void operator()(const char*, const FluidStore& fluids) {

@@ -10,6 +10,7 @@
 #include "rigid/store/rigid_world.h"
 #include "rigid/time/toi_stepping.h"
 #include "soft/query/soft_query.h"
+#include "soft/store/soft_damage.h"
 #include "soft/store/soft_store.h"
 #include "solver/kernels/solver_kernels.h"
 #include "task/task_system.h"
@@ -83,6 +84,7 @@ struct WorldState {
   Array<std::uint8_t> soft_touch_mark;  // by shape; 0 but while shapes are listed
   Array<SoftTouch> soft_touching;
   Array<std::uint8_t> soft_inverted;
+  Array<SoftSplit> soft_splits;
   bool stepping = false;
   bool validates = true;          // builds with GYRE_VALIDATE: state validation after each stage
   std::uint16_t number = 0;       // of this world, in its ids

@@ -87,12 +87,12 @@ TEST(Settings, OfBodiesShapesAndJointsAreReadBack) {
   const JointInfo hinge = world.joint_info(first), rod = world.joint_info(second);
   EXPECT_TRUE(hinge.kind == JointKind::hinge && hinge.a == body && hinge.b == plain &&
               hinge.collide_connected && hinge.enabled);
-  EXPECT_NEAR(distance(hinge.anchor_a, DVec3{1, 2, 3.5}), 0.0, 1e-6);
+  EXPECT_NEAR(length(difference(hinge.anchor_a, DVec3{1, 2, 3.5})), 0.0, 1e-6);
   EXPECT_EQ(hinge.break_force, 9.0f);
   EXPECT_EQ(hinge.break_torque, 0.0f);
   EXPECT_TRUE(rod.kind == JointKind::distance && !rod.a && rod.b == body);
-  EXPECT_NEAR(distance(rod.anchor_a, DVec3{0, 5, 0}), 0.0, 1e-6);
-  EXPECT_NEAR(distance(rod.anchor_b, DVec3{1, 2, 3}), 0.0, 1e-6);
+  EXPECT_NEAR(length(difference(rod.anchor_a, DVec3{0, 5, 0})), 0.0, 1e-6);
+  EXPECT_NEAR(length(difference(rod.anchor_b, DVec3{1, 2, 3})), 0.0, 1e-6);
   JointId joints[3];
   ASSERT_EQ(world.joints(body, joints), 2u);
   EXPECT_TRUE(joints[0] == first && joints[1] == second);

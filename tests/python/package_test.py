@@ -451,7 +451,8 @@ class Wheels(unittest.TestCase):
             environment = {key: value for key, value in os.environ.items() if not key.startswith("GYRE_")}
             code = "import gyre; gyre.load_scene('machines').run(0.02); print(gyre.__file__)"
             run = subprocess.run([sys.executable, "-c", code], env={**environment, "PYTHONPATH": os.path.join(folder, "installed")},
-                                 check=True, capture_output=True, text=True)
+                                 cwd=folder, check=False, capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, run.stderr)
             self.assertIn(folder, run.stdout)
 
 

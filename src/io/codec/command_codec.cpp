@@ -258,8 +258,8 @@ void fields(C& c, T& v) {
 template <class C, Is<ClothDef> T>
 void fields(C& c, T& v) {
   auto& [grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision, pressure,
-         ambient, law, settings] = v;
-  (void)pressure, (void)ambient, (void)law;  // later_fields
+         ambient, law, tear, settings] = v;
+  (void)pressure, (void)ambient, (void)law, (void)tear;  // later_fields
   all(c, grid, vertices, triangles, pose, links, density, stretch, shear, bend, thickness, self_collision,
       settings);
 }
@@ -275,22 +275,25 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<SolidDef> T>
 void fields(C& c, T& v) {
-  auto& [box, vertices, tetrahedra, surface, pose, model, density, modulus, ratio, settings] = v;
+  auto& [box, vertices, tetrahedra, surface, pose, model, density, modulus, ratio, fracture, yield, creep, settings] = v;
+  (void)fracture, (void)yield, (void)creep;  // later_fields
   all(c, box, vertices, tetrahedra, surface, pose, model, density, modulus, ratio, settings);
 }
 // Fields that definitions of the first format did not have. They follow a definition whose kind has kHasLaterFields; the others keep their bytes.
 constexpr std::uint8_t kHasLaterFields = 0x80;
 bool has_later_fields(const RopeDef&) { return false; }
-bool has_later_fields(const ClothDef& def) { return def.pressure.has_value(); }
-bool has_later_fields(const SolidDef&) { return false; }
+bool has_later_fields(const ClothDef& def) { return def.pressure.has_value() || def.tear_strain > 0.0f; }
+bool has_later_fields(const SolidDef& def) { return def.fracture_stress > 0.0f || def.yield_stress > 0.0f; }
 template <class C, Is<RopeDef> T>
 void later_fields(C&, T&) {}
 template <class C, Is<ClothDef> T>
 void later_fields(C& c, T& v) {
-  all(c, v.pressure, v.ambient_pressure, v.pressure_law);
+  all(c, v.pressure, v.ambient_pressure, v.pressure_law, v.tear_strain);
 }
 template <class C, Is<SolidDef> T>
-void later_fields(C&, T&) {}
+void later_fields(C& c, T& v) {
+  all(c, v.fracture_stress, v.yield_stress, v.creep_time);
+}
 // The kind, then the definition.
 void fields(FieldWriter& c, const std::shared_ptr<const SoftDef>& def) {
   const bool more = std::visit([](const auto& one) { return has_later_fields(one); }, *def);

@@ -3,6 +3,7 @@
 #include "io/codec/command_codec.h"
 #include "io/codec/array_codec.h"
 #include "soft/store/soft_builder.h"
+#include "soft/store/soft_damage.h"
 
 namespace gyre {
 
@@ -26,6 +27,7 @@ void write_soft(ByteWriter& out, const SoftStore& soft) {
   out.put_all(soft.ids.generations());
   soft.for_each([&](const SoftEntry& entry) {
     write_soft_def(out, *entry.def);
+    for_each_damage_array(entry, [&](const auto& array) { write_array(out, array); });
     for_each_soft_array(entry, [&](const auto& array) { write_array(out, array); });
   });
 }
@@ -41,6 +43,8 @@ bool read_soft(ByteReader& in, SoftStore& soft) {
     if (in.failed() || std::visit([](const auto& one) { return check_soft(one); }, *def)) return false;
     SoftEntry& entry = soft.entries[slot] = build_soft(std::move(def));
     bool good = true;
+    for_each_damage_array(entry, [&](auto& array) { good = good && read_array(in, array); });
+    if (!good || !rebuild_damaged(entry)) return false;
     for_each_soft_array(entry, [&](auto& array) { good = good && read_array(in, array); });
     if (!good || !fits(entry)) return false;
   }

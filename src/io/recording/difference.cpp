@@ -61,9 +61,11 @@ struct Tracer {
     StateTrace::Column& out = add(name);
     soft.for_each([&](const SoftEntry& entry) {
       std::uint64_t hash = std::uint64_t(entry.body.particles.count);
-      for_each_soft_array(entry, [&](const auto& array) {
+      const auto add_array = [&](const auto& array) {
         for (const auto& record : array) hash = mix_bits(hash + hash_record(record));
-      });
+      };
+      for_each_damage_array(entry, add_array);
+      for_each_soft_array(entry, add_array);
       out.rows.push_back(hash);
     });
   }

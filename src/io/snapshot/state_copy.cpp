@@ -195,6 +195,7 @@ struct OtherSize {
   void operator()(const char*, const IdPool& ids) { bytes += ids.bytes(); }
   void operator()(const char*, const SoftStore& soft) {
     soft.for_each([&](const SoftEntry& entry) {
+      for_each_damage_array(entry, [&](const auto& array) { bytes += array.bytes(); });
       for_each_soft_array(entry, [&](const auto& array) { bytes += array.bytes(); });
     });
   }

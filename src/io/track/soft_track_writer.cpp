@@ -55,6 +55,8 @@ bool SoftTrackWriter::write_soft(BitWriter& bits, const SoftStore& store, std::u
                                  std::uint64_t gap, TrackedSoft& soft, bool known, Emit emit) {
   const SoftEntry& entry = store.entries[index];
   round_vertices(entry, soft);
+  // One that was torn has more vertices and another surface.
+  known = known && soft.now.size() == next_.size();
   VertexCoding coding = known ? best_coding(soft) : VertexCoding::put;
   const std::uint32_t old_surface = soft.surface;
   if (!known) soft.surface = surface_of(entry, emit);

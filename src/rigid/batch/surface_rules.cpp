@@ -80,13 +80,13 @@ float size_of(const RigidWorld& w, std::uint32_t shape, const Contact& contact) 
 
 // True if a one-way surface stops the other body. `direction`: of the surface, world axes; `outward`: the manifold's normal, out of the
 // surface; `leaving`: the other body's relative velocity; `size`: of the other shape.
-bool holds(const Manifold& manifold, Vec3 direction, Vec3 outward, Vec3 leaving, float size) {
+bool holds(const Manifold& manifold, Vec3 direction, Vec3 outward, Vec3 leaving, float size, float gravity) {
   const Vec3 along = normalized(direction);
   if (dot(along, outward) < kHolds) return false;
   float deepest = kUnbounded;
   for (int k = 0; k < manifold.count; ++k) deepest = min(deepest, manifold.points[k].separation);
   if (deepest < -kPassingDepth * size) return false;
-  return deepest >= 0.0f || dot(leaving, along) <= kLeaving * std::sqrt(9.81f * size);
+  return deepest >= 0.0f || dot(leaving, along) <= kLeaving * std::sqrt(gravity * size);
 }
 
 void clear_impulses(Manifold& manifold) {
@@ -110,11 +110,12 @@ bool apply_surface_rules(const RigidWorld& w, const Contact& contact, Manifold& 
   if (a.rule == nullptr && b.rule == nullptr) return true;
   const Vec3 speed = point_velocity(w.bodies.motion[contact.body_b], manifold.points[0].from_b) -
                      point_velocity(w.bodies.motion[contact.body_a], manifold.points[0].from_a);
+  const float gravity = reference_gravity(w.settings);
   Vec3 running;
   if (a.rule != nullptr) {
     const Vec3 one_way = turn_to_world(w, contact.body_a, a.rule->one_way);
     if (a.rule->one_way != Vec3{} &&
-        !holds(manifold, one_way, manifold.normal, speed, size_of(w, contact.shape_b, contact))) {
+        !holds(manifold, one_way, manifold.normal, speed, size_of(w, contact.shape_b, contact), gravity)) {
       clear_impulses(manifold);
       return false;
     }
@@ -123,7 +124,7 @@ bool apply_surface_rules(const RigidWorld& w, const Contact& contact, Manifold& 
   if (b.rule != nullptr) {
     const Vec3 one_way = turn_to_world(w, contact.body_b, b.rule->one_way);
     if (b.rule->one_way != Vec3{} &&
-        !holds(manifold, one_way, -manifold.normal, -speed, size_of(w, contact.shape_a, contact))) {
+        !holds(manifold, one_way, -manifold.normal, -speed, size_of(w, contact.shape_a, contact), gravity)) {
       clear_impulses(manifold);
       return false;
     }

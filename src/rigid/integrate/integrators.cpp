@@ -190,8 +190,21 @@ class BodyRotations {
   int count_ = 0;
 };
 
+// Up to this many half-steps the scheme's own error is above the rounding of all their sums. With more, what rounding loses of a velocity
+// in one half-step goes into the next (W. Kahan, "Further remarks on reducing truncation errors", 1965).
+constexpr int kMaxRounded = 8;
+bool carries_rounding(const Motions& motions) { return motions.count > kMaxRounded; }
+// `lost`: by rounding so far; null where that is not carried.
+Vec3 add_gain(Vec3 v, Vec3 gain, Vec3* lost) {
+  if (lost == nullptr) return v + gain;
+  gain += *lost;
+  const Vec3 sum = v + gain;
+  *lost = gain - (sum - v);
+  return sum;
+}
+
 // Integrates the velocity over a sub-step by forces.
-void integrate_velocity(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
+void integrate_velocity(BodyStore& bodies, std::uint32_t i, const Motions& motions, Vec3* lost) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
   const BodyInertia& inertia = bodies.inertia[i];
@@ -199,7 +212,8 @@ void integrate_velocity(BodyStore& bodies, std::uint32_t i, const Motions& motio
   const Damping linear(forces.linear_damping, motions.substep),
       angular(forces.angular_damping, motions.substep);
   const Vec3 acceleration = forces.gravity_scale * motions.gravity + inertia.inverse_mass * forces.force;
-  const Vec3 v = motion.linear_velocity + (linear.gain * acceleration - linear.loss * motion.linear_velocity);
+  const Vec3 v = add_gain(motion.linear_velocity,
+                          linear.gain * acceleration - linear.loss * motion.linear_velocity, lost);
   const Vec3 w = motion.angular_velocity +
                  (angular.gain * (inertia.inverse * forces.torque) - angular.loss * motion.angular_velocity);
   // Adding zero keeps -0 out of the state, so wide kernels may add zeros to lanes that nothing acts on.
@@ -220,15 +234,17 @@ void integrate_translation(BodyStore& bodies, std::uint32_t i, const Motions& mo
   Vec3 v = motion.linear_velocity, delta_position = motion.delta_position;
   // No sub-step meets a lock or the bound on speed, or produces -0, once v has none.
   const float fastest = largest(absolute(v)) + float(motions.count) * largest(absolute(gain));
+  Vec3 rounding;
+  Vec3* const lost = carries_rounding(motions) ? &rounding : nullptr;
   if (flags.locked_linear == 0 && fastest <= 0.25f * kMaxSpeed) {
     v += Vec3{};
     for (int substep = 0; substep < motions.count; ++substep) {
-      v = v + (gain - damping.loss * v);
+      v = add_gain(v, gain - damping.loss * v, lost);
       delta_position += motions.substep * v;
     }
   } else {
     for (int substep = 0; substep < motions.count; ++substep) {
-      v = v + (gain - damping.loss * v);
+      v = add_gain(v, gain - damping.loss * v, lost);
       v = clamp_without_overflow(without_locked(v, flags.locked_linear), kMaxSpeed) + Vec3{};
       delta_position += motions.substep * v;
     }
@@ -257,8 +273,9 @@ void integrate_free_body(BodyStore& bodies, std::uint32_t i, const Motions& moti
     return rotations.add(i);
   }
   BodyRotations per_substep(bodies, kernels, motions.substep);
+  Vec3 lost;
   for (int substep = 0; substep < motions.count; ++substep) {
-    if (has_forces) integrate_velocity(bodies, i, motions);
+    if (has_forces) integrate_velocity(bodies, i, motions, carries_rounding(motions) ? &lost : nullptr);
     motion.linear_velocity = without_locked(motion.linear_velocity, flags.locked_linear);
     motion.delta_position += motions.substep * motion.linear_velocity;
     if (is_torque_free) continue;
@@ -292,6 +309,7 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
   moved.inertia = mass.inertia;
   moved.inverse_inertia = mass.inverse_inertia;
   moved.locked = flags.locked_linear;
+  moved.carries_rounding = carries_rounding(motions);
   moved.isotropic = mass.isotropic != 0;
   return moved;
 }

@@ -58,13 +58,16 @@ float radius_for_sleep(const BodyMass& mass) {
   return max(mass.bounding_radius, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
 }
 
-float full_sleep_speed(const RigidWorld& w, std::uint32_t body, float gravity, float radius) {
-  const float own = sleep_speed_of(w.bodies, body);
-  return own > 0.0f ? own : sleep_share(w) * std::sqrt((gravity > 0.0f ? gravity : 9.81f) * radius);
+bool is_weightless(const RigidWorld& w, std::uint32_t body) {
+  return w.settings.gravity == Vec3{} || w.bodies.forces[body].gravity_scale == 0.0f;
 }
 
-SleepTest test_at_first_sight(const RigidWorld& w, std::uint32_t body, float gravity, float radius,
-                              float seconds) {
+float full_sleep_speed(const RigidWorld& w, std::uint32_t body, float radius) {
+  const float own = sleep_speed_of(w.bodies, body);
+  return own > 0.0f ? own : sleep_share(w) * std::sqrt(reference_gravity(w.settings) * radius);
+}
+
+SleepTest test_at_first_sight(const RigidWorld& w, std::uint32_t body, float radius, float seconds) {
   const BodyFlags& flags = w.bodies.flags[body];
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyForces& forces = w.bodies.forces[body];
@@ -72,15 +75,14 @@ SleepTest test_at_first_sight(const RigidWorld& w, std::uint32_t body, float gra
   SleepTest test;
   // A free body has no support: it never stops once it moves.
   test.allowed = flags.can_sleep != 0 && (flags.constraint_use != 0 || !moves) && forces.force == Vec3{} &&
-                 forces.torque == Vec3{} &&
-                 (flags.constraint_use != 0 || gravity * absolute(forces.gravity_scale) == 0.0f);
+                 forces.torque == Vec3{} && (flags.constraint_use != 0 || is_weightless(w, body));
   test.speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
   // A wedged or jointed body may be pushed out in every step and return. Its pushout counts no more than its net
   // motion.
   const float pushout =
       min(motion.pushout, length(motion.delta_position) + radius * length(motion.delta_rotation));
   test.motion = test.speed + kPushoutWeight * pushout / seconds;
-  test.rest_speed = full_sleep_speed(w, body, gravity, radius);
+  test.rest_speed = full_sleep_speed(w, body, radius);
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
     // A body in a field may be slow for a moment at a turning point, so its velocity must be constant, too.
     const FieldRest& field = w.field_rest[body];
@@ -96,8 +98,7 @@ SleepTest test_at_first_sight(const RigidWorld& w, std::uint32_t body, float gra
 
 // Looks at what may keep a body moving that is slow now.
 void look_closer(const RigidWorld& w, std::uint32_t body, float radius, float seconds, SleepTest& test) {
-  const float free_speed =
-      min(test.rest_speed, kFreeSpeedShare * full_sleep_speed(w, body, length(w.settings.gravity), radius));
+  const float free_speed = min(test.rest_speed, kFreeSpeedShare * full_sleep_speed(w, body, radius));
   if (!joints_of(w.bodies, body).empty()) {
     const BodyMotion& motion = w.bodies.motion[body];
     const float displacement = length(motion.delta_position) + radius * length(motion.delta_rotation);
@@ -122,11 +123,10 @@ float still_time_gain(const SleepTest& test, float seconds) {
 }
 
 void update_still_times(RigidWorld& w, float seconds, bool& any_ready) {
-  const float gravity = length(w.settings.gravity);
   for (const std::uint32_t i : w.bodies.awake) {
     if (w.bodies.flags[i].type != BodyType::dynamic) continue;
     const float radius = radius_for_sleep(w.bodies.masses[i]);
-    SleepTest test = test_at_first_sight(w, i, gravity, radius, seconds);
+    SleepTest test = test_at_first_sight(w, i, radius, seconds);
     float& still = w.bodies.sleep[i].still_time;
     if (test.allowed && test.motion <= test.rest_speed && still >= kStillBeforeCloserLook)
       look_closer(w, i, radius, seconds, test);
@@ -146,10 +146,10 @@ bool can_wake_others(const RigidWorld& w, std::uint32_t body) {
          (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{});
 }
 
-SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float gravity, float seconds) {
+SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float seconds) {
   if (!(seconds > 0.0f)) seconds = 1.0f;  // before the first step nothing was displaced
   const float radius = radius_for_sleep(w.bodies.masses[body]);
-  SleepTest test = test_at_first_sight(w, body, gravity, radius, seconds);
+  SleepTest test = test_at_first_sight(w, body, radius, seconds);
   look_closer(w, body, radius, seconds, test);
   return test;
 }
@@ -229,10 +229,6 @@ void wake_touched(RigidWorld& w) {
 
 namespace {
 
-bool is_weightless(const RigidWorld& w, std::uint32_t body) {
-  return w.settings.gravity == Vec3{} || w.bodies.forces[body].gravity_scale == 0.0f;
-}
-
 // Marks islands without weight that nothing supports and that move: they drift on. (With weight they would fall.)
 void mark_drifting(const RigidWorld& w, Islands& islands, Arena& arena, std::span<std::uint8_t> is_restless) {
   bool any = false;
@@ -258,7 +254,7 @@ void mark_drifting(const RigidWorld& w, Islands& islands, Arena& arena, std::spa
     const float radius = radius_for_sleep(w.bodies.masses[i]);
     const float speed = length(motion.linear_velocity) + radius * length(motion.angular_velocity);
     const float share = sleep_speed_of(w.bodies, i) > 0.0f ? 1.0f : kDriftSpeedShare;
-    if (speed > share * full_sleep_speed(w, i, 0.0f, radius)) is_restless[islands.root(i)] = 1;
+    if (speed > share * full_sleep_speed(w, i, radius)) is_restless[islands.root(i)] = 1;
   }
 }
 

@@ -79,7 +79,7 @@ struct SleepTest {
   float rest_speed = 0.0f;  // m/s; a body whose motion is less is still
 };
 // `gravity`: its length, m/s^2. `seconds`: length of the last step.
-SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float gravity, float seconds);
+SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float seconds);
 
 // Wakes the group of a sleeping body and appends the events to w.events. No effect on an awake body but that its
 // still time restarts.

@@ -8,10 +8,12 @@ namespace gyre {
 
 namespace {
 
-// A contact is reported as a hit if it closes faster than this share of sqrt(9.81 m/s^2 * size).
+// A contact is reported as a hit if it closes faster than this share of sqrt(gravity * size).
 constexpr float kHitShare = 0.3f;
 
-float hit_speed(const Contact& contact) { return kHitShare * std::sqrt(9.81f * contact.size); }
+float hit_speed(const RigidWorld& w, const Contact& contact) {
+  return kHitShare * std::sqrt(reference_gravity(w.settings) * contact.size);
+}
 
 // `struck`: the point that closed fastest.
 ContactHit make_hit(const RigidWorld& w, const Contact& contact, const Manifold& manifold,
@@ -41,7 +43,7 @@ bool record_hit_approach(const RigidWorld& w, const Contact& contact, Manifold& 
                                  point_velocity(w.bodies.motion[contact.body_b], point.from_b));
     fastest = max(fastest, point.approach_speed);
   }
-  return fastest > 0.0f && fastest > hit_speed(contact);
+  return fastest > 0.0f && fastest > hit_speed(w, contact);
 }
 
 void find_hits(const RigidWorld& w, const ContactLists& contacts, Array<SlotHit>& hits, Arena& arena,
@@ -51,7 +53,7 @@ void find_hits(const RigidWorld& w, const ContactLists& contacts, Array<SlotHit>
   for (const std::uint32_t i : parallel_filter(tasks, arena, contacts.constraints.size(), came_fast).list) {
     const Contact& contact = w.contacts.contacts[contacts.slots[i]];
     const Manifold& manifold = *contacts.constraints[i].manifold;
-    float fastest = hit_speed(contact);
+    float fastest = hit_speed(w, contact);
     const ContactPointState* struck = nullptr;
     float impulse = 0.0f;
     for (int k = 0; k < manifold.count; ++k) {

@@ -65,6 +65,16 @@ double largest_alone(std::span<const Row> rows, std::span<const RowBody> bodies)
   return most;
 }
 
+// The impulse that holds the weight of all bodies of an island for a sub-step, N s.
+double weight_impulse(const RowSolve& s, std::span<const RowBody> bodies) {
+  double mass = 0.0;
+  for (const RowBody& body : bodies) {
+    const double inverse = max(body.inverse_mass.x, max(body.inverse_mass.y, body.inverse_mass.z));
+    if (inverse > 0.0) mass += 1.0 / inverse;
+  }
+  return mass * double(length(s.joints.w.settings.gravity)) * double(s.joints.settings.substep);
+}
+
 void iterate_island(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
                     RowStats& report) {
   const std::span<Row> rows = island.rows();
@@ -79,7 +89,10 @@ void iterate_island(const RowSolve& s, const IslandRows& island, NumberRoom room
   }
   for (int i = 0; i < sweeps_of(s.settings); ++i) iterate_rows_once(rows, bodies, s.friction);
   report.sweeps = sweeps_of(s.settings);
-  report.residual = max(report.residual, find_row_residual(rows, bodies, s.friction));
+  const double residual = find_row_residual(rows, bodies, s.friction);
+  report.residual = max(report.residual, residual);
+  const double load = max(scale, weight_impulse(s, bodies));
+  if (load > 0.0) report.missed_share = max(report.missed_share, residual / load);
 }
 
 double direct_tolerance(double scale) {
@@ -264,6 +277,7 @@ void make_rooms(RowSolve& s, Arena& arena, std::size_t workers) {
 void add_reports(RowStats& sum, std::span<const RowStats> reports) {
   for (const RowStats& report : reports) {
     sum.residual = max(sum.residual, report.residual);
+    sum.missed_share = max(sum.missed_share, report.missed_share);
     sum.islands += report.islands;
     sum.largest = max(sum.largest, report.largest);
     sum.direct += report.direct;

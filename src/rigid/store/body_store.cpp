@@ -70,6 +70,7 @@ BodyInertia world_inertia(const BodyMass& mass, const BodyFlags& flags, Quat ori
   if (!is_movable(flags)) return {};
   BodyInertia result;
   result.inverse_mass = flags.locked_linear == 7 ? 0.0f : mass.inverse_mass;
+  result.locked = float(flags.locked_linear);
   if (flags.locked_angular == 7) return result;
   if (flags.locked_angular != 0) {
     result.inverse = inverse_on_free_axes(rotate_inertia(orientation, mass.inertia), flags.locked_angular);

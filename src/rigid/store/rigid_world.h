@@ -57,6 +57,13 @@ struct RigidSettings {
   float last_step = 0.0f;     // s
 };
 
+// The acceleration by which speeds are judged: that of gravity, and where the world has none, that of the Earth's.
+constexpr float kEarthGravity = 9.81f;  // m/s^2
+inline float reference_gravity(const RigidSettings& settings) {
+  const float gravity = length(settings.gravity);
+  return gravity > 0.0f ? gravity : kEarthGravity;
+}
+
 // The world's sleep speed, as a share of sqrt(gravity * bounding radius), the natural speed of a body.
 constexpr float kSleepSpeedShare = 0.015f;
 struct SleepSettings {

@@ -44,16 +44,26 @@ void refresh_collider(ShapeStore& store, std::uint32_t shape) {
 }
 
 MassProperties shapes_mass(const ShapeStore& store, std::span<const ShapeId> shapes) {
+  const auto is_solid = [&](ShapeId id) {
+    return !store.proxies[id.index].sensor && is_convex(store.colliders[id.index].shape.kind);
+  };
+  bool any_density = false;
+  for (const ShapeId id : shapes)
+    any_density = any_density || (is_solid(id) && store.density[id.index] > 0.0f);
   std::vector<MassProperties> parts;
   parts.reserve(shapes.size());
   for (const ShapeId id : shapes) {
-    const std::uint32_t shape = id.index;
-    if (!(store.density[shape] > 0.0f) || store.proxies[shape].sensor) continue;
-    if (!is_convex(store.colliders[shape].shape.kind)) continue;
-    const Result<MassProperties> mass = mass_properties(store.geometry[shape], store.density[shape]);
-    if (mass) parts.push_back(transformed(*mass, store.colliders[shape].body_from_shape));
+    const float density = any_density ? store.density[id.index] : 1.0f;
+    if (!(density > 0.0f) || !is_solid(id)) continue;
+    const Result<MassProperties> mass = mass_properties(store.geometry[id.index], density);
+    if (mass) parts.push_back(transformed(*mass, store.colliders[id.index].body_from_shape));
   }
-  return combined(parts);
+  MassProperties all = combined(parts);
+  if (!any_density && all.mass > 0.0f) {
+    all.inertia = (1.0f / all.mass) * all.inertia;
+    all.mass = 1.0f;
+  }
+  return all;
 }
 
 }  // namespace gyre

@@ -50,7 +50,8 @@ void remove_shape_slot(ShapeStore& store, std::uint32_t shape);
 // Derives the form for collision from the state columns.
 void refresh_collider(ShapeStore& store, std::uint32_t shape);
 
-// Mass properties of a set of shapes in the frame of the body. Planes, meshes and height fields have no mass.
+// Mass properties of a set of shapes in the frame of the body. Planes, meshes and height fields have no mass. Shapes whose densities
+// are all 0 are measured with equal densities, to a mass of 1.
 MassProperties shapes_mass(const ShapeStore& store, std::span<const ShapeId> shapes);
 
 }  // namespace gyre

@@ -107,6 +107,18 @@ void add_plate(const Grid& grid, double stiffness, Array<MatrixEntry>& entries) 
 
 }  // namespace
 
+Array<DVec3> grid_places(const float (&size)[2], const int (&cells)[2], const Pose& pose) {
+  const double dx = double(size[0]) / cells[0], dy = double(size[1]) / cells[1];
+  Array<DVec3> places;
+  for (int j = 0; j <= cells[1]; ++j) {
+    for (int i = 0; i <= cells[0]; ++i) {
+      const DVec3 local{i * dx - 0.5 * double(size[0]), 0.0, j * dy - 0.5 * double(size[1])};
+      places.push_back(pose.position + rotate(to_double(pose.orientation), local));
+    }
+  }
+  return places;
+}
+
 SoftBody grid_cloth(const float (&size)[2], const int (&cells)[2], const Pose& pose,
                     const ClothMaterial& material) {
   const Grid grid{cells[0] + 1, cells[1] + 1, double(size[0]) / cells[0], double(size[1]) / cells[1]};
@@ -114,11 +126,11 @@ SoftBody grid_cloth(const float (&size)[2], const int (&cells)[2], const Pose& p
   body.damping = material.damping;
   Particles& particles = body.particles;
   particles.resize(grid.columns * grid.rows);
+  const Array<DVec3> places = grid_places(size, cells, pose);
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       const int particle = int(grid.at(i, j));
-      const DVec3 local{i * grid.dx - 0.5 * double(size[0]), 0.0, j * grid.dy - 0.5 * double(size[1])};
-      particles.set_place(particle, pose.position + rotate(to_double(pose.orientation), local));
+      particles.set_place(particle, places[particle]);
       particles.mass[particle] =
           float(double(material.area_density) * grid.column_share(i) * grid.row_share(j));
     }

@@ -26,6 +26,9 @@ struct ClothMaterial {
 SoftBody grid_cloth(const float (&size)[2], const int (&cells)[2], const Pose& pose,
                     const ClothMaterial& material);
 
+// Where the corners of the cells of a grid are.
+Array<DVec3> grid_places(const float (&size)[2], const int (&cells)[2], const Pose& pose);
+
 // A cloth of triangles, at rest as they lie. Links springs: one along each edge, k = stretch stiffness times area of both triangles over the
 // square of the edge (A. Van Gelder, "Approximate Simulation of Elastic Membranes by Triangulated Spring Meshes", 1998), which is
 // right for triangles of equal sides, whose lateral contraction is 1/3; the shear stiffness is not asked for. Links membrane: isotropic,

@@ -47,8 +47,7 @@ Array<std::uint32_t> box_tetrahedra(const int (&cells)[3]) {
   return corners;
 }
 
-SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose,
-                   const SolidMaterial& material) {
+Array<DVec3> box_places(Vec3 half_extents, const int (&cells)[3], const Pose& pose) {
   const DQuat turn = to_double(pose.orientation);
   Array<DVec3> places;
   for (int k = 0; k <= cells[2]; ++k) {
@@ -61,7 +60,12 @@ SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose,
       }
     }
   }
-  return tetrahedral_solid(places, box_tetrahedra(cells), material);
+  return places;
+}
+
+SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose,
+                   const SolidMaterial& material) {
+  return tetrahedral_solid(box_places(half_extents, cells, pose), box_tetrahedra(cells), material);
 }
 
 }  // namespace gyre

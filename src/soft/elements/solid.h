@@ -20,6 +20,9 @@ SoftBody tetrahedral_solid(std::span<const DVec3> places, std::span<const std::u
 // Four corners each of the tetrahedra of a box of cells, six a cell.
 Array<std::uint32_t> box_tetrahedra(const int (&cells)[3]);
 
+// Where the corners of the cells of a box are.
+Array<DVec3> box_places(Vec3 half_extents, const int (&cells)[3], const Pose& pose);
+
 // A box, its middle at `pose`, in cells of six tetrahedra each. Particle i + (cells[0] + 1) (j + (cells[1] + 1) k) is corner i, j, k.
 SoftBody box_solid(Vec3 half_extents, const int (&cells)[3], const Pose& pose, const SolidMaterial& material);
 

@@ -7,6 +7,7 @@
 #include "soft/elements/rope.h"
 #include "soft/elements/solid.h"
 #include "soft/mesh/tetrahedral_fill.h"
+#include "soft/store/soft_damage.h"
 
 #include <cmath>
 
@@ -77,17 +78,49 @@ void set_gas(const ClothDef& def, SoftEntry& entry) {
   gas.is_constant = def.pressure_law == PressureLaw::constant;
 }
 
+ClothMaterial material_of(const ClothDef& def) {
+  return {.links = def.links,
+          .area_density = def.area_density,
+          .stretch_stiffness = def.stretch_stiffness,
+          .shear_stiffness = def.shear_stiffness,
+          .bend_stiffness = def.bend_stiffness,
+          .damping = def.settings.damping};
+}
+SolidMaterial material_of(const SolidDef& def) {
+  return {.density = def.density,
+          .young_modulus = def.young_modulus,
+          .poisson_ratio = def.poisson_ratio,
+          .damping = def.settings.damping,
+          .model = ElementModel(def.model)};
+}
+
+Array<DVec3> places_of(const ClothDef& def) {
+  const Pose pose = normalized_pose(def.pose);
+  if (!def.grid) return placed(def.vertices, pose);
+  const float size[2] = {def.grid->size[0], def.grid->size[1]};
+  const int cells[2] = {def.grid->cells[0], def.grid->cells[1]};
+  return grid_places(size, cells, pose);
+}
+Array<DVec3> places_of(const SolidDef& def) {
+  const Pose pose = normalized_pose(def.pose);
+  if (!def.box) return placed(def.vertices, pose);
+  const int cells[3] = {def.box->cells[0], def.box->cells[1], def.box->cells[2]};
+  return box_places(def.box->half_extents, cells, pose);
+}
+
+// The stretch stiffness of rods: that of springs under which the cloth hangs longer by a small share by its own weight.
+float rod_stiffness(const ClothDef& def, const SoftBody& body) {
+  const double weight = double(def.area_density) * kEarthGravity * extent_of(body);
+  return float(weight / kRodStrain);
+}
+
 void build(const ClothDef& def, SoftEntry& entry) {
   entry.kind = SoftKind::cloth;
   entry.radius = 0.5f * def.thickness;
-  ClothMaterial material{.links = def.links,
-                         .area_density = def.area_density,
-                         .stretch_stiffness = def.stretch_stiffness,
-                         .shear_stiffness = def.shear_stiffness,
-                         .bend_stiffness = def.bend_stiffness,
-                         .damping = def.settings.damping};
+  ClothMaterial material = material_of(def);
   const Pose pose = normalized_pose(def.pose);
   const auto make = [&] {
+    if (def.tear_strain > 0.0f) return mesh_cloth(places_of(def), entry.triangles, material);
     if (!def.grid) {
       return mesh_cloth(placed(def.vertices, pose), def.triangles, material);
     }
@@ -102,8 +135,7 @@ void build(const ClothDef& def, SoftEntry& entry) {
   }
   if (def.links == ClothLinks::rods) {
     entry.body = make();
-    const double weight = double(def.area_density) * kEarthGravity * extent_of(entry.body);
-    material.stretch_stiffness = float(weight / kRodStrain);
+    material.stretch_stiffness = rod_stiffness(def, entry.body);
   }
   entry.body = make();
   if (def.pressure) set_gas(def, entry);
@@ -172,11 +204,7 @@ void build_filled(const SolidSurface& surface, const Pose& pose, SolidMaterial m
 
 void build(const SolidDef& def, SoftEntry& entry) {
   entry.kind = SoftKind::solid;
-  const SolidMaterial material{.density = def.density,
-                               .young_modulus = def.young_modulus,
-                               .poisson_ratio = def.poisson_ratio,
-                               .damping = def.settings.damping,
-                               .model = ElementModel(def.model)};
+  const SolidMaterial material = material_of(def);
   const Pose pose = normalized_pose(def.pose);
   if (def.box) {
     const int cells[3] = {def.box->cells[0], def.box->cells[1], def.box->cells[2]};
@@ -235,8 +263,40 @@ SoftEntry build_soft(std::shared_ptr<const SoftDef> def) {
   entry.size = edge_size(entry);
   entry.def = std::move(def);
   entry.contact_surface = make_surface(entry, *entry.def);
+  begin_damage(entry);
   set_start(entry.settings(), entry.body.particles);
   return entry;
+}
+
+Array<DVec3> rest_places(const SoftDef& def, std::span<const std::uint32_t> roots) {
+  const ClothDef* const cloth = std::get_if<ClothDef>(&def);
+  const Array<DVec3> all = cloth != nullptr ? places_of(*cloth) : places_of(std::get<SolidDef>(def));
+  Array<DVec3> places;
+  places.reserve(roots.size());
+  for (const std::uint32_t root : roots) places.push_back(all[root]);
+  return places;
+}
+
+SoftBody build_elements(const SoftDef& def, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> roots) {
+  const Array<DVec3> places = rest_places(def, roots);
+  if (const ClothDef* const cloth = std::get_if<ClothDef>(&def)) {
+    ClothMaterial material = material_of(*cloth);
+    SoftBody body = mesh_cloth(places, corners, material);
+    if (cloth->links != ClothLinks::rods) return body;
+    material.stretch_stiffness = rod_stiffness(*cloth, body);
+    return mesh_cloth(places, corners, material);
+  }
+  return tetrahedral_solid(places, corners, material_of(std::get<SolidDef>(def)));
+}
+
+void build_surface(SoftEntry& entry, std::span<const std::uint32_t> corners) {
+  entry.triangles.clear();
+  if (entry.kind == SoftKind::cloth) {
+    entry.triangles.assign(corners);
+  } else {
+    add_outer_faces(corners, entry.body, entry.triangles);
+  }
+  entry.contact_surface = make_surface(entry, *entry.def);
 }
 
 }  // namespace gyre

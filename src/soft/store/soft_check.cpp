@@ -248,6 +248,7 @@ Error check_soft(const ClothDef& def) {
   if (e.ok()) e = not_negative("bend_stiffness", def.bend_stiffness);
   if (e.ok()) e = not_negative("thickness", def.thickness);
   if (e.ok() && def.pressure) e = good_gas(def);
+  if (e.ok()) e = not_negative("tear_strain", def.tear_strain);
   return e ? e : good_settings(def.settings, vertices);
 }
 
@@ -273,6 +274,13 @@ Error check_soft(const SolidDef& def) {
   if (e.ok()) e = above_zero("young_modulus", def.young_modulus);
   if (e.ok() && !(def.poisson_ratio > -1.0f && def.poisson_ratio < 0.5f))
     e = refused("poisson_ratio is %g; it must lie between -1 and 1/2", double(def.poisson_ratio));
+  if (e.ok()) e = not_negative("fracture_stress", def.fracture_stress);
+  if (e.ok()) e = not_negative("yield_stress", def.yield_stress);
+  if (e.ok()) e = not_negative("creep_time", def.creep_time);
+  if (e.ok() && def.fracture_stress > 0.0f && def.surface)
+    e = refused("fracture_stress is given for a filled surface; only boxes and tetrahedra break");
+  if (e.ok() && def.yield_stress > 0.0f && def.model == SolidModel::linear)
+    e = refused("yield_stress is given for the linear model; corotated and neo_hookean yield");
   return e ? e : good_settings(def.settings, vertices);
 }
 

@@ -55,6 +55,17 @@ struct SoftRest {
   std::uint8_t asleep = 0;
 };
 
+// How cloths and solids that tear, break or flow differ from their definition. Empty: not at all, nor will they.
+struct SoftDamage {
+  Array<std::uint32_t> corners;  // of the elements, in the order of the definition: three each of a cloth, four of a solid
+  Array<std::uint32_t> roots;    // by particle: the vertex of the definition that it was
+  Array<float> mass;             // kg, by particle
+  Array<float> flow;             // nine of each tetrahedron, by columns: P; or none
+  Array<float> rest_inverse;     // Dm^-1 likewise, known from the definition and the corners
+
+  bool empty() const { return roots.empty(); }
+};
+
 // A shape that vertices touch, and the first of them.
 struct SoftTouch {
   std::uint32_t shape = 0;
@@ -74,8 +85,9 @@ struct SoftEvents {
   Array<SoftContactBegin> begins;
   Array<SoftContactEnd> ends;
   Array<SoftInverted> inverted;
+  Array<SoftTorn> torn;
 
-  void clear() { begins.clear(), ends.clear(), inverted.clear(); }
+  void clear() { begins.clear(), ends.clear(), inverted.clear(), torn.clear(); }
 };
 
 struct SoftEntry {
@@ -94,6 +106,7 @@ struct SoftEntry {
   Array<DVec3> fluid_last, fluid_sum;
   float radius = 0.0f;  // m: half the thickness, which the surface keeps from shapes
   float size = 0.0f;    // m: the mean length of its edges, by which speculative distances go
+  SoftDamage damage;
   SoftReported reported;
 
   bool is_awake() const { return rest[0].asleep == 0; }
@@ -148,6 +161,16 @@ void for_each_soft_array(Entry& entry, Visitor&& visit) {
   visit(entry.attachments);
   visit(entry.contacts);
   visit(entry.rest);
+}
+
+// The arrays of damage that are state; of an entry that is damaged by nothing: none. A reader needs them before the others.
+template <class Entry, class Visitor>
+void for_each_damage_array(Entry& entry, Visitor&& visit) {
+  if (entry.damage.empty()) return;
+  visit(entry.damage.corners);
+  visit(entry.damage.roots);
+  visit(entry.damage.mass);
+  visit(entry.damage.flow);
 }
 
 // Begins to move again, and does not fall asleep for a while.

@@ -21,7 +21,9 @@ template <int W, int Count>
 GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
   constexpr float kRegular = 0.02f;
   const Wide<W> zero(0.0f), one(1.0f);
-  const Wide<W> inverse_masses = block.inverse_mass_a + block.inverse_mass_b;
+  Wide<W> inverse_masses = block.inverse_mass_a + block.inverse_mass_b;
+  if (block.locked != 0)
+    inverse_masses = inverse_masses_between<W>(block, block.normal, block.normal, inverse_masses);
   Wide<W> l[10], inverse_diagonal[Count];  // Cholesky factor of the regularised K
   for (int i = 0; i < Count; ++i) {
     const PointBlock<W>& point = block.points[i];
@@ -66,7 +68,8 @@ GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exis
 }
 // Not inlined: it is as long as all of its callers together.
 template <int W>
-__attribute__((noinline)) void prepare_normals(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
+__attribute__((noinline)) void prepare_normals(ContactBlock<W>& block,
+                                               const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
   switch (block.point_count) {
     case 0:
       break;

@@ -10,10 +10,10 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 template <int W>
 struct PointBlock {
-  Vec3W<W> arm;           // from a centre of mass to the point, times the normal: the angular effect of an
-                          // impulse along the normal
-  Wide<W> separation;     // as the step began
-  Wide<W> mean_impulse;   // the mean normal impulse
+  Vec3W<W> arm;          // from a centre of mass to the point, times the normal: the angular effect of an
+                         // impulse along the normal
+  Wide<W> separation;    // as the step began
+  Wide<W> mean_impulse;  // the mean normal impulse
 };
 
 // Index of row i, column j (either order) in a packed upper triangle, column by column (00 01 11 02 12 22 03
@@ -24,9 +24,9 @@ constexpr int packed(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (
 template <int W>
 struct ContactBlockCold {
   // Used where contacts slide or surfaces move.
-  Wide<W> slide_mass;     // scalar step for sliding, so that friction opposes the slip equally in every
-                          // direction
-  Wide<W> twist_radius;   // m: scale of the twist row beside the tangents
+  Wide<W> slide_mass;    // scalar step for sliding, so that friction opposes the slip equally in every
+                         // direction
+  Wide<W> twist_radius;  // m: scale of the twist row beside the tangents
   Wide<W> surface_1, surface_2;
   // Used where points are tensile: K = J M^-1 J^T of the normal rows, upper triangle. It and
   // `inverse_diagonal` are 0 in rows of missing points.
@@ -35,6 +35,8 @@ struct ContactBlockCold {
   // Targets of velocities if not all bodies of a side are movable: `nowhere` for those that are not.
   float* write_a[W];
   float* write_b[W];
+  // Inverse masses along locked world axes, 0 along free ones. Set if the block has locked axes.
+  Vec3W<W> locked_mass_a, locked_mass_b;
   Wide<W> fresh;                   // 1 where no load is known yet
   Wide<W> mobility_a, mobility_b;  // shares of the inverse masses in pushout
   // Rolling friction.
@@ -57,14 +59,15 @@ struct alignas(64) ContactBlock {
   std::uint8_t has_rolling = 0, has_fresh = 0, has_surface_velocity = 0, has_uneven_points = 0;
   std::int32_t is_settled = 0;  // a solve with resting bodies left all impulses unchanged, and so will
                                 // the next
-  // Lanes as bits: with a jointed body; with a body A, B; with a movable body A, B; with friction at its
+  // Lanes as bits: with a body that cannot move along some axes; with a jointed body; with a body A, B; with a movable body A, B; with friction at its
   // limit; with a row for a point.
-  std::uint16_t jointed = 0, has_a = 0, has_b = 0, movable_a = 0, movable_b = 0, slides = 0,
+  std::uint16_t locked = 0, jointed = 0, has_a = 0, has_b = 0, movable_a = 0, movable_b = 0, slides = 0,
                 rows[kMaxManifoldPoints] = {};
   Vec3W<W> normal, tangent_1, tangent_2;
   // Friction at the centre of pressure.
   Vec3W<W> friction_from_a, friction_from_b;
-  Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23, inverse_k33;  // of (tangent_1, tangent_2, twist)
+  Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23,
+      inverse_k33;  // of (tangent_1, tangent_2, twist)
   // Inverse friction coefficients, static and dynamic, and those of the twist (1/m): 0 without friction.
   Wide<W> inverse_friction, inverse_dynamic_friction, inverse_static_twist, inverse_dynamic_twist;
   Wide<W> inverse_mass_a, inverse_mass_b;
@@ -128,6 +131,34 @@ GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W, kHasA>& 
                       pair.angular_b);
 }
 
+template <int W>
+GYRE_INLINE Vec3W<W> by_axes(Vec3W<W> a, Vec3W<W> b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+// Takes back what an impulse gave along locked axes, `p` times the inverse mass, to the bit if they had no velocity.
+template <int W, bool kHasA>
+__attribute__((noinline)) void hold_locked_axes(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair,
+                                                Vec3W<W> p) {
+  const auto locked = Mask<W>::of_bits(block.locked);
+  const ContactBlockCold<W>& cold = *block.cold;
+  if constexpr (kHasA)
+    pair.linear_a = select<W>(locked, pair.linear_a + by_axes<W>(cold.locked_mass_a, p), pair.linear_a);
+  pair.linear_b = select<W>(locked, pair.linear_b - by_axes<W>(cold.locked_mass_b, p), pair.linear_b);
+}
+// How an impulse along u moves the bodies along v by their masses; where no axis is locked, `free` instead.
+template <int W>
+__attribute__((noinline)) Wide<W> inverse_masses_between(const ContactBlock<W>& block, Vec3W<W> u, Vec3W<W> v,
+                                                         Wide<W> free) {
+  const ContactBlockCold<W>& cold = *block.cold;
+  const auto along = [&](Wide<W> locked_a, Wide<W> locked_b) {
+    return (block.inverse_mass_a - locked_a) + (block.inverse_mass_b - locked_b);
+  };
+  const Vec3W<W> masses{along(cold.locked_mass_a.x, cold.locked_mass_b.x),
+                        along(cold.locked_mass_a.y, cold.locked_mass_b.y),
+                        along(cold.locked_mass_a.z, cold.locked_mass_b.z)};
+  return select(Mask<W>::of_bits(block.locked), dot(u, by_axes<W>(masses, v)), free);
+}
+
 // Applies the impulse `p` to B at `from_b` (and -p to A at `from_a`), and the angular impulse `t` to B (and
 // -t to A).
 template <int W, bool kHasA>
@@ -138,6 +169,7 @@ GYRE_INLINE void apply_impulse(const ContactBlock<W>& block, PairMotion<W, kHasA
     pair.angular_a = pair.angular_a - block.inverse_inertia_a * (cross(from_a, p) + t);
   }
   pair.linear_b = pair.linear_b + block.inverse_mass_b * p;
+  if (block.locked != 0) hold_locked_axes<W, kHasA>(block, pair, p);
   pair.angular_b = pair.angular_b + block.inverse_inertia_b * (cross(from_b, p) + t);
 }
 
@@ -150,6 +182,7 @@ GYRE_INLINE void apply_normal_impulse(const ContactBlock<W>& block, PairMotion<W
     pair.angular_a = pair.angular_a - block.inverse_inertia_a * (moment + p * block.arm_shift_a);
   }
   pair.linear_b = pair.linear_b + (block.inverse_mass_b * p) * block.normal;
+  if (block.locked != 0) hold_locked_axes<W, kHasA>(block, pair, p * block.normal);
   pair.angular_b = pair.angular_b + block.inverse_inertia_b * (moment + p * block.arm_shift_b);
 }
 

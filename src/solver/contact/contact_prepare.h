@@ -47,7 +47,7 @@ struct LaneRecords {
   float* manifold[W];
   float* point[W];  // the manifold, in lanes that have the present point
   float* nowhere;
-  std::uint32_t lanes = 0;                  // bits
+  std::uint32_t lanes = 0;                      // bits
   std::uint32_t has_point[kMaxManifoldPoints];  // bits
   int point_count = 0;                          // the largest of any lane
   Vec3W<W> normal;
@@ -134,7 +134,8 @@ GYRE_INLINE Vec3W<W> any_perpendicular(Vec3W<W> a) {
   const Wide<W> zero(0.0f), one(1.0f), bound(0.57735f);
   const auto x = absolute(a.x) < bound;
   const auto y = absolute(a.y) < bound;
-  const Vec3W<W> other{select(x, one, zero), select(x, zero, select(y, one, zero)), select(x, zero, select(y, zero, one))};
+  const Vec3W<W> other{select(x, one, zero), select(x, zero, select(y, one, zero)),
+                       select(x, zero, select(y, zero, one))};
   return normalized<W>(cross(a, other));
 }
 
@@ -189,6 +190,18 @@ struct SurfaceLanes {
   Wide<W> static_friction, dynamic_friction, rolling_friction, spinning_friction;
 };
 
+// Takes locked axes out of the effective mass matrix of the friction rows. A share of the masses stays, so that it has an inverse.
+template <int W>
+__attribute__((noinline)) void lock_friction_masses(const ContactBlock<W>& block, Wide<W> inverse_masses,
+                                                    Sym3W<W>& k) {
+  const Vec3W<W> t1 = block.tangent_1, t2 = block.tangent_2;
+  const Wide<W> taken(1.0f - 1.0e-5f), zero(0.0f);
+  k.xx = k.xx - taken * (inverse_masses - inverse_masses_between<W>(block, t1, t1, inverse_masses));
+  k.yy = k.yy - taken * (inverse_masses - inverse_masses_between<W>(block, t2, t2, inverse_masses));
+  const Wide<W> xy = k.xy + taken * inverse_masses_between<W>(block, t1, t2, zero);
+  k.xy = select(Mask<W>::of_bits(block.locked), xy, k.xy);
+}
+
 // Effective mass matrix of the friction rows, and its inverse into the block. The twist row is left out
 // without lever arm. Returns K with all rows.
 template <int W>
@@ -197,13 +210,16 @@ GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has
   const Vec3W<W> t1 = block.tangent_1, t2 = block.tangent_2, n = block.normal;
   const Vec3W<W> a1 = cross(block.friction_from_a, t1), a2 = cross(block.friction_from_a, t2);
   const Vec3W<W> b1 = cross(block.friction_from_b, t1), b2 = cross(block.friction_from_b, t2);
-  const Vec3W<W> ia1 = block.inverse_inertia_a * a1, ia2 = block.inverse_inertia_a * a2, ian = block.inverse_inertia_a * n;
-  const Vec3W<W> ib1 = block.inverse_inertia_b * b1, ib2 = block.inverse_inertia_b * b2, ibn = block.inverse_inertia_b * n;
+  const Vec3W<W> ia1 = block.inverse_inertia_a * a1, ia2 = block.inverse_inertia_a * a2,
+                 ian = block.inverse_inertia_a * n;
+  const Vec3W<W> ib1 = block.inverse_inertia_b * b1, ib2 = block.inverse_inertia_b * b2,
+                 ibn = block.inverse_inertia_b * n;
   const Wide<W> inverse_masses = block.inverse_mass_a + block.inverse_mass_b;
   Sym3W<W> k;
   k.xx = inverse_masses + dot(a1, ia1) + dot(b1, ib1);
   k.yy = inverse_masses + dot(a2, ia2) + dot(b2, ib2);
   k.xy = dot(a1, ia2) + dot(b1, ib2);
+  if (block.locked != 0) lock_friction_masses<W>(block, inverse_masses, k);
   k.zz = dot(n, ian) + dot(n, ibn);
   k.xz = dot(a1, ian) + dot(b1, ibn);
   k.yz = dot(a2, ian) + dot(b2, ibn);
@@ -224,7 +240,8 @@ GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has
 
 // Prepares the friction rows: masses and limits. `radius`: the lever arm of the patch.
 template <int W>
-GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>& surface, Wide<W> radius, Wide<W> size) {
+GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>& surface, Wide<W> radius,
+                                  Wide<W> size) {
   const Wide<W> zero(0.0f), one(1.0f);
   const Wide<W> twist_static = surface.static_friction * radius + surface.spinning_friction;
   const Wide<W> twist_dynamic = surface.dynamic_friction * radius + surface.spinning_friction;
@@ -235,7 +252,8 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
   // The scale at which a twist of 1 rad/s slips like a metre per second. With it the trace bounds the largest
   // eigenvalue of K, and its inverse is a safe common step.
   const auto slides = surface.dynamic_friction > zero;
-  const Wide<W> scale = select(twists & slides, twist_dynamic / select(slides, surface.dynamic_friction, one), radius);
+  const Wide<W> scale =
+      select(twists & slides, twist_dynamic / select(slides, surface.dynamic_friction, one), radius);
   const Wide<W> bound = max(max(k.xx, k.yy) + absolute(k.xy), keep(twists, scale * scale * k.zz));
   block.cold->twist_radius = keep(twists, scale);
   block.cold->slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
@@ -274,8 +292,9 @@ GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W>
 
 // Loads the initial impulses of friction, twist and rolling.
 template <int W>
-GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& records, const SurfaceLanes<W>& surface,
-                                  const ContactSettings& settings, Wide<W>& age) {
+GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& records,
+                                  const SurfaceLanes<W>& surface, const ContactSettings& settings,
+                                  Wide<W>& age) {
   const Wide<W> zero(0.0f), one(1.0f), warm(settings.warm_scale);
   Wide<W> in[4];
   gather_columns<4, W>(records.manifold, kManifoldFriction, in);
@@ -301,20 +320,22 @@ GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& 
 }
 
 template <int W>
-GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_mass, Sym3W<W>& inverse) {
+GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_mass, Wide<W>& locked,
+                              Sym3W<W>& inverse) {
   Wide<W> low[4], high[4];
   gather_columns<4, W>(record, 0, low);
   gather_columns<4, W>(record, kInertiaMass, high);
   inverse = {low[0], low[1], low[2], low[3], high[0], high[1]};
   inverse_mass = high[2];
+  locked = high[3];
 }
 
 // Finds the motion records of one side's bodies and loads their mass into the block. Returns the lanes that
 // have one, as bits.
 template <int W>
-GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t ContactConstraint::* body,
+GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t ContactConstraint::*body,
                                     ContactBodies bodies, float* (&motion)[W], Wide<W>& inverse_mass,
-                                    Sym3W<W>& inverse_inertia) {
+                                    Wide<W>& locked, Sym3W<W>& inverse_inertia) {
   const float* inertia[W];
   std::uint32_t has = 0;
   for (int lane = 0; lane < W; ++lane) {
@@ -328,7 +349,7 @@ GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t 
     motion[lane] = &bodies.motion[index].linear_velocity.x;
     inertia[lane] = &bodies.inertia[index].inverse.xx;
   }
-  load_inertia<W>(inertia, inverse_mass, inverse_inertia);
+  load_inertia<W>(inertia, inverse_mass, locked, inverse_inertia);
   return static_cast<std::uint16_t>(has);
 }
 
@@ -336,8 +357,21 @@ GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t 
 template <int W>
 GYRE_INLINE void find_write_records(std::uint32_t pushes, float* const (&read)[W], float* nowhere,
                                     float* (&write)[W]) {
-  for (int lane = 0; lane < W; ++lane)
-    write[lane] = (pushes >> lane & 1u) != 0 ? read[lane] : nowhere;
+  for (int lane = 0; lane < W; ++lane) write[lane] = (pushes >> lane & 1u) != 0 ? read[lane] : nowhere;
+}
+
+// The inverse mass along each locked axis.
+template <int W>
+__attribute__((noinline)) Vec3W<W> locked_masses(Wide<W> locked, Wide<W> inverse_mass) {
+  const Wide<W> zero(0.0f);
+  Vec3W<W> masses{zero, zero, zero};
+  for (int lane = 0; lane < W; ++lane) {
+    const int axes = int(locked[lane]);
+    if ((axes & 1) != 0) masses.x.set(lane, inverse_mass[lane]);
+    if ((axes & 2) != 0) masses.y.set(lane, inverse_mass[lane]);
+    if ((axes & 4) != 0) masses.z.set(lane, inverse_mass[lane]);
+  }
+  return masses;
 }
 
 template <int W>
@@ -345,8 +379,16 @@ GYRE_INLINE void prepare_bodies(ContactBlock<W>& block, const LaneRecords<W>& re
   const Wide<W> zero(0.0f);
   Sym3W<W>& a = block.inverse_inertia_a;
   Sym3W<W>& b = block.inverse_inertia_b;
-  block.has_a = find_side<W>(records, &ContactConstraint::body_a, bodies, block.read_a, block.inverse_mass_a, a);
-  block.has_b = find_side<W>(records, &ContactConstraint::body_b, bodies, block.read_b, block.inverse_mass_b, b);
+  Wide<W> locked_a, locked_b;
+  block.has_a = find_side<W>(records, &ContactConstraint::body_a, bodies, block.read_a, block.inverse_mass_a,
+                             locked_a, a);
+  block.has_b = find_side<W>(records, &ContactConstraint::body_b, bodies, block.read_b, block.inverse_mass_b,
+                             locked_b, b);
+  block.locked = lane_bits<W>((locked_a > zero) | (locked_b > zero));
+  if (block.locked != 0) {
+    block.cold->locked_mass_a = locked_masses<W>(locked_a, block.inverse_mass_a);
+    block.cold->locked_mass_b = locked_masses<W>(locked_b, block.inverse_mass_b);
+  }
   // Any impulse moves or rotates a body by a diagonal element.
   block.movable_a = block.has_a & lane_bits<W>((block.inverse_mass_a > zero) | (a.xx != zero) |
                                                (a.yy != zero) | (a.zz != zero));
@@ -441,8 +483,8 @@ void prepare_blocks(void* memory, void* cold_blocks, int begin, int end, const C
 
 // Stores impulses in the manifolds, and updates age and mean impulses.
 template <int W>
-void finish_block(const ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
-                  const ContactSettings& settings) {
+void finish_block(const ContactBlock<W>& block, const ContactConstraint* constraints,
+                  const std::uint32_t* order, const ContactSettings& settings) {
   const Wide<W> zero(0.0f), one(1.0f);
   alignas(64) float nowhere[80] = {};
   LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
@@ -477,8 +519,8 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
 }
 
 template <int W>
-void finish_blocks(void* memory, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
-                   const ContactSettings& settings) {
+void finish_blocks(void* memory, int begin, int end, const ContactConstraint* constraints,
+                   const std::uint32_t* order, const ContactSettings& settings) {
   auto* blocks = static_cast<const ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
     if (i + 1 < end) fetch_ahead<W>(constraints, order + (i + 1) * W);

@@ -33,6 +33,7 @@ GYRE_INLINE PairMotion<W, kHasA> displacements(const ContactBlock<W>& block) {
 template <int W>
 struct PushoutResponse {
   Wide<W> inverse_mass_a, inverse_mass_b;
+  Vec3W<W> held_a, held_b;  // the effect of a unit impulse along locked axes, which is taken back
   Vec3W<W> angular_a[kMaxManifoldPoints], angular_b[kMaxManifoldPoints];
   Wide<W> k[10];
 };
@@ -45,6 +46,16 @@ GYRE_INLINE PushoutResponse<W> pushout_response(const ContactBlock<W>& block) {
   if constexpr (kHasA) {
     response.inverse_mass_a = block.cold->mobility_a * block.inverse_mass_a;
     masses = response.inverse_mass_a + masses;
+  }
+  if (block.locked != 0) {
+    const ContactBlockCold<W>& cold = *block.cold;
+    response.held_b = by_axes<W>(cold.mobility_b * cold.locked_mass_b, block.normal);
+    Wide<W> held = dot(response.held_b, block.normal);
+    if constexpr (kHasA) {
+      response.held_a = by_axes<W>(cold.mobility_a * cold.locked_mass_a, block.normal);
+      held = held + dot(response.held_a, block.normal);
+    }
+    masses = select(Mask<W>::of_bits(block.locked), max(masses - held, Wide<W>(0.0f)), masses);
   }
   for (int i = 0; i < block.point_count; ++i) {
     const PointBlock<W>& point = block.points[i];
@@ -135,6 +146,12 @@ GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
   }
   if constexpr (kHasA) pair.linear_a = pair.linear_a - (response.inverse_mass_a * total) * block.normal;
   pair.linear_b = pair.linear_b + (response.inverse_mass_b * total) * block.normal;
+  if (block.locked != 0) {
+    const auto locked = Mask<W>::of_bits(block.locked);
+    if constexpr (kHasA)
+      pair.linear_a = select<W>(locked, pair.linear_a + total * response.held_a, pair.linear_a);
+    pair.linear_b = select<W>(locked, pair.linear_b - total * response.held_b, pair.linear_b);
+  }
   store_pair<W>(block, pair);
 }
 

@@ -36,16 +36,16 @@ struct Bodies {
   }
   float inverse_mass(Vec3 direction, Vec3 from_a, Vec3 from_b) const {
     const Vec3 ja = cross(from_a, direction), jb = cross(from_b, direction);
-    return inertia_a->inverse_mass + inertia_b->inverse_mass + dot(ja, inertia_a->inverse * ja) +
-           dot(jb, inertia_b->inverse * jb);
+    return inverse_mass_along(*inertia_a, direction) + inverse_mass_along(*inertia_b, direction) +
+           dot(ja, inertia_a->inverse * ja) + dot(jb, inertia_b->inverse * jb);
   }
   void apply_impulse(Vec3 p, Vec3 from_a, Vec3 from_b) {
     if (a != nullptr && (inertia_a->inverse_mass > 0.0f || inertia_a->inverse != Sym3{})) {
-      a->linear_velocity -= inertia_a->inverse_mass * p;
+      a->linear_velocity -= inertia_a->inverse_mass * along_free_axes(*inertia_a, p);
       a->angular_velocity -= inertia_a->inverse * cross(from_a, p);
     }
     if (b != nullptr && (inertia_b->inverse_mass > 0.0f || inertia_b->inverse != Sym3{})) {
-      b->linear_velocity += inertia_b->inverse_mass * p;
+      b->linear_velocity += inertia_b->inverse_mass * along_free_axes(*inertia_b, p);
       b->angular_velocity += inertia_b->inverse * cross(from_b, p);
     }
   }
@@ -83,7 +83,8 @@ void apply_friction(ImpactContact& contact, Bodies& bodies) {
     from_b += point.impulse * point.from_b;
   }
   if (!(total > 0.0f)) return;
-  for (int k = 0; k < contact.count; ++k) contact.manifold->points[k].total_impulse += contact.points[k].impulse;
+  for (int k = 0; k < contact.count; ++k)
+    contact.manifold->points[k].total_impulse += contact.points[k].impulse;
   if (!(contact.friction > 0.0f)) return;
   from_a = from_a / total;
   from_b = from_b / total;

@@ -135,7 +135,8 @@ GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const Advanc
                                       const Wide<W> (&friction_shares)[kMaxManifoldPoints], int set) {
   PointArms<W> arms[kMaxManifoldPoints];
   FrictionArms<W> friction;
-  for (int k = 0; k < lanes.point_count; ++k) friction.add(friction_shares[k], arms[k] = gather_arms<W>(lanes, set, k));
+  for (int k = 0; k < lanes.point_count; ++k)
+    friction.add(friction_shares[k], arms[k] = gather_arms<W>(lanes, set, k));
   const Vec3W<W> slide = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2;
   const Vec3W<W> torsion = block.twist * block.normal + block.cold->rolling;
   LaneTorques<W> torques{cross(friction.from_a, slide) + torsion, cross(friction.from_b, slide) + torsion};
@@ -161,6 +162,9 @@ GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
   to.has_a = from.has_a, to.has_b = from.has_b;
   to.normal = from.normal, to.tangent_1 = from.tangent_1, to.tangent_2 = from.tangent_2;
   to.inverse_mass_a = from.inverse_mass_a, to.inverse_mass_b = from.inverse_mass_b;
+  to.locked = from.locked;
+  if (from.locked != 0)
+    to.cold->locked_mass_a = from.cold->locked_mass_a, to.cold->locked_mass_b = from.cold->locked_mass_b;
 }
 
 // Writes the moving lanes back into the block.
@@ -169,7 +173,9 @@ GYRE_INLINE void write_back(ContactBlock<W>& block, const ContactBlock<W>& updat
                             const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& load) {
   const auto moving = Mask<W>::of_bits(lanes.bits);
   const auto put = [](Mask<W> where, auto& to, const auto& from) { to = select(where, from, to); };
-  const auto put_vector = [](Mask<W> where, Vec3W<W>& to, const Vec3W<W>& from) { to = select<W>(where, from, to); };
+  const auto put_vector = [](Mask<W> where, Vec3W<W>& to, const Vec3W<W>& from) {
+    to = select<W>(where, from, to);
+  };
   put_vector(moving, block.friction_from_a, updated.friction_from_a);
   put_vector(moving, block.friction_from_b, updated.friction_from_b);
   put(moving, block.inverse_k11, updated.inverse_k11), put(moving, block.inverse_k12, updated.inverse_k12);
@@ -203,8 +209,9 @@ void advance_points(void* memory, int index, const AdvancedArmsLane* moving, int
   const Vec3W<W> before_a = block.inverse_inertia_a * before.a, before_b = block.inverse_inertia_b * before.b;
   const auto refresh = [](std::uint32_t bits, const Sym3W<W>& present, Sym3W<W>& old) {
     const auto known = Mask<W>::of_bits(bits);
-    old = {select(known, present.xx, old.xx), select(known, present.yy, old.yy), select(known, present.zz, old.zz),
-           select(known, present.xy, old.xy), select(known, present.xz, old.xz), select(known, present.yz, old.yz)};
+    old = {select(known, present.xx, old.xx), select(known, present.yy, old.yy),
+           select(known, present.zz, old.zz), select(known, present.xy, old.xy),
+           select(known, present.xz, old.xz), select(known, present.yz, old.yz)};
   };
   refresh(lanes.has_a, gather_tensor<W>(lanes.inverse_a), block.inverse_inertia_a);
   refresh(lanes.has_b, gather_tensor<W>(lanes.inverse_b), block.inverse_inertia_b);

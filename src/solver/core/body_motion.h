@@ -45,9 +45,20 @@ constexpr int kMotionDeltaRotation = 11;
 struct BodyInertia {
   Sym3 inverse;                 // 1/(kg m^2), world axes
   float inverse_mass = 0.0f;
-  float spare = 0.0f;           // kernels read eight floats
+  float locked = 0.0f;          // locked world axes of the translation: bits 0 to 2 of a whole number
 };
 static_assert(sizeof(BodyInertia) == 32);
+// The vector without its components along locked axes.
+inline Vec3 along_free_axes(const BodyInertia& inertia, Vec3 v) {
+  if (inertia.locked == 0.0f) return v;
+  const int locked = int(inertia.locked);
+  return {(locked & 1) != 0 ? 0.0f : v.x, (locked & 2) != 0 ? 0.0f : v.y, (locked & 4) != 0 ? 0.0f : v.z};
+}
+// The inverse mass along a unit vector.
+inline float inverse_mass_along(const BodyInertia& inertia, Vec3 direction) {
+  if (inertia.locked == 0.0f) return inertia.inverse_mass;
+  return inertia.inverse_mass * length_squared(along_free_axes(inertia, direction));
+}
 
 // The static world, which has no record.
 constexpr std::int32_t kNoBody = -1;

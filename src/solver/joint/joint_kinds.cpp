@@ -122,6 +122,23 @@ double rotation_about_x(Quat reference, Quat frame, float near) {
   return unwrap_in_double(2.0f * atan2(rotation.x, rotation.w), near);
 }
 
+// Sine of half the angle between two axes from which on a reference follows.
+constexpr float kFollowed = 1.0e-3f;
+// Rotates a reference with the axis of its frame, without a rotation about that axis (parallel transport). So the rotation about x is the
+// integral of the angular velocity along the axis, wherever the axis goes, and exact while it stays.
+Quat followed(Quat reference, Quat frame) {
+  const Quat q = conjugate(reference) * frame;
+  const float size = std::sqrt(q.x * q.x + q.w * q.w);
+  if (!(q.y * q.y + q.z * q.z > kFollowed * kFollowed) || !(size > 0.0f)) return reference;
+  const Quat twist{q.x / size, 0.0f, 0.0f, q.w / size};
+  return normalized(reference * (q * conjugate(twist)));
+}
+
+// The reference of a pinion: it turns with the rack.
+Quat pinion_reference(const JointDetail& detail, Quat frame_b) {
+  return frame_b * conjugate(detail.reference_b) * detail.reference_a;
+}
+
 float gear_error(const JointDetail& detail, Quat frame_a, Quat frame_b) {
   const double a = rotation_about_x(detail.reference_a, frame_a, detail.axes[3].position);
   const double b = rotation_about_x(detail.reference_b, frame_b, detail.axes[4].position);
@@ -129,7 +146,8 @@ float gear_error(const JointDetail& detail, Quat frame_a, Quat frame_b) {
 }
 
 float rack_error(const JointDetail& detail, const RowPose& pose) {
-  const double a = rotation_about_x(detail.reference_a, pose.frame_a, detail.axes[3].position);
+  const double a =
+      rotation_about_x(pinion_reference(detail, pose.frame_b), pose.frame_a, detail.axes[3].position);
   const float along = dot(pose.center_offset, rotate(pose.frame_b, {1, 0, 0}));
   return float(double(along) - double(detail.start) - double(detail.ratio) * a);
 }
@@ -266,6 +284,8 @@ void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pa
 
 void prepare_gear(JointRecord& joint, JointConstraint& work) {
   JointDetail& detail = *work.detail;
+  detail.reference_a = followed(detail.reference_a, work.frame_a);
+  detail.reference_b = followed(detail.reference_b, work.frame_b);
   JointRow row;
   row.error = gear_error(detail, work.frame_a, work.frame_b);
   row.angular_a = -rotate(work.frame_a, {1, 0, 0});
@@ -285,6 +305,8 @@ void prepare_rack(JointRecord& joint, JointConstraint& work, const JointPair& pa
   const Vec3 center_offset = offsets.offset + pair.relative_displacement();
   work.from_a += work.error;  // to b's anchor
   const Vec3 along = rotate(work.frame_b, {1, 0, 0}), about = rotate(work.frame_a, {1, 0, 0});
+  const Quat before = pinion_reference(detail, work.frame_b), now = followed(before, work.frame_a);
+  if (now != before) detail.reference_a = normalized(detail.reference_b * conjugate(work.frame_b) * now);
   JointRow row;
   row.error = rack_error(detail, {{}, center_offset, work.frame_a, work.frame_b});
   // The teeth meet at the rim, where it moves along the rack.
@@ -293,7 +315,7 @@ void prepare_rack(JointRecord& joint, JointConstraint& work, const JointPair& pa
   row.angular_a = detail.ratio * about;
   row.angular_b = cross(rim - center_offset, along);
   detail.axes[3].position =
-      float(rotation_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
+      float(rotation_about_x(pinion_reference(detail, work.frame_b), work.frame_a, detail.axes[3].position));
   work.position = joint.position = detail.axes[3].position;
   work.rows->count = 0;
   add_row(*work.rows, row);

@@ -98,7 +98,7 @@ struct JointDetail {
   Vec3 drive_torque_impulse;
   Vec3 friction_impulse;
   float ratio = 1.0f;
-  Quat reference_a;  // world_from_joint when the joint was added
+  Quat reference_a;  // world_from_joint when the joint was added; of gears and pinions, it follows the axis
   Quat reference_b;
   float start = 0.0f;  // rack_and_pinion: m, initial position of the rack
   DVec3 ground_a;      // pulley

@@ -37,6 +37,7 @@ struct MovedBody {
   bool isotropic = false;    // equal principal moments: no gyroscopic torque
   bool needs_exact_rotation = false;  // the kernels do not rotate it
   bool pose_read = false;             // its orientation and inertia are written in each sub-step
+  bool carries_rounding = false;      // what rounding loses of a velocity in one half-step goes into the next
 };
 
 // The columns that the kernels read and write, indexed by body.

@@ -23,12 +23,13 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 template <int W>
 struct MotionBlock {
-  std::int32_t body[W];     // kNoBody in lanes without a body
+  std::int32_t body[W];         // kNoBody in lanes without a body
   std::uint32_t pose_read = 0;  // bits of lanes
-  std::int32_t any_locked = 0, any_torque = 0, any_loss = 0, any_gyroscopic = 0;
+  std::int32_t any_locked = 0, any_torque = 0, any_loss = 0, any_gyroscopic = 0, carries_rounding = 0;
   std::int32_t was_at_rest = 0;  // nothing moved in the last sub-step, nor before: what depends on the motion
                                  // is up to date
   Vec3W<W> velocity_gain, torque;
+  Vec3W<W> lost_gain;  // by rounding, if that is carried
   Wide<W> linear_loss, angular_loss, bounding_radius;
   Vec3W<W> free_axes;                             // 1 along free world axes, 0 along locked ones
   Wide<W> rotates;                                // 1 where the kernel rotates the body
@@ -171,6 +172,7 @@ void prepare_motion(void* memory, int begin, int end, const MovedBody* bodies, i
       block.body[lane] = from.body;
       if (from.pose_read && !from.needs_exact_rotation) block.pose_read |= 1u << lane;
       if (from.locked != 0) block.any_locked = 1;
+      if (from.carries_rounding) block.carries_rounding = 1;
       if (from.torque != Vec3{}) block.any_torque = 1;
       if (from.linear_loss != 0.0f || from.angular_loss != 0.0f) block.any_loss = 1;
       const bool gyroscopic = !from.isotropic && !from.needs_exact_rotation;
@@ -235,7 +237,10 @@ GYRE_INLINE void integrate_velocities_of(void* memory, int begin, int end, const
       gain = gain - select<W>(block.linear_loss > zero, block.linear_loss * v, none);
       twist = twist - select<W>(block.angular_loss > zero, block.angular_loss * w, none);
     }
+    if (block.carries_rounding != 0) gain = gain + block.lost_gain;
+    const Vec3W<W> before = v;
     v = v + gain;
+    if (block.carries_rounding != 0) block.lost_gain = gain - (v - before);
     w = w + twist;
     if (block.any_locked != 0) v = along_free_axes<W>(block, v);
     // Adding zero keeps -0 out of the state, so wide kernels may add zeros to lanes that nothing acts on.
@@ -297,7 +302,7 @@ void add_contact_change(void* memory, int begin, int end, const BodyMotion* moti
 }
 template <int W>
 void add_contact_change_in_lanes(void* memory, int begin, int end, const BodyMotion* motion,
-                                     const LaneVelocities& lanes) {
+                                 const LaneVelocities& lanes) {
   const auto* blocks = static_cast<const MotionBlock<W>*>(memory);
   record_change_of<W>(memory, begin, end, motion, [&](int n, const MotionW<W>& m) {
     InLanes<W>{lanes}.template store<6>(blocks[n], n, m);
@@ -315,7 +320,8 @@ GYRE_INLINE void store_pose(const MotionBlock<W>& block, const QuatW<W>& q, Moti
     locate_records<W, 4>(&arrays.orientation->x, block.body, records);
     scatter_columns<4, W>(records, 0, pose);
     if (block.any_gyroscopic == 0) return;
-    locate_records<W, int(sizeof(BodyInertia) / sizeof(float))>(&arrays.inertia->inverse.xx, block.body, records);
+    locate_records<W, int(sizeof(BodyInertia) / sizeof(float))>(&arrays.inertia->inverse.xx, block.body,
+                                                                records);
     scatter_columns<6, W>(records, 0, inverse);
     return;
   }
