@@ -53,7 +53,7 @@ DVec3 fall_error(int substeps, double seconds, bool jointed) {
     world.add_joint(fixed);
   }
   run(world, seconds);
-  const double t = std::lround(seconds / double(kStep)) * double(kStep);
+  const double t = double(std::lround(seconds / double(kStep))) * double(kStep);
   return {absolute(double(world.linear_velocity(body).y) + kGravity * t),
           absolute(world.pose(body).position.y + 0.5 * kGravity * t * t), 0.0};
 }

@@ -303,9 +303,9 @@ void meet_at_edges(const Boxes& x, const Axis& found, LocalManifold& out) {
   const auto reach = [](const float* half, Vec3 n) {
     return absolute(n.x) * half[0] + absolute(n.y) * half[1] + absolute(n.z) * half[2];
   };
-  keep_ends(out);
   set_edge_normal(out, normal, reference_is_a,
-                  reference_is_a ? reach(x.a, normal) : dot(normal, center) - reach(x.b, in_b(normal)));
+                  reference_is_a ? reach(x.a, normal) : dot(normal, center) - reach(x.b, in_b(normal)),
+                  thinnest(x));
 }
 
 // The manifold along the deciding axis, whose separation is within the allowed one. out.count must be 0.

@@ -11,7 +11,7 @@
 namespace gyre {
 
 // Points are on an edge if they are this near its two faces, in shares of the thinnest half extent or inner radius.
-constexpr float kOnEdge = 0.05f;
+constexpr float kOnEdge = 0.02f;
 
 // The faces at an edge: two normals, out of the shape.
 struct EdgeFaces {
@@ -69,17 +69,24 @@ struct SurfacePoints {
   }
 };
 
-// Moves the ends to a new normal. `reach`: how far the reference shape reaches along it.
-inline void set_edge_normal(LocalManifold& manifold, Vec3 normal, bool reference_is_a, float reach) {
-  const SurfacePoints before(manifold);
-  for (int i = 0; i < manifold.count; ++i) {
+// Moves the ends to a new normal, unless they are clearly deeper along it: then more than edges overlap. `reach`: how far the reference
+// shape reaches along the normal; `thin`: as in manifold_crossing.h.
+inline void set_edge_normal(LocalManifold& manifold, Vec3 normal, bool reference_is_a, float reach,
+                            float thin) {
+  LocalManifold ends = manifold;
+  keep_ends(ends);
+  const SurfacePoints before(ends);
+  const float deepest = min(1.09f * deepest_of(manifold), 0.0f) - 1.0e-3f * thin;
+  for (int i = 0; i < ends.count; ++i) {
     const Vec3 on_incident = reference_is_a ? before.on_b[i] : before.on_a[i];
     const float along = dot(normal, on_incident);
-    ManifoldPoint& point = manifold.points[i];
+    ManifoldPoint& point = ends.points[i];
     point.separation = reference_is_a ? along - reach : reach - along;
     point.position = on_incident + ((reference_is_a ? -0.5f : 0.5f) * point.separation) * normal;
+    if (point.separation < deepest) return;
   }
-  manifold.normal = normal;
+  ends.normal = normal;
+  manifold = ends;
 }
 
 }  // namespace gyre

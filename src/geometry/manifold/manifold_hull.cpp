@@ -221,10 +221,10 @@ void meet_at_edges(const Polytope& a, const Polytope& b, const Transform& a_from
   const Vec3 normal = normal_of_edges(out.normal, faces_a, faces_b);
   if (normal == out.normal) return;
   const Vec3 local = rotate_inverse(a_from_b.orientation, normal);
-  keep_ends(out);
   set_edge_normal(
       out, normal, reference_is_a,
-      reference_is_a ? highest_along(a, normal) : lowest_along(b, local) + dot(normal, a_from_b.position));
+      reference_is_a ? highest_along(a, normal) : lowest_along(b, local) + dot(normal, a_from_b.position),
+      min(a.inner_radius, b.inner_radius));
 }
 
 // Returns false if the polytopes are farther apart than allowed along some axis.

@@ -23,7 +23,7 @@ constexpr int kNncgIterations = 200;
 // Statistics of the islands of a step, over all sub-steps.
 struct RowStats {
   double residual = 0.0;      // N s, or N m s
-  double missed_share = 0.0;  // of sequential impulses: residual over the load, of the worst island
+  double missed_share = 0.0;  // of sequential impulses: speed at which a joint opens, over that of a fall for a sub-step
   int islands = 0;
   int largest = 0;    // rows of the largest island
   int direct = 0;     // islands solved by a direct method
