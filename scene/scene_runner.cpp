@@ -4,6 +4,8 @@
 #include "scene/decomposition_split.h"
 #include "scene/world_builder.h"
 
+#include <algorithm>
+
 namespace gyre {
 
 SceneRunner::SceneRunner(Scene scene, World world) : scene_(std::move(scene)), world_(std::move(world)) {}
@@ -232,11 +234,27 @@ void SceneRunner::put_present_softs(Scene& out, const std::vector<int>& places) 
   };
   const auto keep = [](const auto&, std::size_t) {};
   put(out.ropes, scene_.ropes, ropes_, keep);
-  put(out.cloths, scene_.cloths, cloths_, keep);
+  // One that was torn is no longer of its grid or mesh.
+  put(out.cloths, scene_.cloths, cloths_, [&](SceneCloth& cloth, std::size_t i) {
+    ClothDef present = world_.cloth_def(cloths_[i]);
+    const std::size_t before = cloth.def.grid ? std::size_t(cloth.def.grid->cells[0] + 1) * std::size_t(cloth.def.grid->cells[1] + 1)
+                                              : scene_.meshes[std::size_t(cloth.mesh)].vertices.size();
+    if (present.settings.positions.size() == before) return;
+    std::string name = cloth.name + " (torn)";
+    while (std::any_of(out.meshes.begin(), out.meshes.end(), [&](const SceneMesh& mesh) { return mesh.name == name; })) name += "'";
+    cloth.mesh = int(out.meshes.size());
+    cloth.def.grid.reset();
+    cloth.def.pressure.reset();
+    out.meshes.push_back({name, {}, std::move(present.vertices), std::move(present.triangles)});
+  });
   // Vertices that a region pinned stay pinned by number: the region would catch what has moved into it.
   put(out.soft_bodies, scene_.soft_bodies, soft_bodies_, [&](SceneSoftBody& solid, std::size_t i) {
     solid.pinned_region.reset();
     for (const int vertex : region_pins_[i]) solid.holds.push_back({vertex, -1});
+    SolidDef present = world_.solid_def(soft_bodies_[i]);
+    if (present.box || present.tetrahedra.empty()) return;
+    solid.def.box.reset();
+    solid.def.vertices = std::move(present.vertices), solid.def.tetrahedra = std::move(present.tetrahedra);
   });
 }
 

@@ -116,7 +116,8 @@ inline constexpr char kSchemaOfCloths[] = R"json(    "cloth": {
         "pressure_law": {
           "enum": ["ideal_gas", "constant"], "default": "ideal_gas",
           "description": "ideal_gas: (pressure + ambient_pressure) times the volume stays; constant: the pressure stays"
-        }
+        },
+        "tear_strain": { "$ref": "#/$defs/stiffness", "default": 0, "description": "strain at which an edge tears the cloth; 0: never" }
       }
     },
 )json";
@@ -156,6 +157,9 @@ inline constexpr char kSchemaOfSoftBodies[] = R"json(    "soft_body": {
         "young_modulus": { "$ref": "#/$defs/amount", "default": 1e5, "description": "Pa" },
         "poisson_ratio": { "type": "number", "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "default": 0.45 },
         "model": { "enum": ["linear", "corotated", "neo_hookean"], "default": "neo_hookean" },
+        "fracture_stress": { "$ref": "#/$defs/stiffness", "default": 0, "description": "Pa: tension at which it breaks along faces; 0: never; not of a mesh" },
+        "yield_stress": { "$ref": "#/$defs/stiffness", "default": 0, "description": "Pa, of von Mises, beyond which the rest shape yields; 0: never; not of the linear model" },
+        "creep_time": { "$ref": "#/$defs/stiffness", "default": 0, "description": "s, in which stress beyond the yield stress falls to 1/e; 0: at once" },
         "integrator": { "$ref": "#/$defs/soft_integrator" },
         "damping": { "$ref": "#/$defs/factor", "default": 0, "description": "s: stress grows by damping times its rate of change" },
         "static_friction": { "$ref": "#/$defs/factor", "default": 0.4 },

@@ -344,6 +344,27 @@ TEST(SceneSoft, AClosedClothHoldsGas) {
   EXPECT_NE(made.error().text().find("/cloths/0/pressure"), std::string::npos) << made.error().text();
 }
 
+TEST(SceneSoft, WhatWasTornIsWrittenAsItIs) {
+  const std::string text = R"({"gyre_scene": 1, "name": "torn", "world": {"gravity": [0, -30, 0]},
+    "cloths": [{"name": "a", "grid": {"size": [1, 1], "cells": [6, 6]}, "stretch_stiffness": 20, "shear_stiffness": 5, "tear_strain": 0.2,
+                "pinned": [0, 6]}],
+    "soft_bodies": [{"name": "b", "box": {"half_extents": [0.5, 0.1, 0.1], "cells": [8, 2, 2]}, "position": [0, 5, 0], "young_modulus": 20000,
+                     "fracture_stress": 1000, "yield_stress": 800, "creep_time": 0.5, "pinned_region": {"box": [[-1, 4, -1], [-0.4, 6, 1]]}}]})";
+  const SceneRunner runner = run(text, 60);
+  const int torn = runner.world().soft_info(runner.cloths()[0]).vertices, broken = runner.world().soft_info(runner.soft_bodies()[0]).vertices;
+  EXPECT_GT(torn, 49);
+  EXPECT_GT(broken, 81);
+  const std::string left = write_scene(runner.final_scene());
+  const Json schema = parse_document(scene_schema(), "schema", SceneLimits{});
+  EXPECT_EQ(SchemaCheck(schema).check(parse_document(left, "scene", SceneLimits{})), "");
+  const SceneRunner on = run(left, 0);
+  EXPECT_EQ(on.world().soft_info(on.cloths()[0]).vertices, torn);
+  EXPECT_EQ(on.world().soft_info(on.soft_bodies()[0]).vertices, broken);
+  EXPECT_NEAR(on.world().soft_info(on.cloths()[0]).mass, 0.2, 1e-6);
+  const SoftVertices was = runner.world().vertices(runner.cloths()[0]), is = on.world().vertices(on.cloths()[0]);
+  for (std::size_t i = 0; i < was.size(); ++i) EXPECT_EQ(was.position(i), is.position(i)) << i;
+}
+
 TEST(SceneSoft, WhatIsHeldStaysWhereItIs) {
   const SceneRunner runner = run(kAll, 30);
   const SoftVertices c = runner.world().vertices(runner.cloths()[0]);

@@ -230,6 +230,9 @@ void read_material_of_solid(Members& members, SolidDef& out) {
     if (!(out.poisson_ratio > -1.0f && out.poisson_ratio < 0.5f))
       ratio->expected("a number above -1 and below 0.5");
   }
+  members.read("fracture_stress", out.fracture_stress, kNotNegative);
+  members.read("yield_stress", out.yield_stress, kNotNegative);
+  members.read("creep_time", out.creep_time, kNotNegative);
 }
 
 // A surface to be filled; how many vertices that takes shows when it is done.
@@ -346,6 +349,7 @@ void read_cloth(SceneReading& reading, const Field& field) {
   members.read("thickness", cloth.def.thickness, kNotNegative);
   members.read("self_collision", cloth.def.self_collision);
   read_gas(members, cloth.def);
+  members.read("tear_strain", cloth.def.tear_strain, kNotNegative);
   read_settings(members, vertices, cloth.def.settings);
   read_holds(reading, members, vertices, cloth);
   members.finish();

@@ -95,6 +95,7 @@ void write_cloth(JsonWriter& json, const Scene& scene, const SceneCloth& cloth) 
   if (def.pressure) json.field("pressure", *def.pressure);
   unless_default(json, "ambient_pressure", def.ambient_pressure, standard.ambient_pressure);
   if (def.pressure_law != standard.pressure_law) json.field("pressure_law", to_string(def.pressure_law));
+  unless_default(json, "tear_strain", def.tear_strain, standard.tear_strain);
   write_color(json, cloth.color);
   write_holds(json, scene, cloth);
   write_settings(json, def.settings);
@@ -132,6 +133,9 @@ void write_soft_body(JsonWriter& json, const Scene& scene, const SceneSoftBody& 
   json.field("density", def.density);
   json.field("young_modulus", def.young_modulus);
   json.field("poisson_ratio", def.poisson_ratio);
+  unless_default(json, "fracture_stress", def.fracture_stress, 0.0f);
+  unless_default(json, "yield_stress", def.yield_stress, 0.0f);
+  unless_default(json, "creep_time", def.creep_time, 0.0f);
   write_color(json, solid.color);
   if (solid.pinned_region) {
     json.key("pinned_region").begin_object(kInline);

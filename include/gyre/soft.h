@@ -99,7 +99,7 @@ struct ClothDef {
   PressureLaw pressure_law = PressureLaw::ideal_gas;
   // The strain (length over rest length, less 1) at which an edge tears the cloth; 0: never. Such a cloth is one of triangles, also if it is given by a
   // grid: springs lie along their edges. Torn cloth lets its gas out.
-  float tear_strain = 0.0f;
+  float tear_strain = 0.0f;                 // docs/soft.md: Tearing
   SoftSettings settings{};
 };
 

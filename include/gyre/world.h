@@ -270,6 +270,9 @@ class World {
   // The surface that a solid was made of (SolidDef::surface), carried along by its tetrahedra: for pictures. Copies up to out.size() places of
   // its vertices, in the order of the definition; returns how many there are, 0 without such a surface.
   std::size_t soft_surface(SoftId soft, std::span<DVec3> out) const;
+  // A definition with which a cloth or solid goes on as it is: its vertices are in it and, if it was torn, its elements. What a solid has flowed is not.
+  ClothDef cloth_def(SoftId cloth) const;
+  SolidDef solid_def(SoftId solid) const;
   std::span<const std::uint32_t> soft_surface_triangles(SoftId soft) const;  // counter-clockwise seen from outside
   // Gases and liquids. Copies up to out.size() ids, in order of index; returns how many there are.
   std::size_t fluids(std::span<FluidId> out) const;

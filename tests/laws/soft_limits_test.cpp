@@ -121,7 +121,7 @@ TEST(SoftGas, ABalloonBearsALoad) {
     const BodyId plate = world.add_body(slab, ShapeDef{.geometry = Box{{0.6f, 0.05f, 0.6f}}});
     world.set_damping(plate, 2.0f, 0.0f);
     const double start = world.soft_info(soft).volume;
-    for (int i = 0; i < 240; ++i) world.step(kStep);
+    for (int i = 0; i < 200; ++i) world.step(kStep);
     const SoftInfo info = world.soft_info(soft);
     volumes[k] = info.volume;
     EXPECT_NEAR((info.pressure + 2000.0) * info.volume, 2500.0 * start, 1e-5 * 2500.0 * start);
@@ -376,7 +376,7 @@ TEST(SoftTear, IsTheSameWithAnyThreadsAndWidths) {
       for (int i = 0; i < 11; ++i) bar.settings.velocities.push_back({float(i - 5), 0, 0});
     bar.pose.position = {0, 3, 0};
     world.add_solid(bar);
-    for (int i = 0; i < 20; ++i) world.step(kStep);
+    for (int i = 0; i < 10; ++i) world.step(kStep);
     EXPECT_GT(world.stats().soft_vertices, 121 + 99 + 5);
     return world.hash();
   };
@@ -393,7 +393,7 @@ TEST(SoftTear, ABalloonThatTearsLetsItsGasOut) {
   const SoftId soft = world.add_cloth(def);
   EXPECT_GT(world.soft_info(soft).pressure, 0.0);
   int torn = 0;
-  for (int i = 0; i < 60; ++i) world.step(kStep), torn += int(world.events().torn.size());
+  for (int i = 0; i < 15; ++i) world.step(kStep), torn += int(world.events().torn.size());
   EXPECT_GT(torn, 0);
   EXPECT_EQ(world.soft_info(soft).pressure, 0.0);
   EXPECT_EQ(world.soft_info(soft).volume, 0.0);

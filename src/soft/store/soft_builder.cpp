@@ -72,7 +72,8 @@ void set_gas(const ClothDef& def, SoftEntry& entry) {
   gas.rest_volume = enclosed_volume(entry.body.particles, gas.triangles);
   if (gas.rest_volume < 0.0) {
     gas.rest_volume = -gas.rest_volume;
-    for (std::size_t t = 0; t + 2 < gas.triangles.size(); t += 3) std::swap(gas.triangles[t + 1], gas.triangles[t + 2]);
+    for (std::size_t t = 0; t + 2 < gas.triangles.size(); t += 3)
+      std::swap(gas.triangles[t + 1], gas.triangles[t + 2]);
   }
   gas.pressure = double(*def.pressure), gas.ambient = double(def.ambient_pressure);
   gas.is_constant = def.pressure_law == PressureLaw::constant;
@@ -244,7 +245,12 @@ std::shared_ptr<const SoftSurface> make_surface(const SoftEntry& entry, const So
   const SoftSettings& settings = entry.settings();
   surface.static_friction = settings.static_friction;
   surface.dynamic_friction = settings.dynamic_friction;
-  if (const ClothDef* const cloth = std::get_if<ClothDef>(&def)) surface.self_collision = cloth->self_collision;
+  if (const ClothDef* const cloth = std::get_if<ClothDef>(&def))
+    surface.self_collision = cloth->self_collision;
+  // New faces lie on each other, which the bounds on moves would take for a crossing.
+  if (const SolidDef* const solid = std::get_if<SolidDef>(&def);
+      solid != nullptr && solid->fracture_stress > 0.0f)
+    surface.self_collision = false;
   return std::make_shared<const SoftSurface>(std::move(surface));
 }
 
@@ -277,7 +283,8 @@ Array<DVec3> rest_places(const SoftDef& def, std::span<const std::uint32_t> root
   return places;
 }
 
-SoftBody build_elements(const SoftDef& def, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> roots) {
+SoftBody build_elements(const SoftDef& def, std::span<const std::uint32_t> corners,
+                        std::span<const std::uint32_t> roots) {
   const Array<DVec3> places = rest_places(def, roots);
   if (const ClothDef* const cloth = std::get_if<ClothDef>(&def)) {
     ClothMaterial material = material_of(*cloth);

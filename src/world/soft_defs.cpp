@@ -1,0 +1,82 @@
+// World::cloth_def, World::solid_def: definitions with which cloths and solids go on as they are: with present vertices and, if they were torn, present
+// elements. World::cloth_crossings: where cloths pass through themselves and each other: a number, exact for these positions. The test is that of
+// soft/contact/surface_crossings.h. In: the entries of a world.
+#include "base/float_mode.h"
+#include "math/rotation.h"
+#include "soft/contact/surface_crossings.h"
+#include "soft/store/soft_builder.h"
+#include "world/soft_commands.h"
+#include "world/world_state.h"
+
+namespace gyre {
+
+namespace {
+
+template <class Def>
+void put_present_state(const SoftEntry& entry, Def& def) {
+  const Particles& p = entry.body.particles;
+  def.settings.positions.clear(), def.settings.velocities.clear();
+  for (int i = 0; i < p.count; ++i) {
+    def.settings.positions.push_back(p.place(i));
+    def.settings.velocities.push_back(p.velocity(i));
+  }
+}
+
+bool is_torn(const SoftEntry& entry) {
+  const Array<std::uint32_t>& roots = entry.damage.roots;
+  return !roots.empty() && roots.back() + 1 != roots.size();
+}
+
+// The places at rest in the frame of the pose.
+std::vector<Vec3> local_rest_places(const SoftEntry& entry, const Pose& pose) {
+  const DQuat turn = normalized(to_double(pose.orientation));
+  std::vector<Vec3> out;
+  for (const DVec3& place : rest_places(*entry.def, entry.damage.roots))
+    out.push_back(to_float(rotate_inverse(turn, place - pose.position)));
+  return out;
+}
+
+}  // namespace
+
+ClothDef World::cloth_def(SoftId cloth) const {
+  if (!exists(cloth) || state_->soft.entries[cloth.index].kind != SoftKind::cloth) return {};
+  const FloatMode mode;
+  const SoftEntry& entry = state_->soft.entries[cloth.index];
+  ClothDef def = std::get<ClothDef>(*entry.def);
+  put_present_state(entry, def);
+  if (!is_torn(entry)) return def;
+  def.vertices = local_rest_places(entry, def.pose);
+  def.triangles.assign(entry.damage.corners.begin(), entry.damage.corners.end());
+  def.grid.reset();
+  def.pressure.reset();
+  return def;
+}
+
+SolidDef World::solid_def(SoftId solid) const {
+  if (!exists(solid) || state_->soft.entries[solid.index].kind != SoftKind::solid) return {};
+  const FloatMode mode;
+  const SoftEntry& entry = state_->soft.entries[solid.index];
+  SolidDef def = std::get<SolidDef>(*entry.def);
+  put_present_state(entry, def);
+  if (!is_torn(entry)) return def;
+  def.vertices = local_rest_places(entry, def.pose);
+  def.tetrahedra.assign(entry.damage.corners.begin(), entry.damage.corners.end());
+  def.box.reset();
+  return def;
+}
+
+std::size_t World::cloth_crossings() const {
+  const FloatMode mode;
+  Array<PlacedSurface> placed;
+  Array<DVec3> positions;
+  state_->soft.for_each([&](const SoftEntry& entry) {
+    if (entry.kind != SoftKind::cloth || entry.contact_surface == nullptr) return;
+    placed.push_back({entry.contact_surface.get(), std::uint32_t(positions.size())});
+    const Particles& p = entry.body.particles;
+    for (int i = 0; i < p.count; ++i) positions.push_back(p.place(i));
+  });
+  Arena arena;
+  return placed.empty() ? 0 : std::size_t(count_crossings(placed.view(), positions.view(), arena));
+}
+
+}  // namespace gyre
