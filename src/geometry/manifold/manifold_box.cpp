@@ -6,7 +6,6 @@
 #include "geometry/manifold/manifold_box_face.h"
 #include "geometry/manifold/manifold_core.h"
 #include "geometry/manifold/manifold_crossing.h"
-#include "geometry/manifold/manifold_edges.h"
 #include "math/rotation.h"
 
 #include <bit>
@@ -271,43 +270,6 @@ struct Pair {
   float max_separation;
 };
 
-// The faces of a box on which all points lie, within a tolerance. `points`: relative to its centre, in its axes.
-EdgeFaces faces_at(const float* half, const Vec3* points, int count, float tolerance) {
-  EdgeFaces faces;
-  for (int k = 0; k < 3; ++k) {
-    const float sign = points[0][k] < 0.0f ? -1.0f : 1.0f;
-    bool near = true;
-    for (int i = 0; i < count && near; ++i) near = absolute(sign * points[i][k] - half[k]) <= tolerance;
-    if (near) faces.add({k == 0 ? sign : 0.0f, k == 1 ? sign : 0.0f, k == 2 ? sign : 0.0f});
-  }
-  return faces;
-}
-
-// See manifold_edges.h. `found`: the face that gave the points.
-void meet_at_edges(const Boxes& x, const Axis& found, LocalManifold& out) {
-  const SurfacePoints points(out);
-  const float tolerance = kOnEdge * thinnest(x);
-  const EdgeFaces a = faces_at(x.a, points.on_a, out.count, tolerance);
-  if (a.count != 2) return;
-  const Vec3 center{x.t[0], x.t[1], x.t[2]};
-  const Vec3 columns[3] = {to_vec3(Floats::load(x.s[0])), to_vec3(Floats::load(x.s[1])),
-                           to_vec3(Floats::load(x.s[2]))};
-  const auto in_b = [&](Vec3 v) { return Vec3{dot(v, columns[0]), dot(v, columns[1]), dot(v, columns[2])}; };
-  Vec3 on_b[kMaxManifoldPoints];
-  for (int i = 0; i < out.count; ++i) on_b[i] = in_b(points.on_b[i] - center);
-  EdgeFaces b = faces_at(x.b, on_b, out.count, tolerance);
-  for (Vec3& n : b.normals) n = n.x * columns[0] + n.y * columns[1] + n.z * columns[2];
-  const Vec3 normal = normal_of_edges(out.normal, a, b);
-  if (normal == out.normal) return;
-  const bool reference_is_a = found.number < kFirstB;
-  const auto reach = [](const float* half, Vec3 n) {
-    return absolute(n.x) * half[0] + absolute(n.y) * half[1] + absolute(n.z) * half[2];
-  };
-  set_edge_normal(out, normal, reference_is_a,
-                  reference_is_a ? reach(x.a, normal) : dot(normal, center) - reach(x.b, in_b(normal)),
-                  thinnest(x));
-}
-
 // The manifold along the deciding axis, whose separation is within the allowed one. out.count must be 0.
 void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCache& cache,
                    LocalManifold& out) {
@@ -318,7 +280,6 @@ void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCach
     // The points miss the closest or deepest feature, which lies beside the face.
     const float excess = deepest_of(out) - found.separation;
     if (excess > kMissTolerance * thinnest(x) + kDepthTolerance * max(-found.separation, 0.0f)) out.count = 0;
-    if (out.count >= 2) meet_at_edges(x, found, out);
   }
   // The boxes are close or overlap, but no face projects onto the other.
   if (out.count == 0) collide_cores(pair.a, pair.b, pair.a_from_b, pair.max_separation, cache, out);

@@ -6,7 +6,6 @@
 #include "geometry/manifold/clip.h"
 #include "geometry/manifold/manifold_core.h"
 #include "geometry/manifold/manifold_crossing.h"
-#include "geometry/manifold/manifold_edges.h"
 
 namespace gyre {
 namespace {
@@ -193,40 +192,6 @@ bool crossing_faces(const Polytope& a, const Polytope& b, const Transform& a_fro
   return replaces_crossing(out, edges.separation, min(a.inner_radius, b.inner_radius));
 }
 
-// The faces of a polytope on which all points lie, within a tolerance.
-EdgeFaces faces_at(const Polytope& polytope, const Vec3* points, int count, float tolerance) {
-  EdgeFaces faces;
-  for (int f = 0; f < polytope.face_count && faces.count < 3; ++f) {
-    const HullPlane& plane = polytope.planes[f];
-    bool near = true;
-    for (int i = 0; i < count && near; ++i)
-      near = absolute(dot(plane.normal, points[i]) - plane.offset) <= tolerance;
-    if (near) faces.add(plane.normal);
-  }
-  return faces;
-}
-
-// See manifold_edges.h.
-void meet_at_edges(const Polytope& a, const Polytope& b, const Transform& a_from_b, bool reference_is_a,
-                   LocalManifold& out) {
-  const SurfacePoints points(out);
-  const float tolerance = kOnEdge * min(a.inner_radius, b.inner_radius);
-  const EdgeFaces faces_a = faces_at(a, points.on_a, out.count, tolerance);
-  if (faces_a.count != 2) return;
-  Vec3 on_b[kMaxManifoldPoints];
-  for (int i = 0; i < out.count; ++i)
-    on_b[i] = rotate_inverse(a_from_b.orientation, points.on_b[i] - a_from_b.position);
-  EdgeFaces faces_b = faces_at(b, on_b, out.count, tolerance);
-  for (Vec3& normal : faces_b.normals) normal = rotate(a_from_b.orientation, normal);
-  const Vec3 normal = normal_of_edges(out.normal, faces_a, faces_b);
-  if (normal == out.normal) return;
-  const Vec3 local = rotate_inverse(a_from_b.orientation, normal);
-  set_edge_normal(
-      out, normal, reference_is_a,
-      reference_is_a ? highest_along(a, normal) : lowest_along(b, local) + dot(normal, a_from_b.position),
-      min(a.inner_radius, b.inner_radius));
-}
-
 // Returns false if the polytopes are farther apart than allowed along some axis.
 bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_from_b, float max_separation,
                        PairCache& cache, LocalManifold& out) {
@@ -241,7 +206,6 @@ bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_
     // The points miss the closest or deepest feature, which lies beside the face.
     const float excess = deepest_of(out) - axis.separation;
     if (excess > allowed_miss(a, b) + kDepthTolerance * max(-axis.separation, 0.0f)) out.count = 0;
-    if (out.count >= 2) meet_at_edges(a, b, a_from_b, axis.kind == AxisKind::face_a, out);
     return true;
   }
   if (crossing_faces(a, b, a_from_b, axis, max_separation, out)) return true;

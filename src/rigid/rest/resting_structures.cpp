@@ -1,6 +1,5 @@
 #include "rigid/rest/resting_structures.h"
 
-#include "base/hash.h"
 #include "math/rotation.h"
 
 namespace gyre {
@@ -20,16 +19,14 @@ constexpr std::uint32_t kContactsPerSinglePoint = 8;
 // smallest body falls through its own size: sooner it cannot fall far.
 constexpr std::uint32_t kMaxSmall = 4, kMaxMedium = 128;
 constexpr std::uint64_t kRetryInterval = 8, kMinRetryIntervalIfLarge = 16;
-// Each island has a phase of its own, by its lowest body, so that the trials of many islands are spread over the steps.
 constexpr float kFallTimesIfLarge = 4.0f, kMaxRetryIntervalIfLarge = 1024.0f;
 
-bool is_due_this_step(const RigidWorld& w, std::uint32_t lowest_body, const IslandCount& count) {
+bool is_due_this_step(const RigidWorld& w, const IslandCount& count) {
   if (count.bodies <= kMaxSmall) return true;
-  const std::uint64_t phase = w.steps + (mix_bits(lowest_body) >> 32);
-  if (count.bodies <= kMaxMedium) return phase % kRetryInterval == 0;
+  if (count.bodies <= kMaxMedium) return w.steps % kRetryInterval == 0;
   const float fall = std::sqrt(count.smallest / length(w.settings.gravity));  // s
   const float interval = min(kFallTimesIfLarge * fall / w.settings.last_step, kMaxRetryIntervalIfLarge);
-  return phase % max(std::uint64_t(interval), kMinRetryIntervalIfLarge) == 0;
+  return w.steps % max(std::uint64_t(interval), kMinRetryIntervalIfLarge) == 0;
 }
 
 // True if all contacts that carried load in the last step were solved directly.
@@ -37,14 +34,14 @@ bool is_in_equilibrium(const IslandCount& count) {
   return count.has_rigid_contact && !count.has_soft_contact;
 }
 
-bool can_be_in_equilibrium(const RigidWorld& w, std::uint32_t lowest_body, const IslandCount& count) {
+bool can_be_in_equilibrium(const RigidWorld& w, const IslandCount& count) {
   if (count.refused || count.not_calm || count.ground_contacts == 0) return false;
   // Resting trees have a solver of their own (resting_trees.h).
   if (!count.has_narrow_contact && count.ground_contacts == 1 && count.contacts == count.bodies) return false;
   if (count.bodies > kMaxBodies || count.contacts > kMaxContactsPerBody * count.bodies) return false;
   if (count.bodies > kMaxInHeap && kContactsPerSinglePoint * count.single_point_contacts > count.contacts)
     return false;
-  return is_in_equilibrium(count) || is_due_this_step(w, lowest_body, count);
+  return is_in_equilibrium(count) || is_due_this_step(w, count);
 }
 
 class StructureBuilder {
@@ -113,8 +110,7 @@ class StructureBuilder {
     StructureNode node;
     node.body = std::int32_t(body);
     node.mass = mass.mass;
-    node.rest_speed =
-        kStructureStillSpeedShare * std::sqrt(length(w_.settings.gravity) * mass.bounding_radius);
+    node.rest_speed = kStructureStillSpeedShare * std::sqrt(length(w_.settings.gravity) * mass.bounding_radius);
     node.rest_spin = mass.bounding_radius > 0.0f ? node.rest_speed / mass.bounding_radius : 0.0f;
     node.inertia = rotate_inertia(w_.bodies.poses[body].orientation, mass.inertia);
     return node;
@@ -134,16 +130,15 @@ class StructureBuilder {
 std::span<RestingStructure> find_resting_structures(const RigidWorld& w, std::span<const ColoringPair> pairs,
                                                     const SolveBatch& batch, const RestingIslands& islands,
                                                     Arena& arena) {
-  const auto is_structure = [&](std::uint32_t index) {
-    return islands.is_root(index) && can_be_in_equilibrium(w, batch.bodies[index], islands.at_root(index));
-  };
   std::size_t count = 0;
-  for (std::uint32_t index = 0; index < batch.bodies.size(); ++index) count += is_structure(index) ? 1 : 0;
+  for (std::uint32_t index = 0; index < batch.bodies.size(); ++index) {
+    if (islands.is_root(index) && can_be_in_equilibrium(w, islands.at_root(index))) ++count;
+  }
   if (count == 0) return {};
   const std::span<std::uint32_t> roots = arena.make<std::uint32_t>(count);
   count = 0;
   for (std::uint32_t index = 0; index < batch.bodies.size(); ++index) {
-    if (is_structure(index)) roots[count++] = index;
+    if (islands.is_root(index) && can_be_in_equilibrium(w, islands.at_root(index))) roots[count++] = index;
   }
   StructureBuilder builder(w, pairs, batch, islands, arena);
   builder.list(roots);
