@@ -59,6 +59,21 @@ def jelly():
     return scene("a ball on a jelly", [1.6, 1.6, 3.6], [0, 0.5, 0], [GROUND, ball], soft_bodies=[block])
 
 
+def tearing_banner():
+    columns, rows = 28, 14
+    poles = [{"name": f"{side} pole", "type": "static", "position": [1.43 * x, 1.5, 0], "color": "#8d99a8",
+              "shapes": [{"type": "cylinder", "radius": 0.03, "half_height": 1.5}]} for side, x in (("left", -1), ("right", 1))]
+    edges = [{"vertex": row * (columns + 1) + column, "body": pole["name"]}
+             for row in range(rows + 1) for column, pole in ((0, poles[0]), (columns, poles[1]))]
+    banner = {"name": "banner", "grid": {"size": [2.8, 1.4], "cells": [columns, rows]}, "position": [0, 2.2, 0],
+              "orientation": {"axis": [1, 0, 0], "angle": math.pi / 2}, "links": "springs", "area_density": 0.2, "thickness": 0.01,
+              "stretch_stiffness": 3000, "bend_stiffness": 2e-5, "damping": 0.005, "tear_strain": 0.18, "color": "#b9674c",
+              "pinned_to": edges}
+    balls = [{"name": f"ball {k + 1}", "position": [0.75 * (k - 1), 1.9 + 0.1 * k, 3 + 2 * k], "linear_velocity": [0, 2.5, -9], "color": "#666b78",
+              "shapes": [{"type": "sphere", "radius": 0.16, "density": 1500}]} for k in range(3)]
+    return scene("balls that tear a banner", [3.2, 2.4, 4.6], [0, 1.4, -0.3], [GROUND, *poles, *balls], cloths=[banner])
+
+
 def cloth_on_sphere():
     sphere = {"name": "sphere", "type": "static", "position": [0, 0.6, 0], "color": "#8d99a8", "shapes": [{"type": "sphere", "radius": 0.6}]}
     cloth = {"name": "cloth", "grid": {"size": [2, 2], "cells": [36, 36]}, "position": [0, 1.5, 0], "links": "springs", "area_density": 0.2,
@@ -79,4 +94,4 @@ def integrators():
     return scene("five integrators, one chain of springs", [0, 3.2, 10], [0, 1.6, 0], [GROUND], ropes=ropes, world={"substeps": 12})
 
 
-ALL = [flag, rope_bridge, jelly, cloth_on_sphere, integrators]
+ALL = [flag, rope_bridge, jelly, cloth_on_sphere, tearing_banner, integrators]

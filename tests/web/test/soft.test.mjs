@@ -1,9 +1,11 @@
 // Ropes, cloths and solids on the page: drawn where they are, of recordings forward and back; in live scenes the mouse drags them.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { test } from 'node:test';
 import { BodyType, load, sphere } from '../../../web/gyre-physics/dist/index.js';
 import { changed } from '../pictures.mjs';
-import { settled, viewerTests } from '../setup.mjs';
+import { root, settled, viewerTests } from '../setup.mjs';
 
 const STEPS = 40;
 const ACCURACY = 1e-4; // m, what a recorder keeps by default; and some rounding to 32 bits
@@ -44,7 +46,8 @@ const scene = Buffer.from(JSON.stringify({
   soft_bodies: [{ name: 'jelly', box: { half_extents: [0.4, 0.4, 0.4], cells: [3, 3, 3] }, position: [2, 0.4, 0] }],
 }));
 
-const viewer = viewerTests({ files: { 'soft.gyrec': whole, 'soft.gyre.json': scene } });
+const banner = readFileSync(join(root, 'scenes/soft/tearing_banner.gyre.json'));
+const viewer = viewerTests({ files: { 'soft.gyrec': whole, 'soft.gyre.json': scene, 'banner.gyre.json': banner } });
 
 test('a recording shows the vertices forward and back', async (t) => {
   const page = await viewer.open(t, 'file=/files/soft.gyrec&play=0&quality=low', { width: 640, height: 400 });
@@ -136,6 +139,24 @@ test('a click on a cloth tells of it, and it can be removed', async (t) => {
   await page.keyboard.press('Delete');
   await page.waitForFunction(() => window.gyre.vertices('flag') === null);
   assert.equal(await page.evaluate(() => window.gyre.stats.softs), 2);
+  viewer.noErrors(page);
+});
+
+test('a cloth that tears is drawn anew, and is whole again where the scene goes back', async (t) => {
+  const page = await viewer.open(t, 'file=/files/banner.gyre.json&play=0&quality=low', { width: 480, height: 300 });
+  const drawn = () => page.evaluate(() => window.gyre.vertices('banner').length / 3);
+  await settled(page);
+  const whole = await drawn();
+  await page.evaluate(() => window.gyre.advance(30));
+  await settled(page);
+  const torn = await drawn();
+  assert.ok(torn > whole, `${torn} vertices, ${whole} at the start`);
+  await page.evaluate(() => window.gyre.seek(2));
+  await settled(page);
+  assert.equal(await drawn(), whole);
+  await page.evaluate(() => window.gyre.seek(30));
+  await settled(page);
+  assert.equal(await drawn(), torn);
   viewer.noErrors(page);
 });
 

@@ -78,9 +78,9 @@ export class Softs {
   }
 
   restructure({ softs }: Structure): void {
-    const there = new Set(softs.map(({ key }) => key));
-    for (const key of [...this.items.keys()]) {
-      if (!there.has(key)) this.drop(key);
+    const sizes = new Map(softs.map(({ key, vertices }) => [key, vertices]));
+    for (const [key, { soft }] of [...this.items]) {
+      if (sizes.get(key) !== soft.vertices) this.drop(key);  // gone, or torn
     }
     this.fresh = softs;
     this.shown = null;

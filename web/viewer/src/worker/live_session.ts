@@ -64,6 +64,7 @@ export class LiveSession implements Session {
   private ids = new Float64Array(0);
   private types = new Uint8Array(0);
   private softIds = new Float64Array(0);
+  private softSizes = new Float64Array(0);
   private fluidIds = new Float64Array(0);
   private readonly fluids: FluidReader;
   private structure = 0;
@@ -358,10 +359,13 @@ export class LiveSession implements Session {
   }
 
   private restructure(ids: Float64Array, softIds: Float64Array, fluidIds: Float64Array, fresh: boolean): Structure | null {
-    if (equal(ids, this.ids) && equal(softIds, this.softIds) && equal(fluidIds, this.fluidIds) && !fresh) return null;
+    // Soft matter that tears has more vertices.
+    const softSizes = Float64Array.from(softIds, (id) => this.scene.vertices(id).x.length);
+    if (equal(ids, this.ids) && equal(softIds, this.softIds) && equal(softSizes, this.softSizes) && equal(fluidIds, this.fluidIds) && !fresh) return null;
     if (fresh) this.sent.clear();
     this.ids = ids as Float64Array<ArrayBuffer>;
     this.softIds = softIds as Float64Array<ArrayBuffer>;
+    this.softSizes = softSizes;
     this.fluidIds = fluidIds as Float64Array<ArrayBuffer>;
     this.types = Uint8Array.from(ids, (id) => this.scene.type(id));
     this.structure++;
