@@ -95,3 +95,5 @@ gyre_render_packages=(libepoxy-dev libegl-dev libpng-dev libgif-dev libegl1 libg
 
 # For gyre view, which is left out where it is missing: the server.
 gyre_view_packages=(libcpp-httplib-dev)
+# Robots in URDF and MJCF.
+gyre_format_packages=(libtinyxml2-dev)
