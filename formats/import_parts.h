@@ -1,4 +1,4 @@
-// Parts that the readers share: names, folders that may be read, findings, and a mesh table. Refusals are thrown as SceneError.
+// Parts that the readers of other formats share: names, folders that may be read, findings, and a mesh table. Refusals are thrown as SceneError.
 #pragma once
 
 #include "formats/import.h"

@@ -1,5 +1,5 @@
 // Elements of XML documents. tinyxml2 parses: it knows the five entities of XML and no others, opens nothing, and refuses documents
-// nested deeper than 500. See xml_element.h.
+// nested deeper than 100. See xml_element.h.
 #include "formats/xml_element.h"
 
 #include "scene/number_text.h"
