@@ -1,5 +1,4 @@
 // Files of other programs: what they say becomes motion that is known in numbers, and files that are wrong are refused with their place.
-#include "cli/run_program.h"
 #include "formats/import.h"
 #include "scene/mesh_file.h"
 #include "scene/scene_runner.h"
@@ -9,13 +8,9 @@
 
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 namespace gyre {
 namespace {
-
-namespace fs = std::filesystem;
 
 Scene open_example(const std::string& name, const ImportOptions& options = {}) {
   SceneResult<Scene> scene = open_scene(GYRE_SOURCE_DIR "/scenes/formats/" + name, options);
@@ -375,60 +370,6 @@ TEST(Mjcf, DamagedFilesAreRefused) {
   expect_refused("<mujoco><worldbody>" + deep + "</worldbody></mujoco>", "nested too deep");
 }
 
-#endif
-
-// ---------------------------------------------------------------------------------------------------------- command line
-
-class FormatsCli : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("gyre_formats_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_ / "robot");
-    fs::create_directories(folder_ / "arms" / "meshes");
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name, std::ios::binary) << text; }
-  Finished gyre(const std::vector<std::string>& arguments) { return run_program(arguments, folder_); }
-
-  fs::path folder_;
-};
-
-TEST_F(FormatsCli, AConvertedFileMovesBitByBitLikeTheFileItself) {
-  const std::string source = GYRE_SOURCE_DIR "/scenes/formats/playground.gltf";
-  ASSERT_EQ(gyre({"convert", source, "out.gyre.json"}).code, 0);
-  const Finished direct = gyre({"simulate", source, "--steps", "60", "--hash", "--quiet"});
-  const Finished converted = gyre({"simulate", "out.gyre.json", "--steps", "60", "--hash", "--quiet"});
-  EXPECT_EQ(direct.code, 0) << direct.err;
-  EXPECT_FALSE(direct.out.empty());
-  EXPECT_EQ(direct.out, converted.out);
-}
-
-#ifdef GYRE_WITH_XML
-TEST_F(FormatsCli, MeshesAreReadFromTheFoldersThatWereNamedAndFromNoOther) {
-  const auto robot = [](const std::string& mesh) {
-    return "<robot name=\"r\"><link name=\"base\"><collision><geometry><mesh filename=\"" + mesh + "\" scale=\"2 2 2\"/></geometry></collision></link></robot>";
-  };
-  write("arms/meshes/a.stl", kTextStl);
-  write("robot/p.urdf", robot("package://arms/meshes/a.stl"));
-  write("robot/up.urdf", robot("../arms/meshes/a.stl"));
-  write("secret.stl", kTextStl);
-  write("robot/far.urdf", robot("package://arms/../secret.stl"));
-  const Finished unnamed = gyre({"info", "robot/p.urdf"}), outside = gyre({"info", "robot/up.urdf"});
-  EXPECT_EQ(unnamed.code, 3);
-  EXPECT_NE(unnamed.err.find("--package arms=FOLDER"), std::string::npos) << unnamed.err;
-  EXPECT_EQ(outside.code, 3);
-  EXPECT_NE(outside.err.find("leads out of the folders"), std::string::npos) << outside.err;
-  EXPECT_EQ(gyre({"info", "robot/p.urdf", "--package", "arms=arms"}).code, 0);
-  EXPECT_EQ(gyre({"info", "robot/p.urdf", "--package", "."}).code, 0);
-  EXPECT_EQ(gyre({"info", "robot/up.urdf", "--package", "arms"}).code, 0);
-  EXPECT_EQ(gyre({"info", "robot/far.urdf", "--package", "arms=arms"}).code, 3);
-  const Finished strict = gyre({"convert", GYRE_SOURCE_DIR "/scenes/formats/pendulum.urdf", "out.gyre.json", "--strict"});
-  EXPECT_EQ(strict.code, 0) << strict.err;
-  write("bad.urdf", "<robot/>");
-  EXPECT_EQ(gyre({"convert", "bad.urdf", "none.gyre.json"}).code, 3);
-  EXPECT_FALSE(fs::exists(folder_ / "none.gyre.json"));
-}
 #endif
 
 }  // namespace

@@ -180,7 +180,7 @@ void GeomReader::set_surface(MjcfGeom& out) {
   const double dimension = geom_.number("condim", 3);
   const double slide = friction.empty() ? 1.0 : friction[0];
   if (!(slide >= 0)) geom_.fail("found a friction below 0");
-  shape_.static_friction = shape_.dynamic_friction = float(dimension < 3 ? 0.0 : slide);
+  shape_.static_friction = shape_.dynamic_friction = float(slide);
   if (dimension >= 4) shape_.spinning_friction = float(max(0.0, friction.size() > 1 ? friction[1] : 0.005));
   if (dimension >= 6) shape_.rolling_friction = float(max(0.0, friction.size() > 2 ? friction[2] : 0.0001));
   const auto named = assets_.colors.find(geom_.text("material"));
