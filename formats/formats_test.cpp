@@ -35,7 +35,9 @@ std::size_t index_of(const Scene& scene, const std::string& name) {
   ADD_FAILURE() << "no body " << name;
   return 0;
 }
-BodyId body_in(const SceneRunner& runner, const std::string& name) { return runner.bodies()[index_of(runner.scene(), name)]; }
+BodyId body_in(const SceneRunner& runner, const std::string& name) {
+  return runner.bodies()[index_of(runner.scene(), name)];
+}
 
 const SceneJoint& joint_in(const Scene& scene, const std::string& name) {
   for (const SceneJoint& joint : scene.joints) {
@@ -60,11 +62,14 @@ std::string binary_stl(std::uint32_t announced) {
 }
 
 constexpr const char* kTextStl =
-    "solid two words\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
-    "facet normal 1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 0 0 1e0\nendloop\nendfacet\nendsolid two words\n";
+    "solid two words\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+    "0\nendloop\nendfacet\n"
+    "facet normal 1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 0 0 1e0\nendloop\nendfacet\nendsolid "
+    "two words\n";
 
 TEST(MeshFormats, TextAndBinaryStlGiveTheSameWeldedMesh) {
-  const SceneResult<MeshData> text = parse_mesh(kTextStl, "a.stl", {}), binary = parse_mesh(binary_stl(2), "A.STL", {});
+  const SceneResult<MeshData> text = parse_mesh(kTextStl, "a.stl", {}),
+                              binary = parse_mesh(binary_stl(2), "A.STL", {});
   ASSERT_TRUE(text) << text.error().text();
   ASSERT_TRUE(binary) << binary.error().text();
   EXPECT_EQ(text->vertices.size(), 4u);
@@ -74,7 +79,7 @@ TEST(MeshFormats, TextAndBinaryStlGiveTheSameWeldedMesh) {
 }
 
 TEST(MeshFormats, DamagedStlIsRefused) {
-  EXPECT_FALSE(parse_stl(binary_stl(3), "a.stl", {}));           // announces more than there is
+  EXPECT_FALSE(parse_stl(binary_stl(3), "a.stl", {}));  // announces more than there is
   EXPECT_FALSE(parse_stl(binary_stl(0xffffffffu), "a.stl", {}));
   EXPECT_FALSE(parse_stl("solid\nfacet normal 0 0 1\nvertex 0 0 inf\n", "a.stl", {}));
   EXPECT_FALSE(parse_stl("solid\nvertex 0 0 0\nvertex 0 0 1\n", "a.stl", {}));
@@ -86,10 +91,13 @@ TEST(MeshFormats, DamagedStlIsRefused) {
 }
 
 TEST(MeshFormats, PlyOfAllEncodingsGivesTheSameMesh) {
-  const std::string head = " 1.0\ncomment a square\nelement vertex 4\nproperty float x\nproperty float y\nproperty uchar red\nproperty double z\n"
-                           "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string head =
+      " 1.0\ncomment a square\nelement vertex 4\nproperty float x\nproperty float y\nproperty uchar "
+      "red\nproperty double z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
   const auto ply = [&](bool big) {
-    std::string out = std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") + head;
+    std::string out =
+        std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") + head;
     const auto put = [&](const void* value, std::size_t size) {
       std::string bytes = little(value, size);
       if (big) bytes = {bytes.rbegin(), bytes.rend()};
@@ -105,7 +113,8 @@ TEST(MeshFormats, PlyOfAllEncodingsGivesTheSameMesh) {
     for (const std::int32_t i : {0, 1, 2, 3}) put(&i, 4);
     return out;
   };
-  const SceneResult<MeshData> text = parse_mesh("ply\nformat ascii" + head + "0 0 9 .5\n1 0 9 .5\n1 1 9 .5\n0 1 9 .5\n4 0 1 2 3\n", "a.ply", {});
+  const SceneResult<MeshData> text = parse_mesh(
+      "ply\nformat ascii" + head + "0 0 9 .5\n1 0 9 .5\n1 1 9 .5\n0 1 9 .5\n4 0 1 2 3\n", "a.ply", {});
   ASSERT_TRUE(text) << text.error().text();
   EXPECT_EQ(text->vertices.size(), 4u);
   EXPECT_EQ(text->indices.size(), 6u);
@@ -116,7 +125,8 @@ TEST(MeshFormats, PlyOfAllEncodingsGivesTheSameMesh) {
     EXPECT_EQ(binary->vertices, text->vertices);
     EXPECT_EQ(binary->indices, text->indices);
   }
-  EXPECT_FALSE(parse_ply("ply\nformat ascii" + head + "0 0 9 .5\n1 0 9 .5\n1 1 9 .5\n0 1 9 .5\n4 0 1 2 4\n", "a.ply", {}));
+  EXPECT_FALSE(parse_ply("ply\nformat ascii" + head + "0 0 9 .5\n1 0 9 .5\n1 1 9 .5\n0 1 9 .5\n4 0 1 2 4\n",
+                         "a.ply", {}));
   EXPECT_FALSE(parse_ply(ply(false).substr(0, ply(false).size() - 1), "a.ply", {}));
 }
 
@@ -162,7 +172,8 @@ std::string as_glb(std::string json, const std::string& binary) {
     const std::uint32_t out = std::uint32_t(value);
     return little(&out, 4);
   };
-  return "glTF" + u32(2) + u32(28 + json.size() + binary.size()) + u32(json.size()) + "JSON" + json + u32(binary.size()) + std::string("BIN\0", 4) + binary;
+  return "glTF" + u32(2) + u32(28 + json.size() + binary.size()) + u32(json.size()) + "JSON" + json +
+         u32(binary.size()) + std::string("BIN\0", 4) + binary;
 }
 
 TEST(Gltf, MeshesOfABinaryFileWithoutPhysicsStandStill) {
@@ -172,7 +183,8 @@ TEST(Gltf, MeshesOfABinaryFileWithoutPhysicsStandStill) {
           "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
           "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
           "nodes": [{"scale": [2, 2, 2], "children": [1]}, {"name": "leaf", "mesh": 0, "rotation": [0, 0.70710678, 0, 0.70710678], "translation": [1, 0, 0]}]})";
-  const SceneResult<Scene> scene = import_scene(as_glb(json, little(triangle, 36)), FileFormat::gltf, "a.glb");
+  const SceneResult<Scene> scene =
+      import_scene(as_glb(json, little(triangle, 36)), FileFormat::gltf, "a.glb");
   ASSERT_TRUE(scene) << scene.error().text();
   ASSERT_EQ(scene->bodies.size(), 1u);
   EXPECT_EQ(scene->bodies[0].def.type, BodyType::fixed);
@@ -190,23 +202,28 @@ TEST(Gltf, DamagedFilesAreRefusedWithTheirPlace) {
   refused("", "a.gltf");
   refused("{}", "/asset/version");
   refused(begin + R"("extensionsRequired": ["KHR_draco_mesh_compression"]})", "which is not read");
-  refused(begin + R"("nodes": [{"children": [1]}, {"children": [0]}], "scenes": [{"nodes": [0]}]})", "two parents");
+  refused(begin + R"("nodes": [{"children": [1]}, {"children": [0]}], "scenes": [{"nodes": [0]}]})",
+          "two parents");
   refused(begin + R"("nodes": [{"children": [7]}]})", "/nodes/0/children");
   refused(begin + R"("nodes": [{"translation": [1e300, 0, 0]}]})", "/translation");
   refused(begin + R"("nodes": [{"scale": [0, 1, 1]}]})", "singular");
   refused(begin + R"("nodes": [{"mesh": 3}]})", "/meshes/3");
-  const std::string mesh = R"("nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], )";
+  const std::string mesh =
+      R"("nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], )";
   const auto accessor = [&](const std::string& view, const std::string& count) {
-    return begin + mesh + R"("buffers": [{"byteLength": 12, "uri": "data:;base64,AAAAAAAAAAAAAAAA"}], "bufferViews": [{"buffer": 0, )" + view +
-           R"(}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" + count + "}]}";
+    return begin + mesh +
+           R"("buffers": [{"byteLength": 12, "uri": "data:;base64,AAAAAAAAAAAAAAAA"}], "bufferViews": [{"buffer": 0, )" +
+           view + R"(}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" +
+           count + "}]}";
   };
   refused(accessor(R"("byteLength": 12)", "2"), "reaches out");
   refused(accessor(R"("byteLength": 9000)", "1"), "outside of its buffer");
   refused(accessor(R"("byteLength": 12, "byteOffset": -4)", "1"), "outside of its buffer");
   refused(accessor(R"("byteLength": 12)", "4000000000000000000"), "limit");
-  refused(begin + mesh + R"("accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 1}],
+  refused(
+      begin + mesh + R"("accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 1}],
       "bufferViews": [{"buffer": 0, "byteLength": 12}], "buffers": [{"byteLength": 12, "uri": "http://host/a.bin"}]})",
-          "nothing is fetched");
+      "nothing is fetched");
   refused("glTF" + std::string("\2\0\0\0\xff\0\0\0\xff\xff\xff\xffJSON{}", 18), "longer than the file");
 }
 
@@ -270,7 +287,8 @@ void expect_refused(const std::string& text, const std::string& expected) {
 TEST(Urdf, DamagedFilesAreRefusedWithTheirLine) {
   const std::string two = R"(<robot name="r"><link name="a"/><link name="b"/>)";
   const auto joint = [&](const std::string& type, const std::string& inside) {
-    return two + "\n<joint name=\"j\" type=\"" + type + "\"><parent link=\"a\"/><child link=\"b\"/>" + inside + "</joint></robot>";
+    return two + "\n<joint name=\"j\" type=\"" + type + "\"><parent link=\"a\"/><child link=\"b\"/>" +
+           inside + "</joint></robot>";
   };
   expect_refused("", "XML");
   expect_refused("<robot>", "XML");
@@ -283,13 +301,20 @@ TEST(Urdf, DamagedFilesAreRefusedWithTheirLine) {
   expect_refused(joint("continuous", R"(<axis xyz="0 0 0"/>)"), "no length");
   expect_refused(joint("continuous", R"(<axis xyz="0 nan 0"/>)"), "finite numbers");
   expect_refused(joint("continuous", R"(<origin xyz="1e300 0 0"/>)"), "at most 1e12");
-  expect_refused(two + R"(<joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint></robot>)", "name of a link");
+  expect_refused(two + R"(<joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint></robot>)",
+                 "name of a link");
   expect_refused(two + R"(<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
-                          <joint name="k" type="fixed"><parent link="b"/><child link="a"/></joint></robot>)", "a ring");
-  expect_refused(R"(<robot><link name="a"><collision><geometry><mesh filename="http://host/a.stl"/></geometry></collision></link></robot>)", "no files can be opened");
-  expect_refused(R"(<robot><link name="a"><collision><geometry><sphere radius="-1"/></geometry></collision></link></robot>)", "above 0");
+                          <joint name="k" type="fixed"><parent link="b"/><child link="a"/></joint></robot>)",
+                 "a ring");
+  expect_refused(
+      R"(<robot><link name="a"><collision><geometry><mesh filename="http://host/a.stl"/></geometry></collision></link></robot>)",
+      "no files can be opened");
+  expect_refused(
+      R"(<robot><link name="a"><collision><geometry><sphere radius="-1"/></geometry></collision></link></robot>)",
+      "above 0");
   // Entities are not expanded, and depth is limited.
-  expect_refused(R"(<!DOCTYPE r [<!ENTITY e "aaaa">]><robot><link name="&e;" /><link name="&e;"/></robot>)", "second link");
+  expect_refused(R"(<!DOCTYPE r [<!ENTITY e "aaaa">]><robot><link name="&e;" /><link name="&e;"/></robot>)",
+                 "second link");
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
   expect_refused(deep, "nested too deep");
@@ -327,17 +352,24 @@ TEST(Mjcf, ASpringedCartAFallingBallAndAnArmMoveAsComputed) {
 }
 
 TEST(Mjcf, AngleUnitsOrientationsAndContactBitsAreRead) {
-  const SceneResult<Scene> scene = import_scene(R"(<mujoco><worldbody><geom type="plane" contype="1" conaffinity="0"/>
+  const SceneResult<Scene> scene =
+      import_scene(R"(<mujoco><worldbody><geom type="plane" contype="1" conaffinity="0"/>
       <body name="a" euler="0 0 90" pos="0 0 5"><joint name="h" range="-90 45"/><geom type="box" size=".1 .2 .3" contype="0" conaffinity="1"/>
         <geom mesh="nowhere" contype="0" conaffinity="0" mass="0" group="2"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/></body>
       <body name="b" quat="0.70710678 0 0 0.70710678"><freejoint/><geom size="1" contype="2" conaffinity="2"/></body></worldbody>
-      <sensor><gyro site="s"/><gyro site="t"/></sensor></mujoco>)", FileFormat::mjcf, "a.xml");
+      <sensor><gyro site="s"/><gyro site="t"/></sensor></mujoco>)",
+                   FileFormat::mjcf, "a.xml");
   ASSERT_TRUE(scene) << scene.error().text();
-  const SceneBody &world = scene->bodies[index_of(*scene, "worldbody")], &a = scene->bodies[index_of(*scene, "a")], &b = scene->bodies[index_of(*scene, "b")];
+  const SceneBody &world = scene->bodies[index_of(*scene, "worldbody")],
+                  &a = scene->bodies[index_of(*scene, "a")], &b = scene->bodies[index_of(*scene, "b")];
   EXPECT_NEAR(std::get<HingeDef>(joint_in(*scene, "h").def).limits->low, -0.5f * kPi, 1e-6f);
-  EXPECT_NEAR(length(rotate(a.def.pose.orientation, {1, 0, 0}) - rotate(b.def.pose.orientation, {1, 0, 0})), 0, 1e-5);
-  EXPECT_NEAR(length(rotate(a.def.pose.orientation, {1, 0, 0}) - Vec3{0, 0, -1}), 0, 1e-5);  // y of the file is -z of the scene
-  const auto collide = [](const Filter& x, const Filter& y) { return (x.collides_with & y.layer) != 0 && (y.collides_with & x.layer) != 0; };
+  EXPECT_NEAR(length(rotate(a.def.pose.orientation, {1, 0, 0}) - rotate(b.def.pose.orientation, {1, 0, 0})),
+              0, 1e-5);
+  EXPECT_NEAR(length(rotate(a.def.pose.orientation, {1, 0, 0}) - Vec3{0, 0, -1}), 0,
+              1e-5);  // y of the file is -z of the scene
+  const auto collide = [](const Filter& x, const Filter& y) {
+    return (x.collides_with & y.layer) != 0 && (y.collides_with & x.layer) != 0;
+  };
   EXPECT_TRUE(collide(world.filter, a.filter));
   EXPECT_FALSE(collide(world.filter, b.filter));
   EXPECT_FALSE(collide(a.filter, b.filter));
@@ -345,8 +377,10 @@ TEST(Mjcf, AngleUnitsOrientationsAndContactBitsAreRead) {
 }
 
 TEST(Mjcf, JointsWithoutACounterpartGetALightBodyBetween) {
-  const SceneResult<Scene> scene = import_scene(R"(<mujoco><compiler angle="radian"/><worldbody><body name="a" pos="0 0 1">
-      <joint name="x" axis="1 0 0"/><joint name="y" axis="0 1 0" pos="0.5 0 0"/><geom size="0.1"/></body></worldbody></mujoco>)", FileFormat::mjcf, "a.xml");
+  const SceneResult<Scene> scene =
+      import_scene(R"(<mujoco><compiler angle="radian"/><worldbody><body name="a" pos="0 0 1">
+      <joint name="x" axis="1 0 0"/><joint name="y" axis="0 1 0" pos="0.5 0 0"/><geom size="0.1"/></body></worldbody></mujoco>)",
+                   FileFormat::mjcf, "a.xml");
   ASSERT_TRUE(scene) << scene.error().text();
   EXPECT_EQ(scene->bodies.size(), 3u);
   EXPECT_TRUE(std::holds_alternative<HingeDef>(joint_in(*scene, "x").def));
@@ -355,7 +389,9 @@ TEST(Mjcf, JointsWithoutACounterpartGetALightBodyBetween) {
 }
 
 TEST(Mjcf, DamagedFilesAreRefused) {
-  const auto body = [](const std::string& inside) { return "<mujoco><worldbody><body>" + inside + "</body></worldbody></mujoco>"; };
+  const auto body = [](const std::string& inside) {
+    return "<mujoco><worldbody><body>" + inside + "</body></worldbody></mujoco>";
+  };
   expect_refused("<mujoco/>", "worldbody");
   expect_refused(body(R"(<joint type="screw"/>)"), "\"screw\"");
   expect_refused(body(R"(<geom size="0"/>)"), "above 0");

@@ -39,7 +39,12 @@ bool decode_base64(std::string_view text, std::string& out) {
 }
 
 std::string percent_decoded(const std::string& uri) {
-  const auto digit = [](char c) { return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1; };
+  const auto digit = [](char c) {
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+  };
   std::string out;
   for (std::size_t i = 0; i < uri.size(); ++i) {
     if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
@@ -59,13 +64,20 @@ struct Component {
 
 Component component_of(std::int64_t type) {
   switch (type) {
-    case 5120: return {1, 'i'};
-    case 5121: return {1, 'u'};
-    case 5122: return {2, 'i'};
-    case 5123: return {2, 'u'};
-    case 5125: return {4, 'u'};
-    case 5126: return {4, 'f'};
-    default: return {};
+    case 5120:
+      return {1, 'i'};
+    case 5121:
+      return {1, 'u'};
+    case 5122:
+      return {2, 'i'};
+    case 5123:
+      return {2, 'u'};
+    case 5125:
+      return {4, 'u'};
+    case 5126:
+      return {4, 'f'};
+    default:
+      return {};
   }
 }
 
@@ -78,7 +90,8 @@ double component_value(const char* at, Component component, bool normalized) {
     return double(value);
   }
   const double span = component.size == 1 ? 256.0 : component.size == 2 ? 65536.0 : 4294967296.0;
-  const double value = component.kind == 'i' && double(bits) >= 0.5 * span ? double(bits) - span : double(bits);
+  const double value =
+      component.kind == 'i' && double(bits) >= 0.5 * span ? double(bits) - span : double(bits);
   if (!normalized) return value;
   return component.kind == 'i' ? max(value / (0.5 * span - 1.0), -1.0) : value / (span - 1.0);
 }
@@ -129,7 +142,8 @@ std::vector<double> json_numbers(const Json& object, const char* key, std::size_
     }
   }
   if (out.size() != count)
-    throw SceneError{"", 0, 0, std::string("/") + key, "expected " + std::to_string(count) + " finite numbers of at most 1e12"};
+    throw SceneError{"", 0, 0, std::string("/") + key,
+                     "expected " + std::to_string(count) + " finite numbers of at most 1e12"};
   return out;
 }
 
@@ -145,7 +159,8 @@ GltfDocument::GltfDocument(Import& import) : import_(import) {
 void GltfDocument::open() {
   std::string_view text = import_.bytes;
   if (text.size() >= 12 && text.substr(0, 4) == "glTF") {
-    if (u32_at(text, 4) != 2) fail("", "found version " + std::to_string(u32_at(text, 4)) + " of glTF, expected 2");
+    if (u32_at(text, 4) != 2)
+      fail("", "found version " + std::to_string(u32_at(text, 4)) + " of glTF, expected 2");
     std::string_view rest = text.substr(12);
     text = {};
     while (rest.size() >= 8) {
@@ -163,12 +178,15 @@ void GltfDocument::open() {
   json_ = parse_document(text, import_.file, import_.options.limits);
   if (!json_.is_object()) fail("", "expected an object");
   const Json* const asset = json_member(json_, "asset");
-  if (asset == nullptr || json_text(*asset, "version", "").rfind("2.", 0) != 0) fail("/asset/version", "expected version 2.x");
-  if (const Json* const required = json_member(json_, "extensionsRequired"); required != nullptr && required->is_array()) {
+  if (asset == nullptr || json_text(*asset, "version", "").rfind("2.", 0) != 0)
+    fail("/asset/version", "expected version 2.x");
+  if (const Json* const required = json_member(json_, "extensionsRequired");
+      required != nullptr && required->is_array()) {
     for (const Json& name : *required) {
       const std::string word = name.is_string() ? name.get<std::string>() : "";
-      const bool known = word == "KHR_physics_rigid_bodies" || word == "KHR_implicit_shapes" || word == "KHR_collision_shapes" ||
-                         word == "KHR_mesh_quantization" || word.rfind("KHR_materials_", 0) == 0 || word.rfind("KHR_texture_", 0) == 0;
+      const bool known = word == "KHR_physics_rigid_bodies" || word == "KHR_implicit_shapes" ||
+                         word == "KHR_collision_shapes" || word == "KHR_mesh_quantization" ||
+                         word.rfind("KHR_materials_", 0) == 0 || word.rfind("KHR_texture_", 0) == 0;
       if (!known) fail("/extensionsRequired", "requires \"" + word + "\", which is not read");
     }
   }
@@ -176,7 +194,8 @@ void GltfDocument::open() {
 
 const Json& GltfDocument::element(const char* section, std::int64_t index) const {
   const Json* const list = json_member(json_, section);
-  if (list == nullptr || !list->is_array() || index < 0 || std::size_t(index) >= list->size() || !(*list)[std::size_t(index)].is_object())
+  if (list == nullptr || !list->is_array() || index < 0 || std::size_t(index) >= list->size() ||
+      !(*list)[std::size_t(index)].is_object())
     fail(std::string("/") + section + "/" + std::to_string(index), "is named, but there is no such object");
   return (*list)[std::size_t(index)];
 }
@@ -195,13 +214,16 @@ void GltfDocument::place_node(int node, int parent, const Json& json, const std:
   Mat3 linear;
   DVec3 translation;
   if (const auto m = json_numbers(json, "matrix", 16); !m.empty()) {
-    const auto column = [&](std::size_t i) { return Vec3{float(m[4 * i]), float(m[4 * i + 1]), float(m[4 * i + 2])}; };
+    const auto column = [&](std::size_t i) {
+      return Vec3{float(m[4 * i]), float(m[4 * i + 1]), float(m[4 * i + 2])};
+    };
     linear = {column(0), column(1), column(2)};
     translation = {m[12], m[13], m[14]};
   } else {
     if (const auto q = json_numbers(json, "rotation", 4); !q.empty())
       linear = to_matrix(normalized(Quat{float(q[0]), float(q[1]), float(q[2]), float(q[3])}));
-    if (const auto s = json_numbers(json, "scale", 3); !s.empty()) linear = linear * diagonal({float(s[0]), float(s[1]), float(s[2])});
+    if (const auto s = json_numbers(json, "scale", 3); !s.empty())
+      linear = linear * diagonal({float(s[0]), float(s[1]), float(s[2])});
     if (const auto t = json_numbers(json, "translation", 3); !t.empty()) translation = {t[0], t[1], t[2]};
   }
   GltfNode& out = nodes_[std::size_t(node)];
@@ -214,8 +236,10 @@ void GltfDocument::place_node(int node, int parent, const Json& json, const std:
     out.linear = above.linear * linear;
     out.translation = above.translation + DVec3(above.linear * to_float(translation));
   }
-  const bool finite = is_finite(out.linear.x) && is_finite(out.linear.y) && is_finite(out.linear.z) && is_finite(out.translation);
-  if (!finite || !(absolute(determinant(out.linear)) > 1.0e-20f)) fail(pointer, "has a transform that is singular or not finite");
+  const bool finite = is_finite(out.linear.x) && is_finite(out.linear.y) && is_finite(out.linear.z) &&
+                      is_finite(out.translation);
+  if (!finite || !(absolute(determinant(out.linear)) > 1.0e-20f))
+    fail(pointer, "has a transform that is singular or not finite");
 }
 
 void GltfDocument::read_nodes() {
@@ -241,7 +265,8 @@ void GltfDocument::read_nodes() {
     const Json* const roots = json_member(scene, "nodes");
     for (std::size_t k = 0; roots != nullptr && roots->is_array() && k < roots->size(); ++k) {
       const Json& root = (*roots)[roots->size() - 1 - k];
-      if (!root.is_number_unsigned() || root.get<std::uint64_t>() >= list->size()) fail("/scenes", "expected numbers of nodes");
+      if (!root.is_number_unsigned() || root.get<std::uint64_t>() >= list->size())
+        fail("/scenes", "expected numbers of nodes");
       waiting.push_back(root.get<int>());
     }
   } else {
@@ -279,7 +304,8 @@ const std::string& GltfDocument::buffer(std::int64_t index) {
   if (uri.rfind("data:", 0) == 0) {
     const std::size_t comma = uri.find(";base64,");
     std::string bytes;
-    if (comma == std::string::npos || !decode_base64(std::string_view(uri).substr(comma + 8), bytes)) fail(pointer + "/uri", "expected base64");
+    if (comma == std::string::npos || !decode_base64(std::string_view(uri).substr(comma + 8), bytes))
+      fail(pointer + "/uri", "expected base64");
     out = std::move(bytes);
   } else {
     out = import_.read_file(percent_decoded(uri), import_.folder, 0);
@@ -294,16 +320,21 @@ std::vector<double> GltfDocument::accessor(std::int64_t index, std::size_t width
   if (json_member(json, "sparse") != nullptr) fail(pointer + "/sparse", "sparse accessors are not read");
   const Component component = component_of(json_integer(json, "componentType", 0));
   const std::int64_t count = json_integer(json, "count", -1), offset = json_integer(json, "byteOffset", 0);
-  if (component.size == 0 || count < 0 || offset < 0) fail(pointer, "has no component type, count or offset of glTF");
-  if (std::size_t(count) > 3 * import_.options.limits.triangles) fail(pointer + "/count", "is above the limit");
+  if (component.size == 0 || count < 0 || offset < 0)
+    fail(pointer, "has no component type, count or offset of glTF");
+  if (std::size_t(count) > 3 * import_.options.limits.triangles)
+    fail(pointer + "/count", "is above the limit");
   const Json& view = element("bufferViews", json_integer(json, "bufferView", -1));
   const std::string& bytes = buffer(json_integer(view, "buffer", -1));
-  const std::int64_t view_offset = json_integer(view, "byteOffset", 0), view_size = json_integer(view, "byteLength", -1);
+  const std::int64_t view_offset = json_integer(view, "byteOffset", 0),
+                     view_size = json_integer(view, "byteLength", -1);
   const std::size_t tight = width * component.size;
   const std::int64_t stride = json_integer(view, "byteStride", std::int64_t(tight));
-  if (view_offset < 0 || view_size < 0 || std::size_t(view_offset) > bytes.size() || std::size_t(view_size) > bytes.size() - std::size_t(view_offset))
+  if (view_offset < 0 || view_size < 0 || std::size_t(view_offset) > bytes.size() ||
+      std::size_t(view_size) > bytes.size() - std::size_t(view_offset))
     fail(pointer, "has a view that is outside of its buffer");
-  if (stride < std::int64_t(tight) || stride > 255) fail(pointer, "has a stride that is too short or above 255");
+  if (stride < std::int64_t(tight) || stride > 255)
+    fail(pointer, "has a stride that is too short or above 255");
   const std::int64_t needed = count == 0 ? 0 : offset + (count - 1) * stride + std::int64_t(tight);
   if (offset > view_size || needed > view_size) fail(pointer, "reaches out of its view");
   std::vector<double> out;
@@ -311,7 +342,8 @@ std::vector<double> GltfDocument::accessor(std::int64_t index, std::size_t width
   const bool normalized = json_flag(json, "normalized", false);
   for (std::int64_t i = 0; i < count; ++i) {
     const char* const at = bytes.data() + view_offset + offset + i * stride;
-    for (std::size_t k = 0; k < width; ++k) out.push_back(component_value(at + k * component.size, component, normalized));
+    for (std::size_t k = 0; k < width; ++k)
+      out.push_back(component_value(at + k * component.size, component, normalized));
   }
   return out;
 }
@@ -345,11 +377,13 @@ MeshData GltfDocument::mesh_data(std::int64_t mesh) {
     for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
       for (std::size_t c = 0; c < 3; ++c) {
         const double index = indices[k + c];
-        if (!(index >= 0 && index < double(out.vertices.size() - first))) fail(pointer, "has an index of no vertex");
+        if (!(index >= 0 && index < double(out.vertices.size() - first)))
+          fail(pointer, "has an index of no vertex");
         out.indices.push_back(std::uint32_t(first) + std::uint32_t(index));
       }
     }
-    if (out.vertices.size() > import_.options.limits.vertices || out.indices.size() / 3 > import_.options.limits.triangles)
+    if (out.vertices.size() > import_.options.limits.vertices ||
+        out.indices.size() / 3 > import_.options.limits.triangles)
       fail(pointer, "has more vertices or triangles than the limit");
   }
   if (out.indices.empty()) fail(pointer, "has no triangle");
@@ -368,7 +402,9 @@ std::optional<SceneColor> GltfDocument::mesh_color(int node) const {
   if (surface == nullptr) return std::nullopt;
   const auto factor = json_numbers(*surface, "baseColorFactor", 4);
   if (factor.empty()) return std::nullopt;
-  const auto encoded = [](double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055; };
+  const auto encoded = [](double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+  };
   return color_of(encoded(factor[0]), encoded(factor[1]), encoded(factor[2]));
 }
 

@@ -49,12 +49,13 @@ class GltfReader {
   GltfShapes shapes_;
   std::vector<GltfMaterial> materials_;
   std::map<std::string, int> system_bits_;
-  std::map<int, int> body_of_node_;      // of nodes with motion, and of static colliders
-  std::map<int, int> motion_of_node_;    // the nearest node with motion, itself included; -1: none
-  std::set<int> has_filter_;             // bodies
+  std::map<int, int> body_of_node_;    // of nodes with motion, and of static colliders
+  std::map<int, int> motion_of_node_;  // the nearest node with motion, itself included; -1: none
+  std::set<int> has_filter_;           // bodies
 };
 
-const Json& GltfReader::physics_item(const char* section, std::int64_t index, const std::string& pointer) const {
+const Json& GltfReader::physics_item(const char* section, std::int64_t index,
+                                     const std::string& pointer) const {
   const Json* const extension = document_.root_extension(kPhysics);
   const Json* const list = extension == nullptr ? nullptr : json_member(*extension, section);
   if (list == nullptr || !list->is_array() || index < 0 || std::size_t(index) >= list->size())
@@ -67,16 +68,21 @@ Combine GltfReader::combine_of(const Json& material, const char* key) const {
   if (word == "minimum") return Combine::minimum;
   if (word == "maximum") return Combine::maximum;
   if (word == "multiply") return Combine::multiply;
-  if (word != "average") document_.fail(std::string("/") + key, "expected average, minimum, maximum or multiply");
+  if (word != "average")
+    document_.fail(std::string("/") + key, "expected average, minimum, maximum or multiply");
   return Combine::average;
 }
 
 float GltfReader::combined_value(Combine a, Combine b, float x, float y) const {
   switch (a < b ? a : b) {
-    case Combine::average: return 0.5f * (x + y);
-    case Combine::minimum: return min(x, y);
-    case Combine::maximum: return max(x, y);
-    case Combine::multiply: return x * y;
+    case Combine::average:
+      return 0.5f * (x + y);
+    case Combine::minimum:
+      return min(x, y);
+    case Combine::maximum:
+      return max(x, y);
+    case Combine::multiply:
+      return x * y;
   }
   return x;
 }
@@ -85,7 +91,8 @@ void GltfReader::read_materials() {
   const Json* const extension = document_.root_extension(kPhysics);
   const Json* const list = extension == nullptr ? nullptr : json_member(*extension, "physicsMaterials");
   if (list == nullptr || !list->is_array()) return;
-  if (list->size() > kMaxGltfMaterials) document_.fail("/extensions/KHR_physics_rigid_bodies/physicsMaterials", "expected at most 256 materials");
+  if (list->size() > kMaxGltfMaterials)
+    document_.fail("/extensions/KHR_physics_rigid_bodies/physicsMaterials", "expected at most 256 materials");
   for (std::size_t i = 0; i < list->size(); ++i) {
     const Json& json = (*list)[i];
     SceneMaterial material;
@@ -115,7 +122,8 @@ void GltfReader::add_pairs() {
       pair.b = int(b);
       pair.static_friction = combined_value(friction_a, friction_b, x.static_friction, y.static_friction);
       pair.dynamic_friction = combined_value(friction_a, friction_b, x.dynamic_friction, y.dynamic_friction);
-      pair.restitution = combined_value(materials_[a].restitution, materials_[b].restitution, x.restitution, y.restitution);
+      pair.restitution =
+          combined_value(materials_[a].restitution, materials_[b].restitution, x.restitution, y.restitution);
       import_.scene.material_pairs.push_back(pair);
     }
   }
@@ -154,9 +162,11 @@ void GltfReader::set_motion(SceneBody& body, const Json& motion) {
   if (mass > 0) body.def.mass = float(mass);
   const Vec3 moments = vector("inertiaDiagonal");
   if (moments == Vec3{}) return;
-  if (smallest(moments) <= 0.0f || mass < 0) return import_.findings.left_out("inertiaDiagonal that is infinite or without a mass");
+  if (smallest(moments) <= 0.0f || mass < 0)
+    return import_.findings.left_out("inertiaDiagonal that is infinite or without a mass");
   const auto q = json_numbers(motion, "inertiaOrientation", 4);
-  const Mat3 turn = q.empty() ? Mat3{} : to_matrix(normalized(Quat{float(q[0]), float(q[1]), float(q[2]), float(q[3])}));
+  const Mat3 turn =
+      q.empty() ? Mat3{} : to_matrix(normalized(Quat{float(q[0]), float(q[1]), float(q[2]), float(q[3])}));
   body.def.inertia = to_symmetric(turn * diagonal(moments) * transpose(turn));
   if (!body.def.center_of_mass) body.def.center_of_mass = Vec3{};
 }
@@ -180,7 +190,8 @@ std::uint32_t GltfReader::systems(const Json& filter, const char* key) {
   const Json* const list = json_member(filter, key);
   for (std::size_t i = 0; list != nullptr && list->is_array() && i < list->size(); ++i) {
     if (!(*list)[i].is_string()) continue;
-    const auto [at, is_new] = system_bits_.try_emplace((*list)[i].get<std::string>(), int(system_bits_.size()) + 1);
+    const auto [at, is_new] =
+        system_bits_.try_emplace((*list)[i].get<std::string>(), int(system_bits_.size()) + 1);
     if (at->second > 31) {
       if (is_new) import_.findings.left_out("collision system beyond 31");
       continue;
@@ -197,8 +208,10 @@ Filter GltfReader::filter_of(const Json& collider, const std::string& pointer) {
   if (index < 0) return out;
   const Json& filter = physics_item("collisionFilters", index, pointer);
   out.layer = max(std::uint32_t(1), systems(filter, "collisionSystems"));
-  if (json_member(filter, "collideWithSystems") != nullptr) out.collides_with = systems(filter, "collideWithSystems");
-  if (json_member(filter, "notCollideWithSystems") != nullptr) out.collides_with = ~systems(filter, "notCollideWithSystems");
+  if (json_member(filter, "collideWithSystems") != nullptr)
+    out.collides_with = systems(filter, "collideWithSystems");
+  if (json_member(filter, "notCollideWithSystems") != nullptr)
+    out.collides_with = ~systems(filter, "notCollideWithSystems");
   return out;
 }
 
@@ -208,17 +221,21 @@ void GltfReader::add_collider(int node, const Json& collider, bool trigger, cons
   const int index = body_at(motion >= 0 ? motion : node);
   SceneBody& body = import_.scene.bodies[std::size_t(index)];
   const bool moving = body.def.type == BodyType::dynamic;
-  if (!body.shapes.empty() && body.sensor != trigger) return import_.findings.left_out("trigger or collider on a body that has the other");
+  if (!body.shapes.empty() && body.sensor != trigger)
+    return import_.findings.left_out("trigger or collider on a body that has the other");
   std::optional<SceneShape> shape = shapes_.shape_of(collider, node, body.def.pose, moving, pointer);
   if (!shape) return;
   if (!materials_.empty()) {
-    const std::int64_t material = json_integer(collider, "physicsMaterial", std::int64_t(materials_.size()) - 1);
-    if (material < 0 || std::size_t(material) >= materials_.size()) document_.fail(pointer + "/physicsMaterial", "names a material that does not exist");
+    const std::int64_t material =
+        json_integer(collider, "physicsMaterial", std::int64_t(materials_.size()) - 1);
+    if (material < 0 || std::size_t(material) >= materials_.size())
+      document_.fail(pointer + "/physicsMaterial", "names a material that does not exist");
     shape->material = int(material);
   }
   shape->color = document_.mesh_color(node);
   const Filter filter = filter_of(collider, pointer);
-  if (has_filter_.count(index) != 0 && filter != body.filter) import_.findings.left_out("filter that differs within a body");
+  if (has_filter_.count(index) != 0 && filter != body.filter)
+    import_.findings.left_out("filter that differs within a body");
   if (has_filter_.insert(index).second) body.filter = filter;
   body.sensor = trigger;
   body.shapes.push_back(*std::move(shape));
@@ -247,8 +264,10 @@ void GltfReader::add_bodies() {
     const Json* const physics = document_.extension(node, kPhysics);
     if (physics == nullptr) continue;
     const std::string pointer = "/nodes/" + std::to_string(node) + "/extensions/KHR_physics_rigid_bodies";
-    if (const Json* const collider = json_member(*physics, "collider")) add_collider(node, *collider, false, pointer + "/collider");
-    if (const Json* const trigger = json_member(*physics, "trigger")) add_collider(node, *trigger, true, pointer + "/trigger");
+    if (const Json* const collider = json_member(*physics, "collider"))
+      add_collider(node, *collider, false, pointer + "/collider");
+    if (const Json* const trigger = json_member(*physics, "trigger"))
+      add_collider(node, *trigger, true, pointer + "/trigger");
   }
   for (const auto& [node, index] : body_of_node_) {
     SceneBody& body = import_.scene.bodies[std::size_t(index)];
@@ -267,13 +286,16 @@ std::vector<JointAxisDef> GltfReader::limits_of(const Json& joint, const std::st
     constexpr double kNone = 1.0e9;
     const double low = json_number(limit, "min", -kNone), high = json_number(limit, "max", kNone);
     if (low > high) document_.fail(pointer, "has a limit whose min is above its max");
-    if (json_member(limit, "stiffness") != nullptr) import_.findings.left_out("stiffness of a limit, taken as hard");
+    if (json_member(limit, "stiffness") != nullptr)
+      import_.findings.left_out("stiffness of a limit, taken as hard");
     for (const char* key : {"linearAxes", "angularAxes"}) {
       const Json* const list = json_member(limit, key);
       if (list == nullptr || !list->is_array()) continue;
-      if (list->size() > 1 && low != high) import_.findings.left_out("limit of several axes at once, taken for each of them");
+      if (list->size() > 1 && low != high)
+        import_.findings.left_out("limit of several axes at once, taken for each of them");
       for (const Json& axis : *list) {
-        if (!axis.is_number_unsigned() || axis.get<std::uint64_t>() > 2) document_.fail(pointer, "has a limit of an axis that is not 0, 1 or 2");
+        if (!axis.is_number_unsigned() || axis.get<std::uint64_t>() > 2)
+          document_.fail(pointer, "has a limit of an axis that is not 0, 1 or 2");
         JointAxisDef& out = axes[axis.get<std::size_t>() + (std::string_view(key) == "angularAxes" ? 3 : 0)];
         out.motion = AxisMotion::limited;
         out.limits = {float(low), float(high)};
@@ -289,11 +311,14 @@ void GltfReader::add_drives(const Json& joint, std::vector<JointAxisDef>& axes, 
     const Json& drive = (*drives)[i];
     const std::int64_t axis = json_integer(drive, "axis", -1);
     const std::string type = json_text(drive, "type", "linear");
-    if (axis < 0 || axis > 2 || (type != "linear" && type != "angular")) document_.fail(pointer, "has a drive of no type or axis of glTF");
+    if (axis < 0 || axis > 2 || (type != "linear" && type != "angular"))
+      document_.fail(pointer, "has a drive of no type or axis of glTF");
     JointAxisDef& out = axes[std::size_t(axis) + (type == "angular" ? 3 : 0)];
     const double stiffness = json_number(drive, "stiffness", 0), damping = json_number(drive, "damping", 0);
-    const double velocity = json_number(drive, "velocityTarget", 0), force = json_number(drive, "maxForce", kUnlimitedForce);
-    if (stiffness < 0 || damping < 0 || force < 0) document_.fail(pointer, "has a drive with a number below 0");
+    const double velocity = json_number(drive, "velocityTarget", 0),
+                 force = json_number(drive, "maxForce", kUnlimitedForce);
+    if (stiffness < 0 || damping < 0 || force < 0)
+      document_.fail(pointer, "has a drive with a number below 0");
     const bool by_force = json_text(drive, "mode", "force") == "force";
     if (stiffness == 0) {
       out.motor.target_velocity = float(velocity);
@@ -316,31 +341,38 @@ void GltfReader::add_drives(const Json& joint, std::vector<JointAxisDef>& axes, 
 
 void GltfReader::add_gltf_joint(int node, const Json& joint, const std::string& pointer) {
   const std::int64_t other = json_integer(joint, "connectedNode", -1);
-  if (other < 0 || std::size_t(other) >= document_.nodes().size()) document_.fail(pointer + "/connectedNode", "names a node that does not exist");
-  const Json& description = physics_item("physicsJoints", json_integer(joint, "joint", -1), pointer + "/joint");
+  if (other < 0 || std::size_t(other) >= document_.nodes().size())
+    document_.fail(pointer + "/connectedNode", "names a node that does not exist");
+  const Json& description =
+      physics_item("physicsJoints", json_integer(joint, "joint", -1), pointer + "/joint");
   const auto body = [&](int at) {
     const auto motion = motion_of_node_.find(at);
     return motion == motion_of_node_.end() || motion->second < 0 ? -1 : body_of_node_.at(motion->second);
   };
   const int a = body(node), b = body(int(other));
   if (a == b) return import_.findings.left_out("joint within one body");
-  const Pose frame = place_of(document_.nodes()[std::size_t(node)]).pose, frame_b = place_of(document_.nodes()[std::size_t(other)]).pose;
+  const Pose frame = place_of(document_.nodes()[std::size_t(node)]).pose,
+             frame_b = place_of(document_.nodes()[std::size_t(other)]).pose;
   std::vector<JointAxisDef> axes = limits_of(description, pointer);
   add_drives(description, axes, pointer);
   // The engine's zero is the pose at the start, glTF's is where the two frames meet.
   const Transform present = inverse_times(frame, frame_b);
   const EulerAngles angles = to_euler(present.orientation, EulerOrder::xyz);
-  const float start[6] = {present.position.x, present.position.y, present.position.z, angles.first, angles.second, angles.third};
+  const float start[6] = {present.position.x, present.position.y, present.position.z,
+                          angles.first,       angles.second,      angles.third};
   std::vector<ModelAxis> moving;
   for (int i = 0; i < 6; ++i) {
     JointAxisDef& axis = axes[std::size_t(i)];
     axis.limits = {axis.limits.low - start[i], axis.limits.high - start[i]};
     axis.rest_position = axis.stiffness > 0.0f ? axis.rest_position - start[i] : 0.0f;
     if (axis.motor.target_position) *axis.motor.target_position -= start[i];
-    if (axis.motion == AxisMotion::limited && absolute(axis.limits.low) < kSameAngle && absolute(axis.limits.high) < kSameAngle) continue;
+    if (axis.motion == AxisMotion::limited && absolute(axis.limits.low) < kSameAngle &&
+        absolute(axis.limits.high) < kSameAngle)
+      continue;
     ModelAxis out;
     out.slide = i < 3;
-    out.axis = rotate(frame.orientation, {i % 3 == 0 ? 1.0f : 0.0f, i % 3 == 1 ? 1.0f : 0.0f, i % 3 == 2 ? 1.0f : 0.0f});
+    out.axis = rotate(frame.orientation,
+                      {i % 3 == 0 ? 1.0f : 0.0f, i % 3 == 1 ? 1.0f : 0.0f, i % 3 == 2 ? 1.0f : 0.0f});
     out.anchor = frame.position;
     if (axis.motion == AxisMotion::limited) out.limits = axis.limits;
     out.stiffness = axis.stiffness;
@@ -366,7 +398,9 @@ void GltfReader::add_joints() {
   for (const int node : document_.order()) {
     const Json* const physics = document_.extension(node, kPhysics);
     const Json* const joint = physics == nullptr ? nullptr : json_member(*physics, "joint");
-    if (joint != nullptr) add_gltf_joint(node, *joint, "/nodes/" + std::to_string(node) + "/extensions/KHR_physics_rigid_bodies/joint");
+    if (joint != nullptr)
+      add_gltf_joint(node, *joint,
+                     "/nodes/" + std::to_string(node) + "/extensions/KHR_physics_rigid_bodies/joint");
   }
 }
 

@@ -14,7 +14,8 @@ std::vector<Vec3> tapered_points(float bottom, float top, float half, bool round
       const SinCos tilt = sin_cos(0.5f * kPi * float(ring) / float(kRings));
       for (int k = 0; k < kAround; ++k) {
         const SinCos turn = sin_cos(2.0f * kPi * float(k) / float(kAround));
-        points.push_back({radius * tilt.cos * turn.cos, side * (half + (round ? radius * tilt.sin : 0.0f)), radius * tilt.cos * turn.sin});
+        points.push_back({radius * tilt.cos * turn.cos, side * (half + (round ? radius * tilt.sin : 0.0f)),
+                          radius * tilt.cos * turn.sin});
       }
     }
     if (round) points.push_back({0, side * (half + radius), 0});
@@ -48,14 +49,16 @@ const Json& GltfShapes::implicit_shape(std::int64_t index, const std::string& po
   document_.fail(pointer, "names shape " + std::to_string(index) + ", but there is no such shape");
 }
 
-std::optional<SceneGeometry> GltfShapes::implicit_geometry(const Json& shape, Vec3 scale, bool moving, const std::string& pointer) {
+std::optional<SceneGeometry> GltfShapes::implicit_geometry(const Json& shape, Vec3 scale, bool moving,
+                                                           const std::string& pointer) {
   const std::string type = json_text(shape, "type", "");
   static const Json kNothing = Json::object();
   const Json* const given = json_member(shape, type.c_str());
   const Json& of = given == nullptr ? kNothing : *given;
   const Vec3 size = absolute(scale);
   const bool is_even = largest(size) - smallest(size) < 1.0e-4f * largest(size);
-  if (type != "box" && type != "plane" && !is_even) import_.findings.left_out("scale of a " + type + " that differs between axes, taken as the largest");
+  if (type != "box" && type != "plane" && !is_even)
+    import_.findings.left_out("scale of a " + type + " that differs between axes, taken as the largest");
   const double factor = double(largest(size));
   const auto above_zero = [&](const char* key, double otherwise) {
     const double value = json_number(of, key, otherwise);
@@ -83,7 +86,8 @@ std::optional<SceneGeometry> GltfShapes::implicit_geometry(const Json& shape, Ve
     return Cylinder{top, half};
   }
   if (type == "plane") {
-    if (json_member(of, "sizeX") != nullptr || json_member(of, "sizeZ") != nullptr) import_.findings.left_out("size of a plane, taken as without end");
+    if (json_member(of, "sizeX") != nullptr || json_member(of, "sizeZ") != nullptr)
+      import_.findings.left_out("size of a plane, taken as without end");
     if (!moving) return Plane{{0, 1, 0}, 0};
     import_.findings.left_out("plane on a moving body");
     return std::nullopt;
@@ -98,33 +102,39 @@ int GltfShapes::mesh_at(std::int64_t mesh, int node, const Pose& body) {
   const Vec3 offset = difference(at.translation, body.position);
   for (Vec3& vertex : data.vertices) {
     vertex = rotate_inverse(body.orientation, at.linear * vertex + offset);
-    if (!is_finite(vertex)) document_.fail("/meshes/" + std::to_string(mesh), "has a position that is not finite once scaled");
+    if (!is_finite(vertex))
+      document_.fail("/meshes/" + std::to_string(mesh), "has a position that is not finite once scaled");
   }
   if (determinant(at.linear) < 0.0f) {
-    for (std::size_t i = 0; i + 2 < data.indices.size(); i += 3) std::swap(data.indices[i + 1], data.indices[i + 2]);
+    for (std::size_t i = 0; i + 2 < data.indices.size(); i += 3)
+      std::swap(data.indices[i + 1], data.indices[i + 2]);
   }
   return import_.add_mesh(std::move(data), at.name);
 }
 
-SceneGeometry GltfShapes::mesh_geometry(std::int64_t mesh, int node, const Pose& body, bool moving, bool hull) {
+SceneGeometry GltfShapes::mesh_geometry(std::int64_t mesh, int node, const Pose& body, bool moving,
+                                        bool hull) {
   const int index = mesh_at(mesh, node, body);
   if (hull) {
     SceneHull out;
     out.mesh = index;
     return out;
   }
-  if (moving && !import_.options.decompose) import_.findings.left_out("mesh on a moving body, taken as its convex hull");
+  if (moving && !import_.options.decompose)
+    import_.findings.left_out("mesh on a moving body, taken as its convex hull");
   return import_.solid_mesh(index, moving);
 }
 
-std::optional<SceneShape> GltfShapes::shape_of(const Json& collider, int node, const Pose& body, bool moving, const std::string& pointer) {
+std::optional<SceneShape> GltfShapes::shape_of(const Json& collider, int node, const Pose& body, bool moving,
+                                               const std::string& pointer) {
   const Json* const nested = json_member(collider, "geometry");
   const Json& geometry = nested == nullptr ? collider : *nested;
   SceneShape out;
   bool hull = json_flag(geometry, "convexHull", false);
   std::int64_t mesh = json_integer(geometry, "mesh", -1);
   if (const std::int64_t source = json_integer(geometry, "node", -1); source >= 0) {
-    if (std::size_t(source) >= document_.nodes().size()) document_.fail(pointer, "names a node that does not exist");
+    if (std::size_t(source) >= document_.nodes().size())
+      document_.fail(pointer, "names a node that does not exist");
     mesh = json_integer(document_.json()["nodes"][std::size_t(source)], "mesh", -1);
   }
   if (mesh < 0) {

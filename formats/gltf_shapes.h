@@ -19,13 +19,15 @@ class GltfShapes {
   GltfShapes(Import& import, GltfDocument& document) : import_(import), document_(document) {}
 
   // The shape that a collider or trigger names, at the node, in the frame of the body. None: left out.
-  std::optional<SceneShape> shape_of(const Json& collider, int node, const Pose& body, bool moving, const std::string& pointer);
+  std::optional<SceneShape> shape_of(const Json& collider, int node, const Pose& body, bool moving,
+                                     const std::string& pointer);
   // The triangles of a mesh at a node, in the frame of the body; the index of the mesh in the scene.
   int mesh_at(std::int64_t mesh, int node, const Pose& body);
 
  private:
   const Json& implicit_shape(std::int64_t index, const std::string& pointer) const;
-  std::optional<SceneGeometry> implicit_geometry(const Json& shape, Vec3 scale, bool moving, const std::string& pointer);
+  std::optional<SceneGeometry> implicit_geometry(const Json& shape, Vec3 scale, bool moving,
+                                                 const std::string& pointer);
   SceneGeometry mesh_geometry(std::int64_t mesh, int node, const Pose& body, bool moving, bool hull);
 
   Import& import_;

@@ -70,7 +70,8 @@ std::string missing_format([[maybe_unused]] FileFormat format) {
 
 std::string Findings::text() const {
   std::string out;
-  for (const auto& [what, count] : counts_) out += (out.empty() ? "" : ", ") + what + " (" + std::to_string(count) + ")";
+  for (const auto& [what, count] : counts_)
+    out += (out.empty() ? "" : ", ") + what + " (" + std::to_string(count) + ")";
   return out;
 }
 
@@ -88,9 +89,11 @@ std::string Import::unique(std::set<std::string>& names, std::string name, const
 
 std::string Import::read_file(const std::string& uri, const std::string& base, int line) {
   if (!options.open_files) fail("names the file \"" + uri + "\", but no files can be opened here", line);
-  if (uri.empty() || uri.size() > 1024) fail("found a file name that is empty or longer than 1024 bytes", line);
+  if (uri.empty() || uri.size() > 1024)
+    fail("found a file name that is empty or longer than 1024 bytes", line);
   for (const char c : uri) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '\\') fail("found a file name with a control character or a backslash", line);
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '\\')
+      fail("found a file name with a control character or a backslash", line);
   }
   fs::path place;
   constexpr std::string_view kPackage = "package://", kFile = "file://";
@@ -100,7 +103,8 @@ std::string Import::read_file(const std::string& uri, const std::string& base, i
   const bool is_package = uri.rfind(kPackage, 0) == 0;
   if (is_package) path = uri.substr(kPackage.size());
   if (uri.rfind(kFile, 0) == 0) path = uri.substr(kFile.size());
-  if (path.find("://") != std::string::npos) fail("found the address \"" + uri + "\"; nothing is fetched", line);
+  if (path.find("://") != std::string::npos)
+    fail("found the address \"" + uri + "\"; nothing is fetched", line);
   const std::string package = is_package ? path.substr(0, path.find('/')) : "";
   std::error_code error;
   for (const std::string& option : options.packages) {
@@ -116,8 +120,11 @@ std::string Import::read_file(const std::string& uri, const std::string& base, i
     }
   }
   if (is_package && place.empty())
-    fail("found \"" + uri + "\", but --package names no folder for \"" + package + "\" (as in --package " + package + "=FOLDER)", line);
-  if (place.empty()) place = fs::path(path).is_absolute() ? fs::path(path) : fs::path(base.empty() ? "." : base) / path;
+    fail("found \"" + uri + "\", but --package names no folder for \"" + package + "\" (as in --package " +
+             package + "=FOLDER)",
+         line);
+  if (place.empty())
+    place = fs::path(path).is_absolute() ? fs::path(path) : fs::path(base.empty() ? "." : base) / path;
   place = fs::canonical(place, error);
   if (error) fail("there is no file \"" + uri + "\"", line);
   bool allowed = false;
@@ -125,7 +132,9 @@ std::string Import::read_file(const std::string& uri, const std::string& base, i
     const fs::path whole = fs::canonical(root, error);
     allowed = allowed || (!error && lies_within(whole, place));
   }
-  if (!allowed) fail("\"" + uri + "\" leads out of the folders that may be read (" + roots_text + "; --package adds one)", line);
+  if (!allowed)
+    fail("\"" + uri + "\" leads out of the folders that may be read (" + roots_text + "; --package adds one)",
+         line);
   std::string out;
   const std::string problem = read_whole_file(place.string(), options.limits, out);
   if (!problem.empty()) fail("\"" + uri + "\" " + problem, line);
@@ -146,7 +155,8 @@ int Import::add_mesh(MeshData mesh, const std::string& name) {
 }
 
 int Import::mesh_index(const std::string& uri, const std::string& base, Vec3 scale, int line) {
-  const std::string key = base + "\n" + uri + "\n" + std::to_string(scale.x) + " " + std::to_string(scale.y) + " " + std::to_string(scale.z);
+  const std::string key = base + "\n" + uri + "\n" + std::to_string(scale.x) + " " + std::to_string(scale.y) +
+                          " " + std::to_string(scale.z);
   const auto found = meshes.find(key);
   if (found != meshes.end()) return found->second;
   SceneResult<MeshData> mesh = parse_mesh(read_file(uri, base, line), uri, options.limits);
@@ -156,7 +166,8 @@ int Import::mesh_index(const std::string& uri, const std::string& base, Vec3 sca
     if (!is_finite(vertex)) fail("\"" + uri + "\" has a coordinate that is not finite once scaled", line);
   }
   if (scale.x * scale.y * scale.z < 0.0f) {  // mirrored: the triangles turn over
-    for (std::size_t i = 0; i + 2 < mesh->indices.size(); i += 3) std::swap(mesh->indices[i + 1], mesh->indices[i + 2]);
+    for (std::size_t i = 0; i + 2 < mesh->indices.size(); i += 3)
+      std::swap(mesh->indices[i + 1], mesh->indices[i + 2]);
   }
   const int index = add_mesh(*std::move(mesh), fs::path(uri).stem().string());
   meshes.emplace(key, index);
@@ -180,7 +191,8 @@ SceneColor color_of(double red, double green, double blue) {
   return {byte(red), byte(green), byte(blue)};
 }
 
-SceneResult<Scene> import_scene(std::string_view bytes, FileFormat format, const std::string& path, const ImportOptions& options) noexcept {
+SceneResult<Scene> import_scene(std::string_view bytes, FileFormat format, const std::string& path,
+                                const ImportOptions& options) noexcept {
   try {
     const std::string missing = missing_format(format);
     if (!missing.empty()) return SceneError{path, 0, 0, "", missing};
@@ -191,7 +203,8 @@ SceneResult<Scene> import_scene(std::string_view bytes, FileFormat format, const
     if (format == FileFormat::urdf || format == FileFormat::mjcf) read_urdf_or_mjcf(import);
 #endif
     if (!import.findings.empty()) {
-      if (options.strict) import.fail("holds what is not simulated, which --strict refuses: " + import.findings.text());
+      if (options.strict)
+        import.fail("holds what is not simulated, which --strict refuses: " + import.findings.text());
       import.scene.notes.push_back(path + ": not simulated: " + import.findings.text());
     }
     return checked(import);
@@ -213,7 +226,8 @@ SceneResult<Scene> open_scene(const std::string& path, const ImportOptions& opti
   return import_scene(bytes, format, path, options);
 }
 
-SceneResult<Scene> open_split_scene(const std::string& path, const ImportOptions& options, SplitOptions split) {
+SceneResult<Scene> open_split_scene(const std::string& path, const ImportOptions& options,
+                                    SplitOptions split) {
   if (format_of(path) == FileFormat::scene) return load_split_scene(path, split);
   SceneResult<Scene> scene = open_scene(path, options);
   if (!scene) return scene;

@@ -22,7 +22,8 @@ struct ImportOptions {
   bool free_base = false;       // URDF: the root link moves freely; otherwise the root is static
   bool keep_fixed = false;      // fixed joints stay joints; otherwise they make one body of two links
   bool self_collision = false;  // URDF: links of the robot collide with each other, neighbours excepted
-  bool decompose = false;       // concave meshes of moving bodies become several hulls; otherwise each becomes one hull
+  bool decompose =
+      false;  // concave meshes of moving bodies become several hulls; otherwise each becomes one hull
   // Folders that may be read beside the folder of the file. NAME=FOLDER is the folder of the package NAME.
   std::vector<std::string> packages;
   bool open_files = true;  // false: only the bytes themselves are read
@@ -40,6 +41,7 @@ SceneResult<Scene> import_scene(std::string_view bytes, FileFormat format, const
 // A file of any format, scenes included.
 SceneResult<Scene> open_scene(const std::string& path, const ImportOptions& options = {}) noexcept;
 // The same with convex decompositions split, as load_split_scene() does.
-SceneResult<Scene> open_split_scene(const std::string& path, const ImportOptions& options = {}, SplitOptions split = {});
+SceneResult<Scene> open_split_scene(const std::string& path, const ImportOptions& options = {},
+                                    SplitOptions split = {});
 
 }  // namespace gyre

@@ -17,7 +17,8 @@ using ClassDefaults = std::map<std::string, Attributes>;  // by element
 constexpr const char* kOrientations[] = {"quat", "axisangle", "euler", "xyaxes", "zaxis"};
 
 bool is_orientation(const std::string& name) {
-  return std::any_of(std::begin(kOrientations), std::end(kOrientations), [&](const char* word) { return name == word; });
+  return std::any_of(std::begin(kOrientations), std::end(kOrientations),
+                     [&](const char* word) { return name == word; });
 }
 
 tinyxml2::XMLElement* find_include(tinyxml2::XMLElement* root) {
@@ -42,7 +43,8 @@ class DefaultClasses {
  public:
   explicit DefaultClasses(const Import& import) : import_(import) {}
 
-  void read(tinyxml2::XMLElement* section, const ClassDefaults& inherited, const std::string& otherwise, int depth) {
+  void read(tinyxml2::XMLElement* section, const ClassDefaults& inherited, const std::string& otherwise,
+            int depth) {
     check_depth(section, depth);
     const char* const given = section->Attribute("class");
     const std::string name = given != nullptr ? given : otherwise;
@@ -52,11 +54,14 @@ class DefaultClasses {
     if (merged != classes_.end()) own = merged->second;  // a second section of the same class adds to it
     for (auto* e = section->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
       if (std::string_view(e->Name()) == "default") continue;
-      for (const tinyxml2::XMLAttribute* a = e->FirstAttribute(); a != nullptr; a = a->Next()) own[e->Name()][a->Name()] = a->Value();
+      for (const tinyxml2::XMLAttribute* a = e->FirstAttribute(); a != nullptr; a = a->Next())
+        own[e->Name()][a->Name()] = a->Value();
     }
     classes_[name] = own;
-    if (classes_.size() > 1000) import_.fail("<default>: found more than 1000 classes", section->GetLineNum());
-    for (auto* e = section->FirstChildElement("default"); e != nullptr; e = e->NextSiblingElement("default")) read(e, own, "", depth + 1);
+    if (classes_.size() > 1000)
+      import_.fail("<default>: found more than 1000 classes", section->GetLineNum());
+    for (auto* e = section->FirstChildElement("default"); e != nullptr; e = e->NextSiblingElement("default"))
+      read(e, own, "", depth + 1);
   }
 
   void apply(tinyxml2::XMLElement* parent, const std::string& inherited, int depth) {
@@ -79,7 +84,9 @@ class DefaultClasses {
   void set_missing(tinyxml2::XMLElement* element, const std::string& name) const {
     const auto found = classes_.find(name);
     if (found == classes_.end()) {
-      if (name != "main") import_.fail("<" + std::string(element->Name()) + ">: found no default class \"" + name + "\"", element->GetLineNum());
+      if (name != "main")
+        import_.fail("<" + std::string(element->Name()) + ">: found no default class \"" + name + "\"",
+                     element->GetLineNum());
       return;
     }
     const auto attributes = found->second.find(element->Name());
@@ -129,7 +136,8 @@ void include_files(Import& import, tinyxml2::XMLDocument& document) {
 void apply_defaults(const Import& import, tinyxml2::XMLDocument& document) {
   DefaultClasses classes(import);
   tinyxml2::XMLElement* const root = document.RootElement();
-  for (auto* e = root->FirstChildElement("default"); e != nullptr; e = e->NextSiblingElement("default")) classes.read(e, {}, "main", 0);
+  for (auto* e = root->FirstChildElement("default"); e != nullptr; e = e->NextSiblingElement("default"))
+    classes.read(e, {}, "main", 0);
   classes.apply(root, "main", 0);
 }
 

@@ -6,19 +6,24 @@
 namespace gyre {
 namespace {
 
-Vec3 vec3_of(const std::vector<double>& v, std::size_t at = 0) { return {float(v[at]), float(v[at + 1]), float(v[at + 2])}; }
+Vec3 vec3_of(const std::vector<double>& v, std::size_t at = 0) {
+  return {float(v[at]), float(v[at + 1]), float(v[at + 2])};
+}
 
 Quat orientation_of(const XmlElement& element, const MjcfCompiler& compiler) {
   if (const auto q = element.numbers("quat", 4, 4); !q.empty())
     return normalized(Quat{float(q[1]), float(q[2]), float(q[3]), float(q[0])});
-  if (const auto a = element.numbers("axisangle", 4, 4); !a.empty()) return from_axis_angle(vec3_of(a), float(compiler.angle(a[3])));
+  if (const auto a = element.numbers("axisangle", 4, 4); !a.empty())
+    return from_axis_angle(vec3_of(a), float(compiler.angle(a[3])));
   if (const auto e = element.numbers("euler", 3, 3); !e.empty()) {
     Quat out;
     for (std::size_t i = 0; i < 3; ++i) {
       const char axis = compiler.euler[i];
       const bool fixed_frame = axis >= 'X' && axis <= 'Z';
       const int which = fixed_frame ? axis - 'X' : axis - 'x';
-      const Quat turn = from_axis_angle({which == 0 ? 1.0f : 0.0f, which == 1 ? 1.0f : 0.0f, which == 2 ? 1.0f : 0.0f}, float(compiler.angle(e[i])));
+      const Quat turn =
+          from_axis_angle({which == 0 ? 1.0f : 0.0f, which == 1 ? 1.0f : 0.0f, which == 2 ? 1.0f : 0.0f},
+                          float(compiler.angle(e[i])));
       out = fixed_frame ? turn * out : out * turn;
     }
     return normalized(out);
@@ -28,7 +33,8 @@ Quat orientation_of(const XmlElement& element, const MjcfCompiler& compiler) {
     const Vec3 y = normalized(vec3_of(v, 3) - dot(vec3_of(v, 3), x) * x, any_perpendicular(x));
     return from_matrix({x, y, cross(x, y)});
   }
-  if (const auto v = element.numbers("zaxis", 3, 3); !v.empty()) return from_directions({0, 0, 1}, normalized(vec3_of(v), {0, 0, 1}));
+  if (const auto v = element.numbers("zaxis", 3, 3); !v.empty())
+    return from_directions({0, 0, 1}, normalized(vec3_of(v), {0, 0, 1}));
   return {};
 }
 
@@ -71,7 +77,9 @@ class GeomReader {
 
 std::vector<double> GeomReader::sizes(std::size_t count) {
   const std::vector<double> size = geom_.numbers("size", 1, 3);
-  if (size.size() < count) geom_.fail("found a size of " + std::to_string(size.size()) + " numbers, expected " + std::to_string(count));
+  if (size.size() < count)
+    geom_.fail("found a size of " + std::to_string(size.size()) + " numbers, expected " +
+               std::to_string(count));
   for (std::size_t i = 0; i < count; ++i) {
     if (!(size[i] > 0)) geom_.fail("found a size that is not above 0");
   }
@@ -80,19 +88,22 @@ std::vector<double> GeomReader::sizes(std::size_t count) {
 
 void GeomReader::read_mesh_geom() {
   const auto found = assets_.meshes.find(geom_.need_text("mesh"));
-  if (found == assets_.meshes.end()) geom_.fail("found mesh \"" + geom_.text("mesh") + "\", expected the name of a mesh asset");
+  if (found == assets_.meshes.end())
+    geom_.fail("found mesh \"" + geom_.text("mesh") + "\", expected the name of a mesh asset");
   const XmlElement& mesh = found->second;
   const Vec3 scale = mesh.vec3("scale", {1, 1, 1});
   if (scale.x * scale.y * scale.z == 0.0f) mesh.fail("found a scale of 0");
   if (mesh.has("vertex")) {
     const std::vector<double> numbers = mesh.numbers("vertex", 12, 300'000);
     SceneHull hull;
-    for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) hull.points.push_back(multiply_each(scale, vec3_of(numbers, i)));
+    for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
+      hull.points.push_back(multiply_each(scale, vec3_of(numbers, i)));
     shape_.geometry = std::move(hull);
     return;
   }
   const std::string file = mesh.need_text("file");
-  if (mesh_format_of(file) == MeshFormat::none) mesh.fail("found the mesh \"" + file + "\", expected .stl, .obj or .ply");
+  if (mesh_format_of(file) == MeshFormat::none)
+    mesh.fail("found the mesh \"" + file + "\", expected .stl, .obj or .ply");
   const std::string folder = compiler_.mesh_folder.empty() ? import_.folder
                              : import_.folder.empty()      ? compiler_.mesh_folder
                                                            : import_.folder + "/" + compiler_.mesh_folder;
@@ -122,7 +133,9 @@ bool GeomReader::read_geometry() {
     shape_.geometry = Cylinder{float(sizes(1)[0]), float(half)};
   } else if (type_ == "box" || type_ == "ellipsoid") {
     const std::vector<double> size = sizes(ends.empty() ? 3 : 1);
-    const Vec3 axes = ends.empty() ? vec3_of(size) : Vec3{float(size[0]), float(size.size() > 1 ? size[1] : size[0]), float(half)};
+    const Vec3 axes = ends.empty()
+                          ? vec3_of(size)
+                          : Vec3{float(size[0]), float(size.size() > 1 ? size[1] : size[0]), float(half)};
     if (type_ == "box") {
       shape_.geometry = Box{axes};
     } else {
@@ -185,10 +198,12 @@ void GeomReader::set_surface(MjcfGeom& out) {
   if (dimension >= 6) shape_.rolling_friction = float(max(0.0, friction.size() > 2 ? friction[2] : 0.0001));
   const auto named = assets_.colors.find(geom_.text("material"));
   if (named != assets_.colors.end()) shape_.color = named->second;
-  if (const auto rgba = geom_.numbers("rgba", 3, 4); !rgba.empty()) shape_.color = color_of(rgba[0], rgba[1], rgba[2]);
+  if (const auto rgba = geom_.numbers("rgba", 3, 4); !rgba.empty())
+    shape_.color = color_of(rgba[0], rgba[1], rgba[2]);
   const auto bits = [&](const char* name) {
     const double value = geom_.number(name, 1);
-    if (!(value >= 0 && value <= 4294967295.0)) geom_.fail(std::string("found a ") + name + " that has no 32 bits");
+    if (!(value >= 0 && value <= 4294967295.0))
+      geom_.fail(std::string("found a ") + name + " that has no 32 bits");
     return std::uint32_t(value);
   };
   out.contype = bits("contype");
@@ -214,7 +229,8 @@ Transform mjcf_frame(const XmlElement& element, const MjcfCompiler& compiler) {
   return {element.vec3("pos", {}), orientation_of(element, compiler)};
 }
 
-MjcfGeom read_geom(Import& import, const XmlElement& geom, const MjcfCompiler& compiler, const MjcfAssets& assets, bool needs_mass) {
+MjcfGeom read_geom(Import& import, const XmlElement& geom, const MjcfCompiler& compiler,
+                   const MjcfAssets& assets, bool needs_mass) {
   return GeomReader(import, geom, compiler, assets).read(needs_mass);
 }
 

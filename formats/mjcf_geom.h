@@ -31,6 +31,7 @@ struct MjcfGeom {
 };
 
 Transform mjcf_frame(const XmlElement& element, const MjcfCompiler& compiler);
-MjcfGeom read_geom(Import& import, const XmlElement& geom, const MjcfCompiler& compiler, const MjcfAssets& assets, bool needs_mass);
+MjcfGeom read_geom(Import& import, const XmlElement& geom, const MjcfCompiler& compiler,
+                   const MjcfAssets& assets, bool needs_mass);
 
 }  // namespace gyre

@@ -63,7 +63,7 @@ class MjcfReader {
   MjcfAssets assets_;
   std::map<std::string, Drive> drives_;
   std::vector<ModelLink> tree_;
-  std::vector<std::vector<MjcfJoint>> joints_;  // of each link
+  std::vector<std::vector<MjcfJoint>> joints_;                         // of each link
   std::vector<std::pair<std::uint32_t, std::uint32_t>> contact_bits_;  // of each link
   std::map<std::string, int> link_names_;
   std::map<std::string, JointPlace> joint_places_;
@@ -73,7 +73,8 @@ class MjcfReader {
 void MjcfReader::read_compiler() {
   for (const XmlElement& compiler : root_.children("compiler")) {
     const std::string angle = compiler.text("angle", compiler_.degrees ? "degree" : "radian");
-    if (angle != "degree" && angle != "radian") compiler.fail("found angle \"" + angle + "\", expected degree or radian");
+    if (angle != "degree" && angle != "radian")
+      compiler.fail("found angle \"" + angle + "\", expected degree or radian");
     compiler_.degrees = angle == "degree";
     compiler_.auto_limits = compiler.flag("autolimits", compiler_.auto_limits);
     compiler_.euler = compiler.text("eulerseq", compiler_.euler);
@@ -81,9 +82,11 @@ void MjcfReader::read_compiler() {
       compiler.fail("found eulerseq \"" + compiler_.euler + "\", expected three of xyzXYZ");
     compiler_.mesh_folder = compiler.text("meshdir", compiler.text("assetdir", compiler_.mesh_folder));
     compiler_.inertia_from_geom = compiler.text("inertiafromgeom", compiler_.inertia_from_geom);
-    if (compiler.text("coordinate", "local") != "local") compiler.fail("found global coordinates, which MuJoCo has given up, too; expected local");
+    if (compiler.text("coordinate", "local") != "local")
+      compiler.fail("found global coordinates, which MuJoCo has given up, too; expected local");
     for (const char* other : {"settotalmass", "balanceinertia"}) {
-      if (compiler.has(other) && compiler.text(other) != "false") import_.findings.left_out(std::string("compiler ") + other);
+      if (compiler.has(other) && compiler.text(other) != "false")
+        import_.findings.left_out(std::string("compiler ") + other);
     }
   }
 }
@@ -115,7 +118,8 @@ void MjcfReader::read_assets() {
         }
         assets_.meshes[name] = asset;
       } else if (asset.name() == "material") {
-        if (const auto rgba = asset.numbers("rgba", 3, 4); !rgba.empty()) assets_.colors[asset.text("name")] = color_of(rgba[0], rgba[1], rgba[2]);
+        if (const auto rgba = asset.numbers("rgba", 3, 4); !rgba.empty())
+          assets_.colors[asset.text("name")] = color_of(rgba[0], rgba[1], rgba[2]);
       } else if (asset.name() != "texture" && asset.name() != "default") {
         import_.findings.left_out("asset <" + asset.name() + ">");
       }
@@ -129,7 +133,8 @@ void MjcfReader::read_actuators() {
       const std::string kind = actuator.name();
       const bool is_known = kind == "motor" || kind == "position" || kind == "velocity" || kind == "general";
       if (!is_known || !actuator.has("joint")) {
-        import_.findings.left_out("actuator <" + kind + ">" + (is_known ? " of a transmission that is no joint" : ""));
+        import_.findings.left_out("actuator <" + kind + ">" +
+                                  (is_known ? " of a transmission that is no joint" : ""));
         continue;
       }
       const std::vector<double> gears = actuator.numbers("gear", 1, 6);
@@ -150,11 +155,13 @@ void MjcfReader::read_actuators() {
         import_.findings.left_out("actuator <general> of biastype " + actuator.text("biastype"));
       }
       if (!(drive.stiffness >= 0 && drive.damping >= 0)) actuator.fail("found a gain below 0");
-      if (drive.stiffness > 0 && actuator.has("forcerange")) import_.findings.left_out("forcerange of a position actuator");
+      if (drive.stiffness > 0 && actuator.has("forcerange"))
+        import_.findings.left_out("forcerange of a position actuator");
       Drive& sum = drives_[actuator.text("joint")];
       const double stiffness = drive.stiffness * gear * gear;
       if (sum.stiffness + stiffness > 0)
-        sum.target = (sum.stiffness * sum.target + stiffness * (gear != 0 ? drive.target / gear : 0)) / (sum.stiffness + stiffness);
+        sum.target = (sum.stiffness * sum.target + stiffness * (gear != 0 ? drive.target / gear : 0)) /
+                     (sum.stiffness + stiffness);
       sum.stiffness += stiffness;
       sum.damping += drive.damping * gear * gear;
     }
@@ -182,7 +189,8 @@ MassProperties MjcfReader::inertial_of(const XmlElement& inertial) const {
 MjcfJoint MjcfReader::joint_of(const XmlElement& element, const Pose& pose) {
   MjcfJoint joint{element, element.text("name"), false, {}};
   const std::string type = element.text("type", "hinge");
-  if (type != "hinge" && type != "slide" && type != "ball") element.fail("found the type \"" + type + "\", expected free, ball, slide or hinge");
+  if (type != "hinge" && type != "slide" && type != "ball")
+    element.fail("found the type \"" + type + "\", expected free, ball, slide or hinge");
   joint.ball = type == "ball";
   ModelAxis& axis = joint.axis;
   axis.name = joint.name;
@@ -231,7 +239,8 @@ void MjcfReader::read_geoms(const XmlElement& body, ModelLink& link, bool has_in
     if (geom.mass) masses.push_back(*geom.mass);
     if (!geom.shape) continue;
     const std::pair<std::uint32_t, std::uint32_t> own{geom.contype, geom.conaffinity};
-    if (!is_first && own != bits) import_.findings.left_out("contype or conaffinity that differs within a body");
+    if (!is_first && own != bits)
+      import_.findings.left_out("contype or conaffinity that differs within a body");
     bits = is_first ? own : std::pair{bits.first | own.first, bits.second | own.second};
     is_first = false;
     link.shapes.push_back(*std::move(geom.shape));
@@ -261,20 +270,23 @@ void MjcfReader::read_body(const XmlElement& body, int parent, int depth) {
     }
   }
   if (is_world && (is_free || !joints.empty())) body.fail("found a joint of the world");
-  if (is_free && (parent != 0 || !joints.empty())) body.fail("found a free joint that is not the only joint of a child of the world");
+  if (is_free && (parent != 0 || !joints.empty()))
+    body.fail("found a free joint that is not the only joint of a child of the world");
   link.welded = is_world || (joints.empty() && !is_free);
   const XmlElement inertial = body.child("inertial");
   const bool has_inertial = bool(inertial) && compiler_.inertia_from_geom != "true";
   if (has_inertial) link.mass = inertial_of(inertial);
   read_geoms(body, link, has_inertial);
-  if (!is_world && body.has("name") && !link_names_.emplace(link.name, index).second) body.fail("found a second body \"" + link.name + "\"");
+  if (!is_world && body.has("name") && !link_names_.emplace(link.name, index).second)
+    body.fail("found a second body \"" + link.name + "\"");
   tree_.push_back(std::move(link));
   joints_.push_back(std::move(joints));
   for (const XmlElement& part : body.children()) {
     const std::string tag = part.name();
     if (tag == "body") {
       read_body(part, index, depth + 1);
-    } else if (tag == "frame" || tag == "replicate" || tag == "composite" || tag == "flexcomp" || tag == "attach") {
+    } else if (tag == "frame" || tag == "replicate" || tag == "composite" || tag == "flexcomp" ||
+               tag == "attach") {
       import_.findings.left_out("<" + tag + ">");
     }
   }
@@ -301,7 +313,8 @@ void MjcfReader::connect(int parent, int child, const std::vector<MjcfJoint>& jo
   for (const MjcfJoint& joint : joints) {
     axes.push_back(joint.axis);
     has_ball = has_ball || joint.ball;
-    if (!joint.name.empty()) joint_places_[joint.name] = {parent, child, joint.axis, joints.size() == 1 && !joint.ball};
+    if (!joint.name.empty())
+      joint_places_[joint.name] = {parent, child, joint.axis, joints.size() == 1 && !joint.ball};
   }
   std::optional<JointDef> whole;
   if (!has_ball) whole = joint_of_axes(axes);
@@ -311,7 +324,8 @@ void MjcfReader::connect(int parent, int child, const std::vector<MjcfJoint>& jo
   for (std::size_t i = 0; i < joints.size(); ++i) {
     int to = child;
     if (i + 1 < joints.size()) {
-      import_.findings.left_out("joints of one body without a joint of the engine, given a body of 0.001 kg between two");
+      import_.findings.left_out(
+          "joints of one body without a joint of the engine, given a body of 0.001 kg between two");
       SceneBody between;
       const SceneBody& last = import_.scene.bodies[std::size_t(child)];
       between.name = Import::unique(import_.body_names, last.name + "_between", "between");
@@ -339,14 +353,16 @@ int MjcfReader::body_named(const XmlElement& element, const char* attribute, boo
   if (name.empty() && !required) return -1;
   if (name == "world") return -1;
   const auto found = link_names_.find(name);
-  if (found == link_names_.end()) element.fail("found " + std::string(attribute) + " \"" + name + "\", expected the name of a body");
+  if (found == link_names_.end())
+    element.fail("found " + std::string(attribute) + " \"" + name + "\", expected the name of a body");
   return body_of_[std::size_t(found->second)];
 }
 
 // A gear measures rotations against the world, so that a coupling holds if both hinges have a static parent.
 void MjcfReader::couple_joints(const XmlElement& equality) {
   const auto first = joint_places_.find(equality.need_text("joint1"));
-  if (first == joint_places_.end()) equality.fail("found joint1 \"" + equality.text("joint1") + "\", expected the name of a joint");
+  if (first == joint_places_.end())
+    equality.fail("found joint1 \"" + equality.text("joint1") + "\", expected the name of a joint");
   const auto second = joint_places_.find(equality.text("joint2"));
   std::vector<double> poly = equality.numbers("polycoef", 1, 5);
   if (poly.empty()) poly = {0, 1};
@@ -355,8 +371,8 @@ void MjcfReader::couple_joints(const XmlElement& equality) {
     return place.alone && import_.scene.bodies[std::size_t(place.parent)].def.type == BodyType::fixed;
   };
   const bool is_linear = poly[0] == 0 && poly[1] != 0 && poly[2] == 0 && poly[3] == 0 && poly[4] == 0;
-  if (second == joint_places_.end() || !is_linear || !is_still(first->second) || !is_still(second->second) || second->second.axis.slide ||
-      first->second.axis.slide) {
+  if (second == joint_places_.end() || !is_linear || !is_still(first->second) || !is_still(second->second) ||
+      second->second.axis.slide || first->second.axis.slide) {
     import_.findings.left_out("equality <joint>");
     return;
   }
@@ -413,7 +429,8 @@ void MjcfReader::read_excludes() {
       const int a = body_named(entry, "body1", true), b = body_named(entry, "body2", true);
       if (a == b) continue;
       SixDofDef nothing;
-      for (JointAxisDef* axis : {&nothing.linear_x, &nothing.linear_y, &nothing.linear_z, &nothing.angular_x, &nothing.angular_y, &nothing.angular_z})
+      for (JointAxisDef* axis : {&nothing.linear_x, &nothing.linear_y, &nothing.linear_z, &nothing.angular_x,
+                                 &nothing.angular_y, &nothing.angular_z})
         axis->motion = AxisMotion::free;
       nothing.anchor = import_.scene.bodies[std::size_t(a >= 0 ? a : b)].def.pose.position;
       add_joint(import_, entry.text("name", "exclude"), a, b, nothing);
@@ -425,14 +442,16 @@ void MjcfReader::read_excludes() {
 void MjcfReader::set_filters() {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> kinds;
   for (std::size_t i = 0; i < tree_.size(); ++i) {
-    if (!tree_[i].shapes.empty() && std::find(kinds.begin(), kinds.end(), contact_bits_[i]) == kinds.end()) kinds.push_back(contact_bits_[i]);
+    if (!tree_[i].shapes.empty() && std::find(kinds.begin(), kinds.end(), contact_bits_[i]) == kinds.end())
+      kinds.push_back(contact_bits_[i]);
   }
   if (kinds.size() > 32) return import_.findings.left_out("contype and conaffinity of more than 32 kinds");
   for (std::size_t i = 0; i < tree_.size(); ++i) {
     Filter filter{0, 0, 0};
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       if (kinds[k] == contact_bits_[i]) filter.layer = std::uint32_t(1) << k;
-      const bool meets = (kinds[k].first & contact_bits_[i].second) != 0 || (contact_bits_[i].first & kinds[k].second) != 0;
+      const bool meets =
+          (kinds[k].first & contact_bits_[i].second) != 0 || (contact_bits_[i].first & kinds[k].second) != 0;
       if (meets) filter.collides_with |= std::uint32_t(1) << k;
     }
     if (filter == Filter{1, 1, 0} && kinds.size() == 1) filter = Filter{};
@@ -441,11 +460,14 @@ void MjcfReader::set_filters() {
 }
 
 void MjcfReader::count_unknown() const {
-  constexpr const char* kKnown[] = {"compiler", "option", "size", "visual", "statistic", "default", "asset", "worldbody", "actuator", "equality", "contact"};
+  constexpr const char* kKnown[] = {"compiler", "option",    "size",     "visual",   "statistic", "default",
+                                    "asset",    "worldbody", "actuator", "equality", "contact"};
   for (const XmlElement& section : root_.children()) {
     const std::string name = section.name();
-    if (std::any_of(std::begin(kKnown), std::end(kKnown), [&](const char* known) { return name == known; })) continue;
-    for (const XmlElement& entry : section.children()) import_.findings.left_out(name + " <" + entry.name() + ">");
+    if (std::any_of(std::begin(kKnown), std::end(kKnown), [&](const char* known) { return name == known; }))
+      continue;
+    for (const XmlElement& entry : section.children())
+      import_.findings.left_out(name + " <" + entry.name() + ">");
   }
 }
 

@@ -20,7 +20,8 @@ void set_mass(Import& import, SceneBody& body, const std::vector<MassProperties>
   if (!masses.empty()) all = combined(masses);
   if (!(all.mass > 0.0f)) {
     bool has_solid = false;
-    for (const SceneShape& shape : body.shapes) has_solid = has_solid || shape.density.value_or(1000.0f) > 0.0f;
+    for (const SceneShape& shape : body.shapes)
+      has_solid = has_solid || shape.density.value_or(1000.0f) > 0.0f;
     if (has_solid) return;
     import.findings.left_out("link without mass, given 0.001 kg");
     all = MassProperties{kDummyMass, {}, {kDummyInertia, kDummyInertia, kDummyInertia, 0, 0, 0}};
@@ -89,9 +90,11 @@ std::optional<JointDef> six_dof_of(const std::vector<ModelAxis>& axes) {
   }
   if (hinges.size() > 3 || slides.size() > 3) return std::nullopt;
   const auto is_plain = [](const ModelAxis* axis) {
-    return !axis->limits && axis->stiffness == 0.0f && axis->damping == 0.0f && axis->friction == 0.0f && axis->motor.max_force == 0.0f;
+    return !axis->limits && axis->stiffness == 0.0f && axis->damping == 0.0f && axis->friction == 0.0f &&
+           axis->motor.max_force == 0.0f;
   };
-  const bool one_point = hinges.size() == 3 && is_same_place(hinges[0]->anchor, hinges[1]->anchor) && is_same_place(hinges[0]->anchor, hinges[2]->anchor);
+  const bool one_point = hinges.size() == 3 && is_same_place(hinges[0]->anchor, hinges[1]->anchor) &&
+                         is_same_place(hinges[0]->anchor, hinges[2]->anchor);
   if (slides.empty() && one_point && is_plain(hinges[0]) && is_plain(hinges[1]) && is_plain(hinges[2])) {
     BallDef ball;
     ball.anchor = hinges[0]->anchor;
@@ -155,7 +158,8 @@ std::vector<int> build_bodies(Import& import, const std::vector<ModelLink>& link
       shape.local = body_from_link * shape.local;
       shape.local.orientation = normalized(shape.local.orientation);
       if (body.def.type == BodyType::dynamic) {
-        if (const auto* mesh = std::get_if<SceneTriangles>(&shape.geometry)) shape.geometry = import.solid_mesh(mesh->mesh, true);
+        if (const auto* mesh = std::get_if<SceneTriangles>(&shape.geometry))
+          shape.geometry = import.solid_mesh(mesh->mesh, true);
         if (std::holds_alternative<Plane>(shape.geometry)) {
           import.findings.left_out("plane on a moving body");
           continue;
@@ -172,7 +176,8 @@ std::vector<int> build_bodies(Import& import, const std::vector<ModelLink>& link
 
 std::optional<JointDef> joint_of_axes(const std::vector<ModelAxis>& axes) {
   if (axes.empty()) return std::nullopt;
-  if (axes.size() == 1 && axes[0].rest == 0.0f) return axes[0].slide ? simple_joint<SliderDef>(axes[0]) : simple_joint<HingeDef>(axes[0]);
+  if (axes.size() == 1 && axes[0].rest == 0.0f)
+    return axes[0].slide ? simple_joint<SliderDef>(axes[0]) : simple_joint<HingeDef>(axes[0]);
   if (axes.size() == 2 && !axes[0].slide && !axes[1].slide) {
     if (const std::optional<JointDef> universal = universal_of(axes[0], axes[1])) return universal;
   }
@@ -188,8 +193,6 @@ void add_joint(Import& import, const std::string& name, int a, int b, JointDef d
   import.scene.joints.push_back(std::move(joint));
 }
 
-Pose z_up_world() {
-  return {DVec3{}, from_axis_angle({1, 0, 0}, -0.5f * kPi)};
-}
+Pose z_up_world() { return {DVec3{}, from_axis_angle({1, 0, 0}, -0.5f * kPi)}; }
 
 }  // namespace gyre

@@ -12,10 +12,10 @@ namespace gyre {
 struct ModelLink {
   std::string name;
   int parent = -1;
-  Pose pose{};          // world_from_link
-  bool welded = false;  // part of the parent's body; without a parent: static
-  std::vector<SceneShape> shapes{};         // in the frame of the link
-  std::optional<MassProperties> mass{};     // in the frame of the link
+  Pose pose{};                           // world_from_link
+  bool welded = false;                   // part of the parent's body; without a parent: static
+  std::vector<SceneShape> shapes{};      // in the frame of the link
+  std::optional<MassProperties> mass{};  // in the frame of the link
   Filter filter{};
 };
 

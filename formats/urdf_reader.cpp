@@ -21,9 +21,9 @@ struct UrdfJoint {
 
 struct UrdfLink {
   XmlElement element;
-  int joint = -1;  // to its parent
+  int joint = -1;             // to its parent
   std::vector<int> joints{};  // to its children
-  int place = -1;  // in the tree
+  int place = -1;             // in the tree
 };
 
 class UrdfReader {
@@ -57,9 +57,7 @@ class UrdfReader {
   std::vector<int> body_of_;
 };
 
-Quat from_roll_pitch_yaw(Vec3 angles) {
-  return from_euler({angles.z, angles.y, angles.x, EulerOrder::zyx});
-}
+Quat from_roll_pitch_yaw(Vec3 angles) { return from_euler({angles.z, angles.y, angles.x, EulerOrder::zyx}); }
 
 Transform UrdfReader::origin_of(const XmlElement& parent) const {
   const XmlElement origin = parent.child("origin");
@@ -85,7 +83,8 @@ void UrdfReader::read_links() {
   for (const XmlElement& element : robot_.children("link")) {
     const std::string name = element.need_text("name");
     if (links_.size() >= kMaxUrdfLinks) element.fail("found more than 100000 links");
-    if (!link_names_.emplace(name, int(links_.size())).second) element.fail("found a second link \"" + name + "\"");
+    if (!link_names_.emplace(name, int(links_.size())).second)
+      element.fail("found a second link \"" + name + "\"");
     links_.push_back({element});
   }
   if (links_.empty()) robot_.fail("found no <link>");
@@ -97,7 +96,8 @@ void UrdfReader::read_joints() {
     const auto link_of = [&](const char* end) {
       const XmlElement named = element.need_child(end);
       const auto found = link_names_.find(named.need_text("link"));
-      if (found == link_names_.end()) named.fail("found \"" + named.text("link") + "\", expected the name of a link");
+      if (found == link_names_.end())
+        named.fail("found \"" + named.text("link") + "\", expected the name of a link");
       return found->second;
     };
     joint.parent = link_of("parent");
@@ -107,9 +107,11 @@ void UrdfReader::read_joints() {
     if (const XmlElement axis = element.child("axis")) joint.axis = axis.vec3("xyz", {1, 0, 0});
     if (!(length(joint.axis) > 0.0f)) element.fail("found an axis of no length");
     joint.axis = normalized(joint.axis);
-    if (!joint_names_.emplace(joint.name, int(joints_.size())).second) element.fail("found a second joint \"" + joint.name + "\"");
+    if (!joint_names_.emplace(joint.name, int(joints_.size())).second)
+      element.fail("found a second joint \"" + joint.name + "\"");
     UrdfLink& child = links_[std::size_t(joint.child)];
-    if (child.joint >= 0) element.fail("gives the link \"" + child.element.text("name") + "\" a second parent");
+    if (child.joint >= 0)
+      element.fail("gives the link \"" + child.element.text("name") + "\" a second parent");
     child.joint = int(joints_.size());
     links_[std::size_t(joint.parent)].joints.push_back(int(joints_.size()));
     joints_.push_back(std::move(joint));
@@ -121,8 +123,8 @@ int UrdfReader::find_root() const {
   for (std::size_t i = 0; i < links_.size(); ++i) {
     if (links_[i].joint >= 0) continue;
     if (root >= 0) {
-      robot_.fail("found two links without a parent, \"" + links_[std::size_t(root)].element.text("name") + "\" and \"" +
-                  links_[i].element.text("name") + "\", expected one tree");
+      robot_.fail("found two links without a parent, \"" + links_[std::size_t(root)].element.text("name") +
+                  "\" and \"" + links_[i].element.text("name") + "\", expected one tree");
     }
     root = int(i);
   }
@@ -274,10 +276,12 @@ void UrdfReader::add_urdf_joint(const UrdfJoint& joint) {
   }
   if (joint.type == "planar") {
     const Pose& pose = tree_[std::size_t(links_[std::size_t(joint.child)].place)].pose;
-    return add_joint(import_, joint.name, a, b, planar_joint(pose.position, rotate(pose.orientation, joint.axis)));
+    return add_joint(import_, joint.name, a, b,
+                     planar_joint(pose.position, rotate(pose.orientation, joint.axis)));
   }
   if (joint.type != "revolute" && joint.type != "continuous" && joint.type != "prismatic")
-    joint.element.fail("found the type \"" + joint.type + "\", expected revolute, continuous, prismatic, fixed, floating or planar");
+    joint.element.fail("found the type \"" + joint.type +
+                       "\", expected revolute, continuous, prismatic, fixed, floating or planar");
   add_joint(import_, joint.name, a, b, *joint_of_axes({axis_of(joint)}));
 }
 
@@ -287,14 +291,17 @@ void UrdfReader::add_mimics() {
     const XmlElement mimic = joint.element.child("mimic");
     if (!mimic) continue;
     const auto found = joint_names_.find(mimic.need_text("joint"));
-    if (found == joint_names_.end()) mimic.fail("found \"" + mimic.text("joint") + "\", expected the name of a joint");
+    if (found == joint_names_.end())
+      mimic.fail("found \"" + mimic.text("joint") + "\", expected the name of a joint");
     const UrdfJoint& leader = joints_[std::size_t(found->second)];
     const double ratio = mimic.number("multiplier", 1);
     const auto is_hinge = [](const UrdfJoint& j) { return j.type == "revolute" || j.type == "continuous"; };
     const auto body = [&](int link) { return body_of_[std::size_t(links_[std::size_t(link)].place)]; };
-    const auto is_still = [&](int link) { return import_.scene.bodies[std::size_t(body(link))].def.type == BodyType::fixed; };
-    if (&leader == &joint || ratio == 0 || mimic.number("offset", 0) != 0 || !is_still(joint.parent) || !is_still(leader.parent) || !is_hinge(leader) ||
-        (!is_hinge(joint) && joint.type != "prismatic")) {
+    const auto is_still = [&](int link) {
+      return import_.scene.bodies[std::size_t(body(link))].def.type == BodyType::fixed;
+    };
+    if (&leader == &joint || ratio == 0 || mimic.number("offset", 0) != 0 || !is_still(joint.parent) ||
+        !is_still(leader.parent) || !is_hinge(leader) || (!is_hinge(joint) && joint.type != "prismatic")) {
       import_.findings.left_out("<mimic>");
       continue;
     }
@@ -339,8 +346,11 @@ void UrdfReader::count_unknown() const {
   for (const UrdfJoint& joint : joints_) {
     for (const XmlElement& part : joint.element.children()) {
       const std::string name = part.name();
-      constexpr const char* kKnown[] = {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration", "safety_controller"};
-      if (std::none_of(std::begin(kKnown), std::end(kKnown), [&](const char* known) { return name == known; }))
+      constexpr const char* kKnown[] = {"origin", "parent",      "child",
+                                        "axis",   "limit",       "dynamics",
+                                        "mimic",  "calibration", "safety_controller"};
+      if (std::none_of(std::begin(kKnown), std::end(kKnown),
+                       [&](const char* known) { return name == known; }))
         import_.findings.left_out("<" + name + ">");
       if (name == "calibration" || name == "safety_controller") import_.findings.left_out("<" + name + ">");
     }

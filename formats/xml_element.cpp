@@ -17,7 +17,9 @@ constexpr std::size_t kMaxXmlBytes = std::size_t(64) << 20;
 std::string XmlElement::name() const { return element_->Name(); }
 int XmlElement::line() const { return element_->GetLineNum(); }
 
-void XmlElement::fail(const std::string& message) const { import_->fail("<" + name() + ">: " + message, line()); }
+void XmlElement::fail(const std::string& message) const {
+  import_->fail("<" + name() + ">: " + message, line());
+}
 
 XmlElement XmlElement::child(const char* name) const { return {element_->FirstChildElement(name), *import_}; }
 
@@ -29,12 +31,14 @@ XmlElement XmlElement::need_child(const char* name) const {
 
 std::vector<XmlElement> XmlElement::children() const {
   std::vector<XmlElement> out;
-  for (auto* e = element_->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) out.emplace_back(e, *import_);
+  for (auto* e = element_->FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    out.emplace_back(e, *import_);
   return out;
 }
 std::vector<XmlElement> XmlElement::children(const char* name) const {
   std::vector<XmlElement> out;
-  for (auto* e = element_->FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name)) out.emplace_back(e, *import_);
+  for (auto* e = element_->FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name))
+    out.emplace_back(e, *import_);
   return out;
 }
 
@@ -59,7 +63,8 @@ std::vector<double> XmlElement::numbers(const char* attribute, std::size_t least
   std::string_view rest = value;
   const auto expected = [&] {
     fail(std::string("found ") + attribute + " \"" + std::string(value).substr(0, 60) + "\", expected " +
-         (least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most)) + " finite numbers of at most 1e12");
+         (least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most)) +
+         " finite numbers of at most 1e12");
   };
   for (;;) {
     const std::size_t begin = rest.find_first_not_of(" \t\r\n");
@@ -67,7 +72,8 @@ std::vector<double> XmlElement::numbers(const char* attribute, std::size_t least
     rest.remove_prefix(begin);
     const std::size_t end = std::min(rest.find_first_of(" \t\r\n"), rest.size());
     double number = 0;
-    if (out.size() >= most || !parse_number(rest.substr(0, end), number) || absolute(number) > kLargestNumber) expected();
+    if (out.size() >= most || !parse_number(rest.substr(0, end), number) || absolute(number) > kLargestNumber)
+      expected();
     out.push_back(number);
     rest.remove_prefix(end);
   }
@@ -85,7 +91,8 @@ double XmlElement::need_number(const char* attribute) const {
 }
 double XmlElement::positive(const char* attribute) const {
   const double value = need_number(attribute);
-  if (!(value > 0)) fail(std::string("found ") + attribute + " " + text(attribute) + ", expected a number above 0");
+  if (!(value > 0))
+    fail(std::string("found ") + attribute + " " + text(attribute) + ", expected a number above 0");
   return value;
 }
 
@@ -97,21 +104,25 @@ Vec3 XmlElement::vec3(const char* attribute, Vec3 otherwise) const {
 bool XmlElement::flag(const char* attribute, bool otherwise) const {
   const std::string word = text(attribute);
   if (word.empty()) return otherwise;
-  if (word != "true" && word != "false") fail(std::string("found ") + attribute + " \"" + word + "\", expected true or false");
+  if (word != "true" && word != "false")
+    fail(std::string("found ") + attribute + " \"" + word + "\", expected true or false");
   return word == "true";
 }
 
-void parse_xml(const Import& import, std::string_view bytes, const std::string& file, tinyxml2::XMLDocument& document) {
+void parse_xml(const Import& import, std::string_view bytes, const std::string& file,
+               tinyxml2::XMLDocument& document) {
   if (bytes.size() > kMaxXmlBytes) throw SceneError{file, 0, 0, "", "is larger than 64 MiB"};
   const tinyxml2::XMLError error = document.Parse(bytes.data(), bytes.size());
   if (error != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) {
     const int line = document.ErrorLineNum();
-    const std::string what = error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED ? "is nested too deep" : "is not well-formed XML";
+    const std::string what =
+        error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED ? "is nested too deep" : "is not well-formed XML";
     throw SceneError{file, line, line > 0 ? 1 : 0, "", what};
   }
   std::size_t elements = 0;
   for (const tinyxml2::XMLNode* node = document.RootElement(); node != nullptr;) {
-    if (++elements > import.options.limits.values) throw SceneError{file, 0, 0, "", "has more elements than the limit"};
+    if (++elements > import.options.limits.values)
+      throw SceneError{file, 0, 0, "", "has more elements than the limit"};
     if (node->FirstChild() != nullptr) {
       node = node->FirstChild();
       continue;

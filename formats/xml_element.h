@@ -18,7 +18,8 @@ namespace gyre {
 class XmlElement {
  public:
   XmlElement() = default;
-  XmlElement(const tinyxml2::XMLElement* element, const Import& import) : element_(element), import_(&import) {}
+  XmlElement(const tinyxml2::XMLElement* element, const Import& import)
+      : element_(element), import_(&import) {}
 
   explicit operator bool() const { return element_ != nullptr; }
   std::string name() const;
@@ -49,6 +50,7 @@ class XmlElement {
 };
 
 // A document that is well formed and within the limits of the import; else a SceneError.
-void parse_xml(const Import& import, std::string_view bytes, const std::string& file, tinyxml2::XMLDocument& document);
+void parse_xml(const Import& import, std::string_view bytes, const std::string& file,
+               tinyxml2::XMLDocument& document);
 
 }  // namespace gyre

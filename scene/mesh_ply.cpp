@@ -13,8 +13,8 @@ constexpr std::size_t kMaxPlyCorners = 4096;  // of a face
 
 struct PlyProperty {
   std::string name;
-  int size = 0;  // bytes of one value
-  char kind = 'i';  // i, u or f
+  int size = 0;        // bytes of one value
+  char kind = 'i';     // i, u or f
   int count_size = 0;  // bytes of the number of values of a list; 0: no list
 };
 struct PlyElement {
@@ -29,8 +29,10 @@ bool set_ply_type(std::string_view word, int& size, char& kind) {
     int size;
     char kind;
   };
-  constexpr Type kTypes[] = {{"char", "int8", 1, 'i'},   {"uchar", "uint8", 1, 'u'}, {"short", "int16", 2, 'i'},    {"ushort", "uint16", 2, 'u'},
-                             {"int", "int32", 4, 'i'},   {"uint", "uint32", 4, 'u'}, {"float", "float32", 4, 'f'},  {"double", "float64", 8, 'f'}};
+  constexpr Type kTypes[] = {{"char", "int8", 1, 'i'},     {"uchar", "uint8", 1, 'u'},
+                             {"short", "int16", 2, 'i'},   {"ushort", "uint16", 2, 'u'},
+                             {"int", "int32", 4, 'i'},     {"uint", "uint32", 4, 'u'},
+                             {"float", "float32", 4, 'f'}, {"double", "float64", 8, 'f'}};
   for (const Type& type : kTypes) {
     if (word != type.word && word != type.other) continue;
     size = type.size;
@@ -42,13 +44,15 @@ bool set_ply_type(std::string_view word, int& size, char& kind) {
 
 class PlyParser {
  public:
-  PlyParser(std::string_view text, const std::string& file, const SceneLimits& limits) : text_(text), file_(file), limits_(limits) {}
+  PlyParser(std::string_view text, const std::string& file, const SceneLimits& limits)
+      : text_(text), file_(file), limits_(limits) {}
 
   SceneResult<MeshData> parse() {
     if (!read_header() || !read_body()) return SceneError{file_, 0, 0, "", problem_};
     if (mesh_.indices.empty()) return SceneError{file_, 0, 0, "", "found no face, expected at least one"};
     for (const std::uint32_t index : mesh_.indices) {
-      if (index >= mesh_.vertices.size()) return SceneError{file_, 0, 0, "", "found a face of a vertex that does not exist"};
+      if (index >= mesh_.vertices.size())
+        return SceneError{file_, 0, 0, "", "found a face of a vertex that does not exist"};
     }
     return std::move(mesh_);
   }
@@ -82,7 +86,8 @@ class PlyParser {
     PlyProperty property;
     char list_kind = 'u';
     const bool is_list = words.size() == 5 && words[1] == "list";
-    if (is_list ? !set_ply_type(words[2], property.count_size, list_kind) || list_kind == 'f' || !set_ply_type(words[3], property.size, property.kind)
+    if (is_list ? !set_ply_type(words[2], property.count_size, list_kind) || list_kind == 'f' ||
+                      !set_ply_type(words[3], property.size, property.kind)
                 : words.size() != 3 || !set_ply_type(words[1], property.size, property.kind)) {
       return fail("found a property of a type that PLY does not have");
     }
@@ -105,10 +110,12 @@ class PlyParser {
         has_format = true;
         is_text_ = words[1] == "ascii";
         is_big_ = words[1] == "binary_big_endian";
-        if (!is_text_ && !is_big_ && words[1] != "binary_little_endian") return fail("found a format that PLY does not have");
+        if (!is_text_ && !is_big_ && words[1] != "binary_little_endian")
+          return fail("found a format that PLY does not have");
       } else if (words[0] == "element" && words.size() == 3) {
         double count = 0;
-        if (!parse_number(words[2], count) || !(count >= 0 && count < 4.0e9)) return fail("found no number of elements");
+        if (!parse_number(words[2], count) || !(count >= 0 && count < 4.0e9))
+          return fail("found no number of elements");
         if (elements_.size() >= 64) return fail("found more than 64 elements");
         elements_.push_back({std::string(words[1]), std::uint64_t(count), {}});
       } else if (words[0] == "property") {
@@ -126,7 +133,8 @@ class PlyParser {
       while (!text_.empty() && is_space(text_[0])) text_.remove_prefix(1);
       std::size_t end = 0;
       while (end < text_.size() && !is_space(text_[end])) ++end;
-      if (!parse_number(text_.substr(0, end), out)) return fail("found no number where the header announces one");
+      if (!parse_number(text_.substr(0, end), out))
+        return fail("found no number where the header announces one");
       text_.remove_prefix(end);
       return true;
     }
@@ -155,7 +163,8 @@ class PlyParser {
     double count = 0;
     list.clear();
     if (!next_value(property.count_size, 'u', count)) return false;
-    if (!(count >= 0 && count <= double(kMaxPlyCorners))) return fail("found a list of more than 4096 values");
+    if (!(count >= 0 && count <= double(kMaxPlyCorners)))
+      return fail("found a list of more than 4096 values");
     for (double left = count; left > 0; left -= 1) {
       if (!next_value(property.size, property.kind, list.emplace_back())) return false;
     }
@@ -166,7 +175,8 @@ class PlyParser {
     std::vector<std::uint32_t> face;
     std::vector<Vec3> corners;
     for (const double value : list) {
-      if (!(value >= 0 && value < double(mesh_.vertices.size()))) return fail("found a face of a vertex that does not exist");
+      if (!(value >= 0 && value < double(mesh_.vertices.size())))
+        return fail("found a face of a vertex that does not exist");
       face.push_back(std::uint32_t(value));
       corners.push_back(mesh_.vertices[face.back()]);
     }
@@ -184,16 +194,19 @@ class PlyParser {
       double value = 0;
       if (property.count_size > 0) {
         if (!read_list(property, list)) return false;
-        const bool is_face = element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
+        const bool is_face =
+            element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
         if (is_face && !add_face(list)) return false;
         continue;
       }
       if (!next_value(property.size, property.kind, value)) return false;
-      if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z') place[property.name[0] - 'x'] = value;
+      if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
+        place[property.name[0] - 'x'] = value;
     }
     if (element.name != "vertex") return true;
     for (const double part : place) {
-      if (absolute(part) > double(std::numeric_limits<float>::max())) return fail("found a coordinate that is too large");
+      if (absolute(part) > double(std::numeric_limits<float>::max()))
+        return fail("found a coordinate that is too large");
     }
     mesh_.vertices.push_back({float(place[0]), float(place[1]), float(place[2])});
     return true;
@@ -203,7 +216,8 @@ class PlyParser {
     for (const PlyElement& element : elements_) {
       if (element.properties.empty()) continue;
       if (element.name == "vertex" && element.count > limits_.vertices)
-        return fail("found " + std::to_string(element.count) + " vertices, expected at most " + std::to_string(limits_.vertices));
+        return fail("found " + std::to_string(element.count) + " vertices, expected at most " +
+                    std::to_string(limits_.vertices));
       for (std::uint64_t i = 0; i < element.count; ++i) {
         if (!read_element(element)) return false;
       }
@@ -228,9 +242,12 @@ SceneResult<MeshData> parse_ply(std::string_view text, const std::string& file, 
 
 SceneResult<MeshData> parse_mesh(std::string_view text, const std::string& file, const SceneLimits& limits) {
   switch (mesh_format_of(file)) {
-    case MeshFormat::stl: return parse_stl(text, file, limits);
-    case MeshFormat::ply: return parse_ply(text, file, limits);
-    default: return parse_obj(text, file, limits);
+    case MeshFormat::stl:
+      return parse_stl(text, file, limits);
+    case MeshFormat::ply:
+      return parse_ply(text, file, limits);
+    default:
+      return parse_obj(text, file, limits);
   }
 }
 

@@ -26,7 +26,8 @@ float little_float(const char* at) {
 bool is_binary_stl(std::string_view text) {
   if (text.size() < kStlHeader) return false;
   const std::size_t count = little_u32(text.data() + 80);
-  if (text.size() >= kStlHeader + count * kStlTriangle && text.size() - kStlHeader - count * kStlTriangle < 2) return true;
+  if (text.size() >= kStlHeader + count * kStlTriangle && text.size() - kStlHeader - count * kStlTriangle < 2)
+    return true;
   return text.substr(0, 5) != "solid";
 }
 
@@ -34,20 +35,28 @@ SceneError stl_error(const std::string& file, int line, std::string message) {
   return SceneError{file, line, line > 0 ? 1 : 0, "", std::move(message)};
 }
 
-SceneResult<MeshData> parse_binary_stl(std::string_view text, const std::string& file, const SceneLimits& limits) {
+SceneResult<MeshData> parse_binary_stl(std::string_view text, const std::string& file,
+                                       const SceneLimits& limits) {
   const std::size_t count = little_u32(text.data() + 80);
   if (count > limits.triangles)
-    return stl_error(file, 0, "found " + std::to_string(count) + " triangles, expected at most " + std::to_string(limits.triangles));
+    return stl_error(file, 0,
+                     "found " + std::to_string(count) + " triangles, expected at most " +
+                         std::to_string(limits.triangles));
   if (text.size() < kStlHeader + count * kStlTriangle) {
-    return stl_error(file, 0, "found " + std::to_string(text.size()) + " bytes, expected " +
-                                  std::to_string(kStlHeader + count * kStlTriangle) + " for its " + std::to_string(count) + " triangles");
+    return stl_error(file, 0,
+                     "found " + std::to_string(text.size()) + " bytes, expected " +
+                         std::to_string(kStlHeader + count * kStlTriangle) + " for its " +
+                         std::to_string(count) + " triangles");
   }
   MeshWeld weld;
   for (std::size_t i = 0; i < count; ++i) {
     const char* at = text.data() + kStlHeader + i * kStlTriangle + 12;
     for (int k = 0; k < 3; ++k) {
-      const Vec3 corner{little_float(at + 12 * k), little_float(at + 12 * k + 4), little_float(at + 12 * k + 8)};
-      if (!is_finite(corner)) return stl_error(file, 0, "found a coordinate in triangle " + std::to_string(i) + " that is not finite");
+      const Vec3 corner{little_float(at + 12 * k), little_float(at + 12 * k + 4),
+                        little_float(at + 12 * k + 8)};
+      if (!is_finite(corner))
+        return stl_error(file, 0,
+                         "found a coordinate in triangle " + std::to_string(i) + " that is not finite");
       weld.add(corner);
     }
   }
@@ -79,7 +88,8 @@ class StlWords {
   int line_ = 1;
 };
 
-SceneResult<MeshData> parse_text_stl(std::string_view text, const std::string& file, const SceneLimits& limits) {
+SceneResult<MeshData> parse_text_stl(std::string_view text, const std::string& file,
+                                     const SceneLimits& limits) {
   StlWords words(text);
   MeshWeld weld;
   std::size_t corners = 0;  // of the present facet
@@ -94,12 +104,16 @@ SceneResult<MeshData> parse_text_stl(std::string_view text, const std::string& f
       }
       if (++corners > 3) return stl_error(file, words.line(), "found a facet of more than 3 corners");
       if (weld.corners() / 3 >= limits.triangles)
-        return stl_error(file, words.line(), "found more than " + std::to_string(limits.triangles) + " triangles");
+        return stl_error(file, words.line(),
+                         "found more than " + std::to_string(limits.triangles) + " triangles");
       weld.add({float(part[0]), float(part[1]), float(part[2])});
     } else if (word == "endfacet") {
-      if (corners != 3) return stl_error(file, words.line(), "found a facet of " + std::to_string(corners) + " corners, expected 3");
+      if (corners != 3)
+        return stl_error(file, words.line(),
+                         "found a facet of " + std::to_string(corners) + " corners, expected 3");
       corners = 0;
-    } else if (word == "facet" || word == "normal" || word == "outer" || word == "loop" || word == "endloop") {
+    } else if (word == "facet" || word == "normal" || word == "outer" || word == "loop" ||
+               word == "endloop") {
       if (word == "normal") {
         for (int k = 0; k < 3; ++k) words.next();  // of no use: the order of the corners says it
       }

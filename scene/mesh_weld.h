@@ -14,7 +14,8 @@ class MeshWeld {
  public:
   void add(Vec3 corner) {
     corner = corner + Vec3{};  // one sign of zero
-    const auto [at, is_new] = places_.try_emplace({corner.x, corner.y, corner.z}, std::uint32_t(mesh_.vertices.size()));
+    const auto [at, is_new] =
+        places_.try_emplace({corner.x, corner.y, corner.z}, std::uint32_t(mesh_.vertices.size()));
     if (is_new) mesh_.vertices.push_back(corner);
     mesh_.indices.push_back(at->second);
   }

@@ -28,16 +28,20 @@ int run_convert(const ConvertOptions& options) {
   if (!scene) return refuse(scene.error().text());
   for (const std::string& note : scene->notes) std::fprintf(stderr, "gyre: %s\n", note.c_str());
   OutputFile out;
-  if (!out.open(options.out) || !out.write(write_scene(*scene, {.inline_meshes = true})) || !out.commit()) return refuse(out.message());
+  if (!out.open(options.out) || !out.write(write_scene(*scene, {.inline_meshes = true})) || !out.commit())
+    return refuse(out.message());
   return kExitGood;
 }
 
 }  // namespace
 
 void add_convert(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("convert", "Write a robot (URDF, MJCF) or a glTF file as a scene file");
+  CLI::App* command =
+      app.add_subcommand("convert", "Write a robot (URDF, MJCF) or a glTF file as a scene file");
   const auto options = std::make_shared<ConvertOptions>();
-  command->add_option("IN", options->in, "The file: *.urdf, *.xml, *.mjcf, *.gltf, *.glb or a scene")->required()->type_name("");
+  command->add_option("IN", options->in, "The file: *.urdf, *.xml, *.mjcf, *.gltf, *.glb or a scene")
+      ->required()
+      ->type_name("");
   command->add_option("OUT", options->out, "The scene file (*.gyre.json)")->required()->type_name("");
   add_import_options(*command, options->import);
   command->callback([options, &exit_code] { exit_code = run_convert(*options); });

@@ -13,18 +13,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTriangleStl = "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n";
+constexpr const char* kTriangleStl =
+    "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n";
 
 class Import : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("gyre_formats_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = fs::temp_directory_path() / ("gyre_formats_" + std::to_string(getpid()) + "_" +
+                                           testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "robot");
     fs::create_directories(folder_ / "arms" / "meshes");
   }
   void TearDown() override { fs::remove_all(folder_); }
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name, std::ios::binary) << text; }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
   Finished gyre(const std::vector<std::string>& arguments) { return run_program(arguments, folder_); }
 
   fs::path folder_;
@@ -43,7 +47,8 @@ TEST_F(Import, AConvertedFileMovesBitByBitLikeTheFileItself) {
 #ifdef GYRE_WITH_XML
 TEST_F(Import, MeshesAreReadFromTheFoldersThatWereNamedAndFromNoOther) {
   const auto robot = [](const std::string& mesh) {
-    return "<robot name=\"r\"><link name=\"base\"><collision><geometry><mesh filename=\"" + mesh + "\" scale=\"2 2 2\"/></geometry></collision></link></robot>";
+    return "<robot name=\"r\"><link name=\"base\"><collision><geometry><mesh filename=\"" + mesh +
+           "\" scale=\"2 2 2\"/></geometry></collision></link></robot>";
   };
   write("arms/meshes/a.stl", kTriangleStl);
   write("robot/p.urdf", robot("package://arms/meshes/a.stl"));
@@ -59,7 +64,8 @@ TEST_F(Import, MeshesAreReadFromTheFoldersThatWereNamedAndFromNoOther) {
   EXPECT_EQ(gyre({"info", "robot/p.urdf", "--package", "."}).code, 0);
   EXPECT_EQ(gyre({"info", "robot/up.urdf", "--package", "arms"}).code, 0);
   EXPECT_EQ(gyre({"info", "robot/far.urdf", "--package", "arms=arms"}).code, 3);
-  const Finished strict = gyre({"convert", GYRE_SOURCE_DIR "/scenes/formats/pendulum.urdf", "out.gyre.json", "--strict"});
+  const Finished strict =
+      gyre({"convert", GYRE_SOURCE_DIR "/scenes/formats/pendulum.urdf", "out.gyre.json", "--strict"});
   EXPECT_EQ(strict.code, 0) << strict.err;
   write("bad.urdf", "<robot/>");
   EXPECT_EQ(gyre({"convert", "bad.urdf", "none.gyre.json"}).code, 3);
