@@ -300,6 +300,7 @@ TEST(Urdf, DamagedFilesAreRefusedWithTheirLine) {
   expect_refused(joint("spiral", ""), "\"spiral\"");
   expect_refused(joint("continuous", R"(<axis xyz="0 0 0"/>)"), "no length");
   expect_refused(joint("continuous", R"(<axis xyz="0 nan 0"/>)"), "finite numbers");
+  expect_refused(joint("continuous", "<axis xyz=\"0&#10;x 0\"/>"), "\"0 x 0\"");  // on one line
   expect_refused(joint("continuous", R"(<origin xyz="1e300 0 0"/>)"), "at most 1e12");
   expect_refused(two + R"(<joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint></robot>)",
                  "name of a link");

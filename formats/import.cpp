@@ -208,7 +208,11 @@ SceneResult<Scene> import_scene(std::string_view bytes, FileFormat format, const
       import.scene.notes.push_back(path + ": not simulated: " + import.findings.text());
     }
     return checked(import);
-  } catch (const SceneError& error) {
+  } catch (SceneError& error) {
+    // Words of the file stand in the message, which is one line.
+    for (char& c : error.message) {
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    }
     return error;
   } catch (const std::bad_alloc&) {
     return SceneError{path, 0, 0, "", "needs more memory than there is"};
