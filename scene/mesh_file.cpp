@@ -197,10 +197,7 @@ std::string refuse_mesh_path(std::string_view path) {
     if (path.substr(begin, end - begin) == "..") return "expected a path within the scene's folder";
     begin = end + 1;
   }
-  const std::size_t size = path.size();
-  if (size < 5 || (path.substr(size - 4) != ".obj" && path.substr(size - 4) != ".OBJ")) {
-    return "expected a Wavefront file (.obj)";
-  }
+  if (mesh_format_of(path) == MeshFormat::none) return "expected a mesh file (.obj, .stl or .ply)";
   return {};
 }
 
@@ -241,7 +238,7 @@ SceneResult<MeshData> load_mesh_file(const std::string& folder, const std::strin
   std::string bytes;
   const std::string problem = read_whole_file(place.string(), limits, bytes);
   if (!problem.empty()) return SceneError{path, 0, 0, "", problem};
-  return parse_obj(bytes, path, limits);
+  return parse_mesh(bytes, path, limits);
 }
 
 SceneResult<MeshData> parse_obj(std::string_view text, const std::string& file, const SceneLimits& limits) {

@@ -1,4 +1,4 @@
-// Mesh files of a scene: which paths a scene may name, and Wavefront OBJ text to vertices and triangles.
+// Mesh files of a scene: which paths a scene may name, and Wavefront OBJ, STL and PLY to vertices and triangles.
 #pragma once
 
 #include "scene/scene_error.h"
@@ -32,5 +32,18 @@ SceneResult<MeshData> load_mesh_file(const std::string& folder, const std::strin
 // Wavefront OBJ: v, f (polygons as fans; negative indices count from the end); normals, texture coordinates, groups and
 // materials are passed over. Anything else, an index out of range or a number that is none is refused with its line.
 SceneResult<MeshData> parse_obj(std::string_view text, const std::string& file, const SceneLimits& limits);
+
+// STL, text or binary. Equal corners become one vertex; normals and attributes are passed over.
+SceneResult<MeshData> parse_stl(std::string_view text, const std::string& file, const SceneLimits& limits);
+
+// PLY, text or binary of either byte order: x, y, z of the element vertex, vertex_indices of the element face (polygons become
+// triangles). Other elements and properties are passed over.
+SceneResult<MeshData> parse_ply(std::string_view text, const std::string& file, const SceneLimits& limits);
+
+enum class MeshFormat { none, obj, stl, ply };
+// By the end of the name.
+MeshFormat mesh_format_of(std::string_view path);
+// The parser that the name of the file asks for; OBJ where the name says nothing.
+SceneResult<MeshData> parse_mesh(std::string_view text, const std::string& file, const SceneLimits& limits);
 
 }  // namespace gyre

@@ -52,7 +52,7 @@ void read_mesh(SceneReading& reading, const Field& field, const std::string& nam
     const auto given = options.files.find(mesh.file);
     const bool here = given != options.files.end();
     if (!here && !options.mesh_files) file->fail(file_not_here(*file, options));
-    SceneResult<MeshData> data = here ? parse_obj(given->second, mesh.file, options.limits)
+    SceneResult<MeshData> data = here ? parse_mesh(given->second, mesh.file, options.limits)
                                       : load_mesh_file(options.folder, mesh.file, options.limits);
     if (!data) file->fail(data.error().text());
     mesh.vertices = std::move(data->vertices);

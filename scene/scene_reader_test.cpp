@@ -162,7 +162,7 @@ TEST(SceneReader, RefusesWhatIsWrongInMaterialsAndMeshes) {
       {mesh_with(R"("file": "http://host/x.obj")"), "/meshes/m/file", {"without a drive or an address"}},
       {mesh_with(R"("file": "a\\x.obj")"), "/meshes/m/file", {"forward slashes"}},
       {mesh_with(R"("file": "\\\\server\\x.obj")"), "/meshes/m/file", {"forward slashes"}},
-      {mesh_with(R"("file": "x.stl")"), "/meshes/m/file", {".obj"}},
+      {mesh_with(R"("file": "x.dae")"), "/meshes/m/file", {".obj"}},
       {mesh_with(R"("file": "x\u0000.obj")"), "/meshes/m/file", {"control characters"}},
       {mesh_with(R"("file": "x.obj", "vertices": [])"), "/meshes/m/vertices", {"not both"}},
       {mesh_with(R"("file": "x.obj")"), "/meshes/m/file", {"no files can be opened"}},

@@ -157,7 +157,7 @@ constexpr char kPart0[] = R"json({
             "file": {
               "type": "string",
               "maxLength": 1024,
-              "description": "Wavefront OBJ, relative to the scene file and within its folder"
+              "description": "Wavefront OBJ, STL or PLY, relative to the scene file and within its folder"
             },
             "vertices": { "type": "null" },
             "triangles": { "type": "null" }

@@ -114,7 +114,8 @@ SEES_WHOLE_API = {"world", "io", "debug"}
 # Folders outside src/: the project's own folders that they may include besides include/gyre.
 OUTER = {
     "scene": {"scene"},
-    "apps": {"apps", "scene", "bench"},
+    "formats": {"formats", "scene"},
+    "apps": {"apps", "formats", "scene", "bench"},
     "examples": set(),
     "kit": {"kit"},
     "capi": {"capi", "scene"},

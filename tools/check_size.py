@@ -10,7 +10,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 FILE_LIMIT = 600
 FUNCTION_LIMIT = 80
-FOLDERS = ("include", "src", "scene", "apps", "kit", "capi")
+FOLDERS = ("include", "src", "scene", "formats", "apps", "kit", "capi")
 ONLY_FILES = ("tests", "bench", "examples")  # where functions may be long: a table of cases, a program's main
 
 NOT_A_FUNCTION = re.compile(r"^\s*(namespace|struct|class|enum|union|extern|static_assert|if|for|while|switch|else|do|return)\b")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the list of units in docs/architecture.md from the heads of the files.
 
-A unit is a header, or a source without one, in src, kit or scene; its tests and the files of single processors belong to it.
+A unit is a header, or a source without one, in src, kit, scene or formats; its tests and the files of single processors belong to it.
 Its line in the list is the first sentence of the comment at its head. The list stands between two marker comments.
 
     python3 tools/list_units.py            # writes the list anew
@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-FOLDERS = ("src", "kit", "scene")
+FOLDERS = ("src", "kit", "scene", "formats")
 PAGE = "docs/architecture.md"
 BEGIN = "<!-- units: written by tools/list_units.py -->"
 END = "<!-- end of units -->"

@@ -95,3 +95,6 @@ gyre_render_packages=(libepoxy-dev libegl-dev libpng-dev libgif-dev libegl1 libg
 
 # For gyre view, which is left out where it is missing: the server.
 gyre_view_packages=(libcpp-httplib-dev)
+
+# For robots in URDF and MJCF, which are left out where it is missing: the XML parser.
+gyre_format_packages=(libtinyxml2-dev)

@@ -10,6 +10,7 @@ namespace gyre {
 
 void add_simulate(CLI::App& app, int& exit_code);
 void add_decompose(CLI::App& app, int& exit_code);
+void add_convert(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_view(CLI::App& app, int& exit_code);

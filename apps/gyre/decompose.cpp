@@ -133,7 +133,7 @@ int run_decompose(const DecomposeOptions& options) {
   std::string bytes;
   const std::string problem = read_whole_file(options.mesh, {}, bytes);
   if (!problem.empty()) return fail(options.mesh + ": " + problem);
-  const SceneResult<MeshData> mesh = parse_obj(bytes, options.mesh, {});
+  const SceneResult<MeshData> mesh = parse_mesh(bytes, options.mesh, {});
   if (!mesh) return fail(mesh.error().text());
   OutputFile out;
   if (!options.out.empty() && !out.open(options.out)) return fail(out.message());
@@ -179,7 +179,7 @@ void add_decompose(CLI::App& app, int& exit_code) {
       app.add_subcommand("decompose", "Cut a concave mesh into convex hulls, and say how near they come");
   const auto options = std::make_shared<DecomposeOptions>();
   options->def.threads = 0;
-  command->add_option("MESH", options->mesh, "The mesh (Wavefront OBJ)")->required()->type_name("");
+  command->add_option("MESH", options->mesh, "The mesh (Wavefront OBJ, STL or PLY)")->required()->type_name("");
   command->add_option("--out", options->out, "Write the hulls, one object each")->type_name("FILE.obj");
   command
       ->add_option(

@@ -2,8 +2,8 @@
 // its meshes are.
 #include "commands.h"
 #include "exit_code.h"
+#include "import_options.h"
 #include "mesh_bounds.h"
-#include "scene/decomposition_folder.h"
 #include "scene/json_writer.h"
 #include "scene/number_text.h"
 #include "scene/scene_runner.h"
@@ -236,8 +236,8 @@ void print_json(const SceneRunner& runner) {
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
-int show_info(const std::string& path, bool as_json) {
-  SceneResult<Scene> scene = load_split_scene(path);
+int show_info(const std::string& path, const ImportOptions& import, bool as_json) {
+  SceneResult<Scene> scene = open_split_scene(path, import);
   if (!scene) {
     std::fprintf(stderr, "gyre: %s\n", scene.error().text().c_str());
     return kExitInvalid;
@@ -262,13 +262,15 @@ void add_info(CLI::App& app, int& exit_code) {
   struct Options {
     std::string scene;
     bool json = false;
+    ImportOptions import;
   };
   CLI::App* command = app.add_subcommand(
       "info", "Show what a scene holds, the mass properties of its bodies and the bounds of its meshes");
   const auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->scene, "The scene file (*.gyre.json)")->required()->type_name("");
+  command->add_option("SCENE", options->scene, "The scene file (*.gyre.json), or a robot or glTF file")->required()->type_name("");
   command->add_flag("--json", options->json, "Print it as JSON");
-  command->callback([options, &exit_code] { exit_code = show_info(options->scene, options->json); });
+  add_import_options(*command, options->import);
+  command->callback([options, &exit_code] { exit_code = show_info(options->scene, options->import, options->json); });
 }
 
 }  // namespace gyre

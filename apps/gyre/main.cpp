@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
   int exit_code = gyre::kExitGood;
   gyre::add_simulate(app, exit_code);
   gyre::add_info(app, exit_code);
+  gyre::add_convert(app, exit_code);
   gyre::add_decompose(app, exit_code);
   gyre::add_render(app, exit_code);
   gyre::add_view(app, exit_code);

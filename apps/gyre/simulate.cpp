@@ -5,7 +5,6 @@
 #include "exit_code.h"
 #include "interrupt.h"
 #include "progress.h"
-#include "scene/decomposition_folder.h"
 #include "scene/scene_labels.h"
 #include "scene/scene_writer.h"
 #include "summary.h"
@@ -239,7 +238,7 @@ SceneResult<Scene> load_decomposed(const SimulateOptions& options) {
     return !interrupted();
   };
   split.user = &progress;
-  return load_split_scene(options.scene, split);
+  return open_split_scene(options.scene, options.import, split);
 }
 
 }  // namespace

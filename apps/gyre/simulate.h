@@ -1,6 +1,7 @@
 // gyre simulate: its options, and one run of it.
 #pragma once
 
+#include "formats/import.h"
 #include "output_file.h"
 #include "scene/scene.h"
 #include "scene/scene_runner.h"
@@ -33,6 +34,7 @@ struct SimulateOptions {
   std::vector<std::string> explain;  // names of bodies
   bool trace_liquids = false;
   bool count_crossings = false;  // of cloths, in the table of figures
+  ImportOptions import;
   bool times = false, hash = false, json = false, quiet = false;
 };
 

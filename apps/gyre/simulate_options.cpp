@@ -1,6 +1,7 @@
 // gyre simulate: its options, and what they change in a scene. See simulate.h.
 #include "commands.h"
 #include "exit_code.h"
+#include "import_options.h"
 #include "simulate.h"
 
 #include <CLI/CLI.hpp>
@@ -161,10 +162,11 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
 void add_simulate(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("simulate", "Run a scene");
   const auto options = std::make_shared<SimulateOptions>();
-  command->add_option("SCENE", options->scene, "The scene file (*.gyre.json)")->required()->type_name("");
+  command->add_option("SCENE", options->scene, "The scene file (*.gyre.json), or a robot or glTF file")->required()->type_name("");
   add_time_options(*command, *options);
   add_method_options(*command, *options);
   add_output_options(*command, *options);
+  add_import_options(*command, options->import);
   command->callback([options, &exit_code] { exit_code = simulate(*options); });
 }
 

@@ -179,7 +179,7 @@ bool Player::advance_to(double seconds) {
   return true;
 }
 
-std::unique_ptr<Player> open_player(const std::string& path, const std::string& look, int threads,
+std::unique_ptr<Player> open_player(const std::string& path, const std::string& look, const ImportOptions& import, int threads,
                                     std::string& error) {
   // A recording may be far larger than a scene; the scene reader keeps its own limit.
   SceneLimits limits;
@@ -191,8 +191,8 @@ std::unique_ptr<Player> open_player(const std::string& path, const std::string& 
     return nullptr;
   }
   std::unique_ptr<Player> player;
-  if (looks_like_scene(bytes)) {
-    SceneResult<Scene> scene = load_split_scene(path);
+  if (format_of(path) != FileFormat::scene || looks_like_scene(bytes)) {
+    SceneResult<Scene> scene = open_split_scene(path, import);
     if (!scene) {
       error = scene.error().text();
       return nullptr;
@@ -201,7 +201,7 @@ std::unique_ptr<Player> open_player(const std::string& path, const std::string& 
   } else {
     std::optional<Scene> scene;
     if (!look.empty()) {
-      SceneResult<Scene> read = load_split_scene(look);
+      SceneResult<Scene> read = open_split_scene(look, import);
       if (!read) {
         error = read.error().text();
         return nullptr;

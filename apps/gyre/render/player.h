@@ -2,6 +2,7 @@
 // on; rewind() begins anew.
 #pragma once
 
+#include "formats/import.h"
 #include "render/sight.h"
 #include "scene/scene.h"
 
@@ -44,7 +45,7 @@ class Player {
 
 // Opens a scene file or a recording; `look` names a scene file that says how a recording looks (may be empty). Null and an
 // error if that fails.
-std::unique_ptr<Player> open_player(const std::string& path, const std::string& look, int threads,
+std::unique_ptr<Player> open_player(const std::string& path, const std::string& look, const ImportOptions& import, int threads,
                                     std::string& error);
 
 }  // namespace gyre

@@ -192,7 +192,7 @@ int Rendering::draw_frames() {
 
 int Rendering::run() {
   std::string error;
-  player_ = open_player(options_.source, options_.look, options_.threads, error);
+  player_ = open_player(options_.source, options_.look, options_.import, options_.threads, error);
   if (!player_) return stop(error);
   if (!player_->note().empty()) say(options_.source + ": " + player_->note());
   if (!options_.look.empty() && !player_->is_recording()) {

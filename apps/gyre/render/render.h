@@ -1,6 +1,7 @@
 // gyre render: its options, and one run of it.
 #pragma once
 
+#include "formats/import.h"
 #include "render/frame_path.h"
 
 #include <gyre/math.h>
@@ -14,6 +15,7 @@ namespace gyre {
 
 struct RenderOptions {
   std::string source;  // a scene or a recording
+  ImportOptions import;
   std::string look;    // the scene of a recording; may be empty
   FramePath out;
   std::optional<int> width, height;

@@ -1,6 +1,7 @@
 // gyre render: its options. See render.h.
 #include "commands.h"
 #include "exit_code.h"
+#include "import_options.h"
 #include "render/render.h"
 
 #include <CLI/CLI.hpp>
@@ -145,7 +146,7 @@ std::string check_together(const RenderOptions& options) {
 void add_render(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("render", "Draw pictures or a movie of a scene or a recording");
   const auto options = std::make_shared<RenderOptions>();
-  command->add_option("SCENE|RECORDING", options->source, "The scene (*.gyre.json) or recording (*.gyrec)")
+  command->add_option("SCENE|RECORDING", options->source, "The scene (*.gyre.json), robot, glTF file or recording (*.gyrec)")
       ->required()
       ->type_name("");
   add_parsed(*command, "--out", "FILE", "picture.png, movie.gif, or frames/%04d.png for many pictures",
@@ -167,6 +168,7 @@ void add_render(CLI::App& app, int& exit_code) {
                    "Worker threads of the simulation, 0 for all; never changes a picture")
       ->type_name("N")
       ->check(number_between(0, 1024, "an integer from 0 to 1024"));
+  add_import_options(*command, options->import);
   command->add_flag("--quiet", options->quiet, "Print no summary and show no progress");
   command->callback([options, &exit_code] {
     const std::string problem = check_together(*options);

@@ -4,6 +4,7 @@
 #include "exit_code.h"
 #include "interrupt.h"
 #include "scene/scene_reader.h"
+#include "scene/scene_writer.h"
 #include "view/open_browser.h"
 #include "view/view_server.h"
 
@@ -100,6 +101,44 @@ bool check_recording(const std::string& path) {
   return false;
 }
 
+// The scene made from a file of another program, in a file that is there as long as it is served.
+class ConvertedScene {
+ public:
+  ConvertedScene() = default;
+  ConvertedScene(const ConvertedScene&) = delete;
+  ConvertedScene& operator=(const ConvertedScene&) = delete;
+  ~ConvertedScene() {
+    std::error_code error;
+    if (!folder_.empty()) fs::remove_all(folder_, error);
+  }
+
+  // The path of the scene; empty and a message if it cannot be made.
+  std::string make(const std::string& path, const ImportOptions& import) {
+    const SceneResult<Scene> scene = open_scene(path, import);
+    if (!scene) {
+      say(scene.error().text());
+      return {};
+    }
+    for (const std::string& note : scene->notes) say(note);
+    std::string folder = (fs::temp_directory_path() / "gyre_view_XXXXXX").string();
+    if (mkdtemp(folder.data()) == nullptr) {
+      say(folder + ": cannot be made");
+      return {};
+    }
+    folder_ = folder;
+    const fs::path made = fs::path(folder_) / (fs::path(path).filename().string() + ".gyre.json");
+    std::ofstream file(made, std::ios::binary);
+    file << write_scene(*scene, {.inline_meshes = true});
+    file.close();
+    if (file) return made.string();
+    say(made.string() + ": cannot be written");
+    return {};
+  }
+
+ private:
+  std::string folder_;
+};
+
 // Adds the file, and for a scene those that it names. False and a message if it cannot be shown.
 bool add_shown(const std::string& path, const std::string& name, ServedFiles& files) {
   std::error_code error;
@@ -150,10 +189,15 @@ int view(const ViewOptions& options) {
     return kExitInvalid;
   }
   if (!viewer.empty()) files.add_folder("/", viewer.string());
-  std::string query, shown_path;
-  const std::string name = fs::path(options.file).filename().string();
+  std::string query, shown_path, shown_file = options.file;
+  ConvertedScene converted;
+  if (format_of(options.file) != FileFormat::scene) {
+    shown_file = converted.make(options.file, options.import);
+    if (shown_file.empty()) return kExitInvalid;
+  }
+  const std::string name = fs::path(shown_file).filename().string();
   if (!options.file.empty()) {
-    if (!add_shown(options.file, name, files)) return kExitInvalid;
+    if (!add_shown(shown_file, name, files)) return kExitInvalid;
     shown_path = "/files/" + percent_encoded(name);
     query = "?file=" + shown_path;
   }

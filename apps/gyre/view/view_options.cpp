@@ -2,6 +2,7 @@
 #include "view/view.h"
 
 #include "commands.h"
+#include "import_options.h"
 
 #include <CLI/CLI.hpp>
 
@@ -16,7 +17,7 @@ void add_view(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "FILE", options->file,
-          "The scene (*.gyre.json) or recording (*.gyrec); without it, the scenes that come with the viewer")
+          "The scene (*.gyre.json), robot, glTF file or recording (*.gyrec); without it, the scenes that come with the viewer")
       ->type_name("");
   command
       ->add_option("--port", options->port,
@@ -27,6 +28,7 @@ void add_view(CLI::App& app, int& exit_code) {
         const bool good = CLI::detail::lexical_cast(text, port) && port >= 0 && port <= 65535;
         return good ? std::string() : "found " + text + ", expected an integer from 0 to 65535";
       });
+  add_import_options(*command, options->import);
   command->add_flag("--no-open", options->no_open, "Print the address and open nothing");
   command
       ->add_option("--viewer", options->viewer, "Folder of the built viewer (also the variable GYRE_VIEWER)")
