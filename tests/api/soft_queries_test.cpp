@@ -344,7 +344,9 @@ TEST(SoftEvents, ATetrahedronThatTurnsInsideOutIsReportedOnce) {
       EXPECT_EQ(tetrahedron.tetrahedron, 0);
       EXPECT_EQ(tetrahedron.vertices, (std::array<std::uint32_t, 4>{0, 1, 2, 3}));
     }
-    if (i == 0) EXPECT_EQ(reported, 1);
+    if (i == 0) {
+      EXPECT_EQ(reported, 1);
+    }
   }
   EXPECT_GE(reported, 1);
 }
