@@ -227,7 +227,7 @@ void find_near_rows(const PointGrid& grid, TaskSystem& tasks, FluidSolids& out) 
   out.within_row.resize_uninitialized(std::size_t(rows));
   for_blocks(tasks, rows, kPointRows, [&](int first, int last, int) {
     for (int row = first; row < last; ++row) {
-      const float* const distance = out.corners.all.distance.data() + std::size_t(row) * grid.count[0];
+      const float* const distance = out.corners.all.distance.data() + std::size_t(row) * std::size_t(grid.count[0]);
       int any = 0;
       for (int i = 0; i < grid.count[0]; ++i) any |= distance[i] < 0.0f ? 1 : 0;
       out.within_row[row] = std::uint8_t(any);

@@ -61,6 +61,12 @@ void remove_broken_joints(WorldState& s) {
   for (const JointBroken& broken : s.published_events.broken) remove_joint_now(s, broken.joint.index);
 }
 
+// The end of the stage `solve` where soft matter stands in fluids.
+void push_back(WorldState& s) {
+  const StageZone zone(s.profile, int(StageName::solve));
+  push_fluids_back(s.soft, s.fluids, s.fluid_scratch);
+}
+
 void report_frozen(WorldState& s) {
   for (const std::uint32_t body : s.frozen) {
     report_problem(s, ErrorCode::invalid_data, body_id(s.rigid, body),
@@ -120,7 +126,8 @@ void report_missed_impulses(WorldState& s) {
   const RowStats& rows = s.solve.rows;
   if (!(rows.missed_share > kMissed)) return;
   report_problem(s, ErrorCode::unstable, {},
-                 "sequential_impulses: after %d iterations joints still open %.3g times as fast as a body that falls for a sub-step; "
+                 "sequential_impulses: after %d iterations joints still open %.3g times as fast as a body "
+                 "that falls for a sub-step; "
                  "use more iterations, or the solver soft_step or lcp",
                  rows.sweeps, rows.missed_share);
 }
@@ -174,8 +181,7 @@ void detect_collisions(WorldState& s, float seconds, float flow) {
 // The stages after the solve of `seconds`, which is the last piece of a step of `whole` seconds or not.
 void finish_step(WorldState& s, float seconds, float whole, bool last) {
   RigidWorld& w = s.rigid;
-  if (last && !s.fluids.empty() && !s.soft.empty())
-    run_stage(s, StageName::solve, [&] { push_fluids_back(s.soft, s.fluids, s.fluid_scratch); });
+  if (last && !s.fluids.empty() && !s.soft.empty()) push_back(s);
   run_stage(s, StageName::clamp_fast_bodies,
             [&] { clamp_fast_bodies(w, s.continuous, *s.kernels, s.arena, *s.tasks); });
   run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, s.arena, *s.tasks, whole, s.frozen, last); });
@@ -333,7 +339,8 @@ void end_step(WorldState& s, float seconds) {
   clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
   report_soft_events(s);
   const SoftEvents& soft = s.published_soft_events;
-  s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn};
+  s.events = {e.begins,        e.ends,      e.hits,    e.sensors,     e.broken,
+              e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn};
   s.stepping = false;
 }
 
