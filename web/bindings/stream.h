@@ -303,6 +303,8 @@ struct Column<T> {
   using Element = std::uint8_t;
   static constexpr bool kAsItIs = true;
 };
+template <class T, std::size_t N>
+struct Column<std::array<T, N>> : Column<T> {};
 template <>
 struct Column<Vec3> {
   using Element = float;
