@@ -29,9 +29,9 @@ test('every scene opens and plays', async (t) => {
       await page.waitForFunction(() => window.gyre.step >= 40, null, { timeout: 60000 });
       await page.evaluate(() => window.gyre.pause());
       const after = await page.evaluate(() => [...window.gyre.poses(), ...window.gyre.allVertices()]);
-      assert.equal(after.length, before.length);
+      assert.ok(after.length >= before.length, 'what tears has more vertices, never fewer');
       assert.ok(after.every(Number.isFinite), 'a number is not finite');
-      const largest = Math.max(...after.map((value, i) => Math.abs(value - before[i])));
+      const largest = Math.max(...before.map((value, i) => Math.abs(value - after[i])));
       assert.ok(STILL.has(scene) || FLUID_ALONE.has(scene) || largest > 1e-6, `nothing moved (${largest})`);
       assert.equal(await page.locator('[role=alertdialog]').count(), 0);
       viewer.noErrors(page);
