@@ -45,8 +45,7 @@ elseif(WAY STREQUAL "pkg_config")
       /usr/bin/python3 -c "import gyre; gyre.load_scene('newtons_cradle').run(0.1)")
   endif()
 else()
-  # The core folder by folder, as a user may ask for, and not optimised: whether it builds is the question here, and so it is told
-  # in a fifth of the time.
+  # The core folder by folder, as a user may ask for, and not optimised, since the question here is if it builds.
   must(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${folder} -G ${GENERATOR} -DWAY=${WAY}
     -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_UNITY_BUILD=ON
     "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG"
