@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxMjcfBodies = 100'000;
 
-// What the actuators of a joint do to it at zero control.
+// The effect of a joint's actuators at zero control.
 struct Drive {
   double stiffness = 0, damping = 0, target = 0;  // the target in the coordinate of the joint
 };

@@ -96,7 +96,7 @@ struct Ray {
 std::vector<Ray> ray_list();  // of the scene "rays"
 
 const std::vector<const char*>& scene_names();
-// Those that can be had in any size: bodies, about, to a million; of a pyramid its rows.
+// Scenes of any size: about that many bodies, a million at most; of a pyramid its rows.
 std::string numbered_scene_names();
 std::optional<Scene> find_scene(const std::string& name);
 

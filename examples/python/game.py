@@ -93,7 +93,7 @@ def play(steps, late):
         guess = true_input(known)
         game.step(guess)
         if step >= WINDOW and true_input(known) != true_input(max(known - 1, 0)) or step == steps - 1:
-            # What was guessed since the change was wrong.
+            # The guesses since the change were wrong.
             first = max(step - WINDOW, 0)
             ring.restore(game.world, first)
             game.entered = entered[first]

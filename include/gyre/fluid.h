@@ -139,7 +139,7 @@ struct FluidInfo {
   std::uint64_t user_data = 0;
 };
 
-// What all fluids together do to a body: the force and torque of their pressure, lift included, that act through the present step.
+// The load of all fluids on a body: the force and torque of their pressure, lift included, that act through the present step.
 struct FluidLoad {
   Vec3 force{};             // N
   Vec3 torque{};            // N m, about the centre of mass

@@ -15,7 +15,7 @@ bool acts_at(const FieldRecord& field, const SoftEntry& entry, DVec3 at) {
          at.z >= field.low.z && at.z <= field.high.z;
 }
 
-// What flows past a place.
+// The flow past a place.
 struct Flow {
   DVec3 velocity{};          // m/s
   double density = 0.0;      // kg/m^3

@@ -243,7 +243,7 @@ TEST(Gas, IsFreeOfDivergenceBesideAFan) {
   EXPECT_TRUE(limit_row("F-11 divergence times the step, beside a fan", most * double(kStep), 1e-3, 1e-4));
 }
 
-// What flows out of a hole is as fast as what has fallen from the level: v^2 = 2 g h.
+// A jet out of a hole is as fast as a body that fell from the level: v^2 = 2 g h.
 TEST(Liquid, FlowsOutAsTorricelliSays) {
   World world = make_world();
   constexpr float kCell = 0.02f;

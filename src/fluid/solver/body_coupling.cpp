@@ -92,7 +92,7 @@ void scatter_seal(const BodyCoupling& coupling, const SolidMotion& solid, const 
   }
 }
 
-// What a pressure of 1 everywhere does to bodies that move, the other way round.
+// The push of a pressure of 1 everywhere on bodies that move, with the sign turned.
 void find_seals(BodyCoupling& coupling) {
   constexpr double kNone = 1.0e-9;  // of the sum of all magnitudes
   for (SolidMotion& solid : coupling.solids) {

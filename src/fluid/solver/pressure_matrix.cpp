@@ -37,7 +37,7 @@ void each_row(const PressureGrid& grid, int rows_y, int rows_z, TaskSystem& task
   });
 }
 
-// What a solid changes in a row, in coarser levels too, is seen at most this many rows away: a cell's transfer depends on cells of the next
+// A solid changes the matrix, in coarser levels too, at most this many rows away: a cell's transfer depends on cells of the next
 // level, and these on their faces.
 constexpr int kStaleReach = 3;
 

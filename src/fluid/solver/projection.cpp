@@ -167,7 +167,7 @@ void begin_bodies(const GasPass& pass) {
   const PressureGrid& finest = memory.matrix.levels[0];
   for (int axis = 0; axis < 3; ++axis) {
     memory.solid_velocity[axis] = pass.solids.velocity[axis];
-    // What the equation has of each face; sides of the box are not asked for.
+    // The share of each face in the equation; sides of the box are not asked for.
     const float* const face = finest.face[axis].data();
     const float square = pass.edge(axis) * pass.edge(axis);
     Array<float>& open = memory.open[axis];

@@ -21,7 +21,7 @@ struct FrameStiffness {
   Vec3W<W> sum, difference;
 };
 
-// What one law makes of a deformation gradient.
+// The answer of one law to a deformation gradient.
 template <int W>
 struct ElementResponse {
   Mat3W<W> stress;  // P
@@ -112,7 +112,7 @@ GYRE_INLINE Mat3W<W> corner_stiffness(const ElementResponse<W>& element, Vec3W<W
   return element.turn * inner * transpose(element.turn);
 }
 
-// What kTetLanes tetrahedra add, before it is added lane by lane.
+// The sums of kTetLanes tetrahedra, before they are added lane by lane.
 struct TetOutput {
   alignas(64) float force[3][3][kTetLanes];  // on corners 1 to 3
   alignas(64) float blocks[kTetEdges][9][kTetLanes];

@@ -206,7 +206,7 @@ void add_gas(const SoftBody& body, SoftPass& pass, Arena& arena) {
   pass.volume_scale = float(scale);
 }
 
-// What gravity and the forces from outside give in the sub-step.
+// The impulses of gravity and of forces from outside in the sub-step.
 void find_impulses(const Particles& particles, const ImplicitSettings& settings, const VectorRows& impulses) {
   const float h = settings.step;
   for (int i = 0; i < particles.count; ++i) {

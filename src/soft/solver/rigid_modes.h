@@ -1,4 +1,4 @@
-// What keeps the momentum of a body that nothing holds.
+// Rigid modes keep the momentum of a body that nothing holds.
 #pragma once
 
 #include "soft/body/soft_body.h"

@@ -1,4 +1,4 @@
-// What the tests of soft bodies share.
+// Parts that the tests of soft bodies share.
 #pragma once
 
 #include "soft/body/soft_energy.h"

@@ -72,7 +72,7 @@ struct SoftTouch {
   std::uint32_t particle = 0;
 };
 
-// What events have told: known from contacts and places, so it is no state of its own.
+// The events that were told: they follow from contacts and places, so this is no state of its own.
 struct SoftReported {
   bool known = false;
   bool was_awake = false;        // when the step began
