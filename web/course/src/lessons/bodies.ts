@@ -118,7 +118,7 @@ export const inertia: Lesson = {
 export const friction: Lesson = {
   title: 'friction',
   sliders: [
-    slider('angle', 'Slope', 0, 45, 1, 30, '°'),
+    slider('angle', 'Slope', 0, 45, 1, 31, '°'),
     slider('rest', 'Static friction', 0, 1.2, 0.05, 0.6),
     slider('sliding', 'Dynamic friction', 0, 1.2, 0.05, 0.4),
   ],

@@ -108,7 +108,7 @@ export const finiteElements: Lesson = {
   title: 'finite elements',
   sliders: [
     choice('model', 'Model', models, 1),
-    slider('young', "Young's modulus, 10 to the power of", 5, 8, 0.25, 6.5, 'Pa'),
+    slider('young', "Young's modulus, 10 to the power of", 6.5, 8, 0.25, 7, 'Pa'),
     slider('poisson', "Poisson's ratio", 0, 0.45, 0.05, 0.3),
     slider('cells', 'Cells along the beam', 6, 30, 3, 15),
   ],
