@@ -2,9 +2,9 @@
 # Builds the guide and the course as a site into build/guide: open build/guide/index.html, also without a server or a network.
 #
 #   tools/build_guide.sh           with the live scenes, if the package for JavaScript is there or can be built (tools/build_web.sh)
-#   tools/build_guide.sh --text    without the live scenes
+#   tools/build_guide.sh --text    does not build the live scenes; they are in the site if they were built before
 #
-# The reference of the Python package needs a build of it: build/*/python/gyre. docs/decisions/guide-site.md tells why these tools.
+# It needs Debian's Sphinx, Furo, MyST and KaTeX, and installs them. docs/decisions/guide-site.md tells why these tools.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/setup.sh
@@ -20,12 +20,13 @@ if [ "${1-}" != --text ]; then
   if [ ! -e $viewer/node_modules/.package-lock.json ] || [ $viewer/package-lock.json -nt $viewer/node_modules/.package-lock.json ]; then
     (cd $viewer && npm ci --no-audit --no-fund --loglevel=error) >&2
   fi
-  newest=$(find web/course/src $viewer/src $viewer/vite.course.config.ts web/gyre-physics/dist -type f -newer web/course/dist/live.js 2>/dev/null | head -1 || true)
-  if [ ! -e web/course/dist/live.js ] || [ -n "$newest" ]; then
-    (cd $viewer && node_modules/.bin/tsc --noEmit -p ../course && node_modules/.bin/vite build --logLevel warn -c vite.course.config.ts) >&2
+  live=web/course/dist/live.js
+  if [ ! -e $live ] || [ -n "$(find web/course/src $viewer/src $viewer/vite.course.config.ts web/gyre-physics/dist -type f -newer $live -print -quit)" ]; then
+    (cd $viewer && node_modules/.bin/tsc --noEmit -p ../course && node_modules/.bin/vite build --logLevel error -c vite.course.config.ts) >&2
   fi
 fi
 
+mkdir -p build
 stubs=build/guide-stubs.pyi
 $python capi/generate.py --stubs $stubs
 PYTHONPATH=tools/guide $python tools/guide/stage.py build/guide-source build/guide $stubs

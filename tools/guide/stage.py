@@ -22,17 +22,23 @@ from pygments.util import ClassNotFound
 
 import reference
 import scene_reference
+from lines import line_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 # A fenced block, a link, or code in a line: whatever begins first. Only links are rewritten.
 TOKEN = re.compile(r"^[ \t]*```.*?^[ \t]*```|(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^()\s]+)\)|(`+)[^`].*?\4", re.M | re.S)
 PICTURES = (".png", ".gif", ".svg", ".webp", ".jpg")
+LIVE = ROOT / "web" / "course" / "dist" / "live.js"
 LARGEST = 400_000  # bytes of a file that is shown
+# What browsers do differently without it, as far as Furo minds.
+NORMALIZED = "html{line-height:1.15;-webkit-text-size-adjust:100%}body{margin:0}code,kbd,pre,samp{font-family:monospace,monospace;font-size:1em}"
 KATEX = Path("/usr/share/javascript/katex")
 RENDER = """;
 addEventListener("DOMContentLoaded", () => {
-  const delimiters = [{left: "\\\\(", right: "\\\\)", display: false}, {left: "\\\\[", right: "\\\\]", display: true}];
-  for (const element of document.querySelectorAll(".math")) renderMathInElement(element, {delimiters, throwOnError: false});
+  for (const element of document.querySelectorAll(".math")) {
+    const [, mark, equation] = element.textContent.match(/^\\s*\\\\([([])([^]*)\\\\[)\\]]\\s*$/) ?? [];
+    if (equation) katex.render(equation, element, {displayMode: mark === "[", throwOnError: false});
+  }
 });
 """
 
@@ -56,25 +62,6 @@ def pages():
     listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"], cwd=ROOT, capture_output=True, text=True, check=False)
     names = listed.stdout.split() if listed.returncode == 0 else [str(path.relative_to(ROOT)) for path in ROOT.rglob("*.md")]
     return sorted(ROOT / name for name in names if is_page(ROOT / name) and (ROOT / name).exists())
-
-
-def line_of(text, name):
-    """The line in which a name is defined, else the first that has it; 0 if there is none."""
-    name = name.removesuffix("()").rsplit("::", 1)[-1]
-    lines = text.split("\n")
-    word = re.compile(rf"\b{re.escape(name)}\b")
-    having = [i for i, line in enumerate(lines, 1) if word.search(line) and not line.lstrip().startswith(("//", "*", "#include"))]
-    # A definition: no call or declaration, so the statement that begins here does not end with a semicolon before a brace opens.
-    for i in having:
-        line = lines[i - 1]
-        if re.search(rf"\b(struct|class|enum class|namespace|using|#define)\s+(\w+::)*{re.escape(name)}\b", line) and not line.rstrip().endswith(name + ";"):
-            return i
-        if re.match(r"^(template|static|inline|constexpr|export|async|function|\w[\w:<>,&* ]*\s)", line.lstrip()) and re.search(rf"\b{re.escape(name)}\s*\(", line):
-            rest = " ".join(lines[i - 1:i + 6])
-            begin, end = rest.find("{"), rest.find(";")
-            if begin >= 0 and (end < 0 or begin < end) and not re.match(r"\s*(return|if|for|while|else|case)\b", line):
-                return i
-    return having[0] if having else 0
 
 
 class Site:
@@ -126,7 +113,9 @@ class Site:
         return TOKEN.sub(one, text)
 
     def live(self, page, text):
-        """A live scene needs its script on the page."""
+        """A live scene needs its script on the page, if that was built."""
+        if not LIVE.exists():
+            return text
         depth = len(page.relative_to(ROOT).parts) - 1
         script = f'<script defer src="{"../" * depth}_static/live.js"></script>'
         return re.sub(r'(<div data-lesson="\w+">.*?</div>)', rf"\1\n{script}", text, flags=re.S)
@@ -210,12 +199,28 @@ def static_files(static):
         style = '@import "katex.min.css";\n' + style
         shutil.copyfile(KATEX / "katex.min.css", static / "katex.min.css")
         shutil.copytree(KATEX / "fonts", static / "fonts", symlinks=False)
-        parts = [(KATEX / name).read_text(encoding="utf-8") for name in ("katex.min.js", "contrib/auto-render.js")]
-        (static / "equations.js").write_text(";\n".join(parts) + RENDER, encoding="utf-8")
+        (static / "equations.js").write_text((KATEX / "katex.min.js").read_text(encoding="utf-8") + RENDER, encoding="utf-8")
     (static / "style.css").write_text(style, encoding="utf-8")
-    script = ROOT / "web" / "course" / "dist" / "live.js"
-    if script.exists():
-        shutil.copyfile(script, static / "live.js")
+    theme_files(static)
+    if LIVE.exists():
+        shutil.copyfile(LIVE, static / "live.js")
+
+
+def theme_files(static):
+    """Debian's Furo loads one of its scripts as a module and one of its styles from the server: both made whole, for pages that are files."""
+    try:
+        import furo
+    except ImportError:
+        return
+    theme = Path(furo.__file__).parent / "theme" / "furo" / "static"
+    script = (theme / "scripts" / "furo.js").read_text(encoding="utf-8")
+    if script.startswith("import Gumshoe"):
+        (static / "scripts").mkdir()
+        gumshoe = (theme / "scripts" / "gumshoe-patched.js").read_text(encoding="utf-8")
+        (static / "scripts" / "furo.js").write_text(gumshoe + "\n;" + script.split("\n", 1)[1], encoding="utf-8")
+    look = (theme / "styles" / "furo.css").read_text(encoding="utf-8")
+    (static / "styles").mkdir()
+    (static / "styles" / "furo.css").write_text(re.sub(r"@import url\(/[^)]*\);", NORMALIZED, look), encoding="utf-8")
 
 
 def take_over(fresh, folder):
