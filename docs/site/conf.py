@@ -1,8 +1,10 @@
 """Settings of Sphinx for the guide's site; tools/build_guide.sh runs it. docs/decisions/guide-site.md tells why these tools."""
 
+import re
 from pathlib import Path
 
 from pygments.lexers import JavascriptLexer
+from sphinx.environment.adapters.toctree import TocTree
 
 project = "Gyre"
 author = "the authors of Gyre"
@@ -33,6 +35,21 @@ def without_orphans(app, docname, source):
         source[0] = "---\norphan: true\n---\n" + source[0] if not source[0].startswith("---") else source[0]
 
 
+def quick_navigation(app, pagename, templatename, context, doctree):
+    """Makes the table of contents beside the pages once, instead of anew for each: half of the time of a build."""
+    if "toctree" not in context:
+        return
+    if not hasattr(app, "whole_tree"):
+        tree = TocTree(app.env).get_toctree_for("index", app.builder, False, titles_only=True, includehidden=True, maxdepth=-1)
+        app.whole_tree = app.builder.render_partial(tree)["fragment"]
+    here = app.builder.get_target_uri(pagename)
+    marked = re.sub(rf'<li class="(toctree-l\d)"><a class="reference internal" href="{re.escape(here)}">',
+                    lambda match: f'<li class="{match[1]} current"><a class="current reference internal" href="{here}">', app.whole_tree)
+    page = re.sub(r'href="(?!https?:|#)', 'href="' + "../" * pagename.count("/"), marked)
+    context["toctree"] = lambda **kwargs: page
+
+
 def setup(app):
+    app.connect("html-page-context", quick_navigation, priority=400)  # before the theme asks for it
     app.add_lexer("jsonc", JavascriptLexer)  # JSON with comments
     app.connect("source-read", without_orphans)
