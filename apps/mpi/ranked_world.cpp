@@ -314,12 +314,17 @@ void RankedWorld::step() {
 }
 
 void RankedWorld::rebalance() {
+  std::map<std::uint64_t, double> own;
   for (const std::uint32_t index : here_) {
     const Unit& unit = units_[index];
     if (unit.role != Role::owned) continue;
-    Packet& to = out_[0];
-    to.put(blocks_.key_of(replica_motion(world(), local_[unit.bodies[0]]).center));
-    to.put(is_awake(unit) ? double(unit.bodies.size()) : kSleepingWeight * double(unit.bodies.size()));
+    const double bodies = double(unit.bodies.size());
+    own[blocks_.key_of(replica_motion(world(), local_[unit.bodies[0]]).center)] +=
+        is_awake(unit) ? bodies : kSleepingWeight * bodies;
+  }
+  for (const auto& [key, weight] : own) {
+    out_[0].put(key);
+    out_[0].put(weight);
   }
   std::vector<Packet>& in = transport_.exchange(out_);
   if (transport_.rank() == 0) {
