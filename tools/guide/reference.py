@@ -125,10 +125,11 @@ def write_cpp(include, folder):
         (folder / f"{page}.md").write_text(cpp_page(name, there[name]), encoding="utf-8")
         rows.append(f"| [gyre/{name}.h]({page}.md) | {prose(summary(opening_comment(there[name].read_text(encoding='utf-8'))))} |")
     listing = "\n".join(name.replace("/", "_") for name in order)
+    brought = re.findall(r"#include <gyre/([\w/]+)\.h>", (include / "gyre" / "gyre.h").read_text(encoding="utf-8"))
+    alone = ", ".join(f"`{name}.h`" for name in order if name not in brought)
     (folder / "index.md").write_text(
-        "# C++ reference\n\n`#include <gyre/gyre.h>` brings all headers but those of the kit, `decomposition.h`, `replay.h`, `track.h`, `debug.h` and `memory.h`."
-        " The text of each page is that of the header.\n\n| header | holds |\n|---|---|\n" + "\n".join(rows) +
-        f"\n\n```{{toctree}}\n:hidden:\n:maxdepth: 1\n\n{listing}\n```\n", encoding="utf-8")
+        f"# C++ reference\n\n`#include <gyre/gyre.h>` brings all of these headers but {alone}. The text of each page is that of the header.\n\n"
+        "| header | holds |\n|---|---|\n" + "\n".join(rows) + f"\n\n```{{toctree}}\n:hidden:\n:maxdepth: 1\n\n{listing}\n```\n", encoding="utf-8")
     return order
 
 
