@@ -38,7 +38,7 @@ def prose(text):
 def summary(text):
     """The first sentence."""
     text = " ".join(text.split())
-    return re.split(r"(?<=[.:])\s", text, maxsplit=1)[0]
+    return re.split(r"(?<=\.)\s", text, maxsplit=1)[0]
 
 
 def code(text):
