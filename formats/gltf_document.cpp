@@ -1,6 +1,8 @@
 // glTF documents. The format: Khronos Group, "glTF 2.0 Specification". See gltf_document.h.
 #include "formats/gltf_document.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace gyre {
@@ -94,6 +96,13 @@ double component_value(const char* at, Component component, bool normalized) {
       component.kind == 'i' && double(bits) >= 0.5 * span ? double(bits) - span : double(bits);
   if (!normalized) return value;
   return component.kind == 'i' ? max(value / (0.5 * span - 1.0), -1.0) : value / (span - 1.0);
+}
+
+// One of length 1, as far as floats can tell, stays as it is, bit by bit.
+Quat unit_quaternion(const std::vector<double>& q) {
+  const double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const Quat out{float(q[0]), float(q[1]), float(q[2]), float(q[3])};
+  return absolute(size - 1.0) < 1.0e-6 ? out : normalized(out);
 }
 
 }  // namespace
@@ -210,9 +219,32 @@ const Json* GltfDocument::extension(int node, const char* name) const {
   return all == nullptr ? nullptr : json_member(*all, name);
 }
 
+const Json* GltfDocument::gyre_extras(int node, const char* name) const {
+  const Json* const extras = json_member(json_["nodes"][std::size_t(node)], "extras");
+  const Json* const gyre = extras == nullptr ? nullptr : json_member(*extras, "gyre");
+  const Json* const out = gyre == nullptr ? nullptr : json_member(*gyre, name);
+  return out != nullptr && out->is_object() ? out : nullptr;
+}
+
+std::optional<Transform> GltfDocument::rigid_between(int above, int node) const {
+  std::vector<int> chain;
+  if (!nodes_[std::size_t(above)].pose) return std::nullopt;
+  for (; node != above; node = nodes_[std::size_t(node)].parent) {
+    if (node < 0 || !nodes_[std::size_t(node)].local) return std::nullopt;
+    chain.push_back(node);
+  }
+  Transform out;
+  for (std::size_t i = chain.size(); i-- > 0;) {
+    const Transform& local = *nodes_[std::size_t(chain[i])].local;
+    out = i + 1 == chain.size() ? local : out * local;
+  }
+  return out;
+}
+
 void GltfDocument::place_node(int node, int parent, const Json& json, const std::string& pointer) {
   Mat3 linear;
   DVec3 translation;
+  std::optional<Transform> local;
   if (const auto m = json_numbers(json, "matrix", 16); !m.empty()) {
     const auto column = [&](std::size_t i) {
       return Vec3{float(m[4 * i]), float(m[4 * i + 1]), float(m[4 * i + 2])};
@@ -220,13 +252,20 @@ void GltfDocument::place_node(int node, int parent, const Json& json, const std:
     linear = {column(0), column(1), column(2)};
     translation = {m[12], m[13], m[14]};
   } else {
-    if (const auto q = json_numbers(json, "rotation", 4); !q.empty())
-      linear = to_matrix(normalized(Quat{float(q[0]), float(q[1]), float(q[2]), float(q[3])}));
+    Quat rotation;
+    Vec3 scale{1, 1, 1};
+    if (const auto q = json_numbers(json, "rotation", 4); !q.empty()) rotation = unit_quaternion(q);
     if (const auto s = json_numbers(json, "scale", 3); !s.empty())
-      linear = linear * diagonal({float(s[0]), float(s[1]), float(s[2])});
+      scale = {float(s[0]), float(s[1]), float(s[2])};
     if (const auto t = json_numbers(json, "translation", 3); !t.empty()) translation = {t[0], t[1], t[2]};
+    linear = to_matrix(rotation) * diagonal(scale);
+    if (scale == Vec3{1, 1, 1}) local = Transform{to_float(translation), rotation};
   }
   GltfNode& out = nodes_[std::size_t(node)];
+  out.local = local;
+  if (local && parent < 0) out.pose = Pose{translation, local->orientation};
+  if (local && parent >= 0 && nodes_[std::size_t(parent)].pose)
+    out.pose = *nodes_[std::size_t(parent)].pose * *local;
   out.parent = parent;
   out.name = json_text(json, "name", "node_" + std::to_string(node));
   out.linear = linear;
