@@ -194,9 +194,15 @@ void GltfDocument::open() {
     for (const Json& name : *required) {
       const std::string word = name.is_string() ? name.get<std::string>() : "";
       const bool known = word == "KHR_physics_rigid_bodies" || word == "KHR_implicit_shapes" ||
-                         word == "KHR_collision_shapes" || word == "KHR_mesh_quantization" ||
-                         word.rfind("KHR_materials_", 0) == 0 || word.rfind("KHR_texture_", 0) == 0;
-      if (!known) fail("/extensionsRequired", "requires \"" + word + "\", which is not read");
+                         word == "KHR_collision_shapes" || word == "KHR_mesh_quantization";
+      // Extensions of pictures and sounds move nothing.
+      constexpr const char* kOfLooks[] = {"KHR_lights_",    "KHR_materials_",  "KHR_texture_",
+                                          "KHR_audio",      "EXT_lights_",     "EXT_texture_",
+                                          "KHR_animation_", "KHR_xmp",         "MSFT_texture",
+                                          "KHR_node_",      "KHR_environment", "OMI_environment"};
+      const bool is_look = std::any_of(std::begin(kOfLooks), std::end(kOfLooks),
+                                       [&](const char* start) { return word.rfind(start, 0) == 0; });
+      if (!known && !is_look) fail("/extensionsRequired", "requires \"" + word + "\", which is not read");
     }
   }
 }

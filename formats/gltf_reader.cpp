@@ -176,6 +176,11 @@ void GltfReader::set_motion(SceneBody& body, const Json& motion) {
   const Mat3 turn =
       q.empty() ? Mat3{} : to_matrix(normalized(Quat{float(q[0]), float(q[1]), float(q[2]), float(q[3])}));
   body.def.inertia = to_symmetric(turn * diagonal(moments) * transpose(turn));
+  if (check_inertia(*body.def.inertia)) {
+    import_.findings.left_out("inertia that no body has, replaced by its mean moment");
+    const float mean = (moments.x + moments.y + moments.z) / 3.0f;
+    body.def.inertia = Sym3{mean, mean, mean, 0, 0, 0};
+  }
   if (!body.def.center_of_mass) body.def.center_of_mass = Vec3{};
 }
 
