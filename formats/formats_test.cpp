@@ -273,6 +273,24 @@ TEST(Urdf, OptionsFreeTheBaseAndKeepFixedJoints) {
   EXPECT_EQ(open_example("pendulum.urdf", options).bodies[0].filter, Filter{});
 }
 
+TEST(Urdf, AnInertiaOfZeroIsThatOfTheShapesAndFixedJointsNeedNoAxis) {
+  const SceneResult<Scene> scene = import_scene(
+      R"(<robot name="r"><link name="a"/><link name="b"><inertial><mass value="6"/><origin xyz="0 0 1"/>
+        <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>
+        <collision><geometry><box size="1 2 3"/></geometry></collision></link><link name="c"/>
+      <joint name="j" type="spherical"><parent link="a"/><child link="b"/></joint>
+      <joint name="k" type="fixed"><axis xyz="0 0 0"/><parent link="b"/><child link="c"/></joint></robot>)",
+      FileFormat::urdf, "a.urdf");
+  ASSERT_TRUE(scene) << scene.error().text();
+  const BodyDef& body = scene->bodies[index_of(*scene, "b")].def;
+  EXPECT_FLOAT_EQ(body.mass.value_or(0), 6);
+  EXPECT_FLOAT_EQ(body.inertia->xx, 6.5f);
+  EXPECT_FLOAT_EQ(body.inertia->zz, 2.5f);
+  EXPECT_EQ(*body.center_of_mass, (Vec3{0, 0, 1}));
+  EXPECT_TRUE(std::holds_alternative<BallDef>(joint_in(*scene, "j").def));
+  EXPECT_EQ(scene->notes.size(), 1u);
+}
+
 SceneResult<Scene> import_xml(const std::string& text, const ImportOptions& options = {}) {
   return import_scene(text, FileFormat::urdf, "a.urdf", options);
 }
