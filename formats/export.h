@@ -26,4 +26,7 @@ SceneResult<ExportedFile> export_gltf(const Scene& scene, const std::string& fil
 // A recording as an animated file: a node for each body, with one key for each frame in which it moved.
 SceneResult<ExportedFile> export_gltf(PoseTrack& track, const std::string& file, bool binary);
 
+// USD text (.usda) with the schema UsdPhysics: bodies, masses, shapes, materials, and joints of the kinds that it has.
+SceneResult<ExportedFile> export_usd(const Scene& scene, const std::string& file);
+
 }  // namespace gyre

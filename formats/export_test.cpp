@@ -3,6 +3,7 @@
 #include "formats/gltf_document.h"
 #include "formats/import.h"
 #include "formats/import_parts.h"
+#include "formats/vtk_writer.h"
 #include "scene/scene_labels.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_runner.h"
@@ -144,12 +145,7 @@ TEST(ExportGltf, AnEditInAnotherProgramCounts) {
   EXPECT_TRUE(found);
 }
 
-// The numbers of an accessor of a .gltf file with its buffer in it.
-std::vector<float> floats_of(Json json, const Json& index, std::size_t width) {
-  const Json& accessor = json["accessors"][index.get<std::size_t>()];
-  const Json& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
-  const std::string uri = json["buffers"][0]["uri"];
-  const std::string text = uri.substr(uri.find(',') + 1);
+std::string from_base64(const std::string& text) {
   std::string bytes;
   std::uint32_t bits = 0;
   int count = 0;
@@ -164,6 +160,15 @@ std::vector<float> floats_of(Json json, const Json& index, std::size_t width) {
       bytes += char(bits >> count & 0xffu);
     }
   }
+  return bytes;
+}
+
+// The numbers of an accessor of a .gltf file with its buffer in it.
+std::vector<float> floats_of(Json json, const Json& index, std::size_t width) {
+  const Json& accessor = json["accessors"][index.get<std::size_t>()];
+  const Json& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+  const std::string uri = json["buffers"][0]["uri"];
+  const std::string bytes = from_base64(uri.substr(uri.find(',') + 1));
   std::vector<float> out(accessor["count"].get<std::size_t>() * width);
   std::memcpy(out.data(), bytes.data() + view["byteOffset"].get<std::size_t>(), 4 * out.size());
   return out;
@@ -211,6 +216,105 @@ TEST(ExportGltf, ARecordingBecomesKeysOfItsPoses) {
     }
   }
   EXPECT_EQ(seen, 2);
+}
+
+// ------------------------------------------------------------------------------------------------------------------- USD
+
+TEST(ExportUsd, BodiesShapesAndJointsArePrims) {
+  const SceneResult<Scene> scene = read_scene(kScene);
+  ASSERT_TRUE(scene);
+  const SceneResult<ExportedFile> file = export_usd(*scene, "scene");
+  ASSERT_TRUE(file) << file.error().text();
+  const std::string& text = file->bytes;
+  EXPECT_EQ(text.rfind("#usda 1.0", 0), 0u);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '{'), std::count(text.begin(), text.end(), '}'));
+  for (const char* expected :
+       {"def Xform \"arm\" (prepend apiSchemas = [\"PhysicsRigidBodyAPI\", \"PhysicsMassAPI\"])",
+        "float physics:mass = 3\n", "point3f physics:centerOfMass = (0.1, 0, 0)",
+        "vector3f physics:velocity = (1, 2, 3)", "quatf xformOp:orient = (0.8, 0, 0.6, 0)",
+        "bool physics:kinematicEnabled = 1", "def Cone \"bob_shape\"", "def Plane \"ground_shape\"",
+        "def Mesh \"ground_shape_2\"", "int[] faceVertexCounts = [3, 3, 3, 3]",
+        "float physics:restitution = 0.5", "rel material:binding:physics = </World/material_rubber>",
+        "def PhysicsRevoluteJoint", "float physics:upperLimit = 28.6478897",
+        "rel physics:body1 = </World/arm>", "float physics:minDistance = 1.5",
+        "float physics:gravityMagnitude = 9.81"})
+    EXPECT_NE(text.find(expected), std::string::npos) << expected << "\n" << text;
+  ASSERT_EQ(file->notes.size(), 1u);
+  EXPECT_NE(file->notes[0].find("filter (1)"), std::string::npos) << file->notes[0];
+}
+
+// ------------------------------------------------------------------------------------------------------------------- VTK
+
+// The numbers of an array of a VTK file, whose length in bytes stands before them.
+template <class T>
+std::vector<T> vtk_array(const std::string& file, const std::string& name) {
+  const std::size_t tag = file.find(" Name=\"" + name + "\"");
+  if (tag == std::string::npos) {
+    ADD_FAILURE() << "no array " << name;
+    return {};
+  }
+  const std::size_t begin = file.find('>', tag) + 1;
+  const std::string bytes = from_base64(file.substr(begin, file.find('<', begin) - begin));
+  std::uint64_t size = 0;
+  std::memcpy(&size, bytes.data(), 8);
+  EXPECT_EQ(size, bytes.size() - 8) << name;
+  std::vector<T> out(std::size_t(size) / sizeof(T));
+  std::memcpy(out.data(), bytes.data() + 8, out.size() * sizeof(T));
+  return out;
+}
+
+constexpr const char* kVtkScene = R"({"gyre_scene": 1, "world": {"time_step": 0.01},
+  "bodies": [{"name": "box", "position": [0, 5, 0], "linear_velocity": [1, 0, 0], "shapes": [{"type": "box", "half_extents": [0.5, 1, 2]}]}],
+  "ropes": [{"name": "line", "points": [[9, 3, 0], [9, 5, 0]], "segments": 4, "radius": 0.01, "linear_density": 1}],
+  "soft_bodies": [{"name": "tetra", "vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], "tetrahedra": [[0,1,2,3]], "young_modulus": 1e5, "position": [20, 9, 0]}],
+  "gases": [{"name": "air & smoke", "bounds": [[-40, 0, 0], [-38, 3, 1]], "cells": [2, 3, 1]}],
+  "liquids": [{"name": "water", "bounds": [[40, 0, 0], [41, 1, 1]], "cell_size": 0.25, "fill": [{"box": [[40, 0, 0], [41, 0.5, 1]]}]}]})";
+
+TEST(ExportVtk, FilesHoldTheStateOfEveryKind) {
+  SceneResult<Scene> scene = read_scene(kVtkScene);
+  ASSERT_TRUE(scene) << scene.error().text();
+  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), "test");
+  ASSERT_TRUE(runner) << runner.error().text();
+  VtkSeries series;
+  EXPECT_EQ(series.add_state(*runner).size(), 6u);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(runner->step());
+  std::map<std::string, std::string> files;
+  for (const VtkFile& file : series.add_state(*runner)) files[file.name] = file.bytes;
+  const World& world = runner->world();
+
+  const std::string& bodies = files.at("bodies_0_000003.vtp");
+  const auto places = vtk_array<double>(bodies, "Points");
+  const auto corners = vtk_array<std::int64_t>(bodies, "connectivity");
+  EXPECT_EQ(places.size(), 3u * 24);
+  EXPECT_EQ(corners.size(), 3u * 12);
+  EXPECT_EQ(vtk_array<std::int32_t>(bodies, "body"), std::vector<std::int32_t>(12, 0));
+  EXPECT_NEAR(*std::max_element(places.begin(), places.end()), world.pose(runner->bodies()[0]).position.y + 1,
+              1e-5);
+  EXPECT_FLOAT_EQ(vtk_array<float>(bodies, "velocity")[0], 1.0f);
+
+  const std::string& line = files.at("line_1_000003.vtp");
+  EXPECT_EQ(vtk_array<double>(line, "Points")[1], world.vertices(runner->ropes()[0]).position(0).y);
+  EXPECT_EQ(vtk_array<std::int64_t>(line, "offsets"), (std::vector<std::int64_t>{5}));
+  EXPECT_NE(line.find("NumberOfLines=\"1\""), std::string::npos);
+
+  const std::string& tetra = files.at("tetra_2_000003.vtu");
+  EXPECT_EQ(vtk_array<std::int64_t>(tetra, "connectivity"), (std::vector<std::int64_t>{0, 1, 2, 3}));
+  EXPECT_EQ(vtk_array<std::uint8_t>(tetra, "types"), (std::vector<std::uint8_t>{10}));
+
+  const std::string& gas = files.at("air___smoke_3_000003.vti");
+  EXPECT_NE(gas.find("WholeExtent=\"0 2 0 3 0 1\" Origin=\"-40 0 0\" Spacing=\"1 1 1\""), std::string::npos)
+      << gas;
+  EXPECT_EQ(vtk_array<float>(gas, "temperature"), std::vector<float>(6, 293.15f));
+  EXPECT_EQ(vtk_array<float>(gas, "velocity").size(), 18u);
+
+  const auto water = vtk_array<double>(files.at("water_4_000003.vtp"), "Points");
+  EXPECT_EQ(water.size(), 3 * world.liquid_particles(runner->liquids()[0], {}, {}));
+  EXPECT_GT(vtk_array<std::int64_t>(files.at("water_surface_5_000003.vtp"), "connectivity").size(), 20u);
+
+  const std::string list = series.collection("run").bytes;
+  EXPECT_NE(list.find("timestep=\"0.03\" part=\"3\" name=\"air___smoke\" file=\"air___smoke_3_000003.vti\""),
+            std::string::npos)
+      << list;
 }
 
 }  // namespace

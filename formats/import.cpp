@@ -124,6 +124,8 @@ std::string Import::read_file(const std::string& uri, const std::string& base, i
       place = fs::path(root) / path;
     }
   }
+  // Without an option, the folder of the file stands for the package's parent.
+  if (is_package && place.empty() && fs::exists(roots[0] / path, error)) place = roots[0] / path;
   if (is_package && place.empty())
     fail("found \"" + uri + "\", but --package names no folder for \"" + package + "\" (as in --package " +
              package + "=FOLDER)",

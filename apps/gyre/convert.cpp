@@ -63,11 +63,13 @@ int run_convert(const ConvertOptions& options) {
   if (has_ending(options.in, ".gyrec")) return write_file(options.out, convert_recording(options));
   const bool is_binary = has_ending(options.out, ".glb"),
              is_gltf = is_binary || has_ending(options.out, ".gltf");
-  const SceneResult<Scene> scene =
-      is_gltf ? open_split_scene(options.in, options.import) : open_scene(options.in, options.import);
+  const bool is_usd = has_ending(options.out, ".usda");
+  const SceneResult<Scene> scene = is_gltf || is_usd ? open_split_scene(options.in, options.import)
+                                                     : open_scene(options.in, options.import);
   if (!scene) return refuse(scene.error().text());
   for (const std::string& note : scene->notes) std::fprintf(stderr, "gyre: %s\n", note.c_str());
   if (is_gltf) return write_file(options.out, export_gltf(*scene, options.in, is_binary));
+  if (is_usd) return write_file(options.out, export_usd(*scene, options.in));
   ExportedFile text;
   text.bytes = write_scene(*scene, {.inline_meshes = true});
   return write_file(options.out, text);
@@ -85,9 +87,9 @@ void add_convert(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("");
   command
-      ->add_option(
-          "OUT", options->out,
-          "The result: a scene file (*.gyre.json), or glTF (*.glb, *.gltf), of a recording an animated one")
+      ->add_option("OUT", options->out,
+                   "The result: a scene file (*.gyre.json), glTF (*.glb, *.gltf; of a recording an animated "
+                   "one), or USD (*.usda)")
       ->required()
       ->type_name("");
   add_import_options(*command, options->import);
