@@ -7,7 +7,8 @@
 #include "scene/scene_labels.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_runner.h"
-#include "tests/memory_sink.h"
+
+#include <gyre/replay.h>
 
 #include <gtest/gtest.h>
 
@@ -174,10 +175,18 @@ std::vector<float> floats_of(Json json, const Json& index, std::size_t width) {
   return out;
 }
 
+struct RecordingSink final : ByteSink {
+  bool write(std::span<const std::byte> more) override {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+    return true;
+  }
+  std::vector<std::byte> bytes;
+};
+
 TEST(ExportGltf, ARecordingBecomesKeysOfItsPoses) {
   SceneResult<SceneRunner> runner = SceneRunner::create(scene_file("soft/flag.gyre.json"), "test");
   ASSERT_TRUE(runner);
-  MemorySink sink;
+  RecordingSink sink;
   const BodyId pebble = runner->world().add_body({.pose = {{1, 9, 2}, {}}, .angular_velocity = {3, 0, 0}},
                                                  {ShapeDef{.geometry = Box{{0.1f, 0.2f, 0.3f}}}});
   Recorder recorder(runner->world(), sink, {.commands = false});

@@ -22,7 +22,8 @@ struct GltfMaterial {
 
 class GltfReader {
  public:
-  explicit GltfReader(Import& import) : import_(import), document_(import), shapes_(import, document_) {}
+  explicit GltfReader(Import& import)
+      : import_(import), document_(import), shapes_(import, document_), exact_(import.exact) {}
   void read();
 
  private:
@@ -58,7 +59,7 @@ class GltfReader {
       motion_of_node_;        // the nearest node that is a body of its own, itself included; -1: none
   std::set<int> has_filter_;  // bodies
   std::set<int> exact_bodies_;
-  GltfExact exact_;
+  GltfExact& exact_;
 };
 
 const Json& GltfReader::physics_item(const char* section, std::int64_t index,
@@ -546,7 +547,6 @@ void GltfReader::read() {
   read_materials();
   add_bodies();
   add_joints();
-  if (!exact_.empty()) import_.refine = [exact = exact_](Json& scene) { exact.put_into(scene); };
 }
 
 }  // namespace

@@ -36,9 +36,9 @@ bool ends_with(std::string_view path, std::string_view end) {
 // The scene as the scene reader makes it from its text, so that all of its checks and limits hold for imported files too.
 Scene checked(Import& import) {
   std::string text = write_scene(import.scene, {.inline_meshes = true});
-  if (import.refine) {
+  if (!import.exact.empty()) {
     Json json = Json::parse(text);
-    import.refine(json);
+    import.exact.put_into(json);
     text = json.dump();
   }
   ReadOptions options;

@@ -2,11 +2,10 @@
 #pragma once
 
 #include "formats/findings.h"
+#include "formats/gltf_exact.h"
 #include "formats/import.h"
-#include "scene/json_document.h"
 #include "scene/mesh_file.h"
 
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -24,8 +23,7 @@ struct Import {
   std::set<std::string> body_names{}, joint_names{}, mesh_names{};
   std::map<std::string, int> meshes{};  // index in the scene by file and scale
   std::size_t mesh_bytes = 0;           // of all files that were read
-  // Changes the scene as JSON before it is checked; may be empty.
-  std::function<void(Json&)> refine{};
+  GltfExact exact{};                    // goes into the scene before it is checked
 
   [[noreturn]] void fail(std::string message, int line = 0) const;
   // The name itself if it is free, else with a number.
