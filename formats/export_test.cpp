@@ -238,7 +238,8 @@ TEST(ExportUsd, BodiesShapesAndJointsArePrims) {
   EXPECT_EQ(text.rfind("#usda 1.0", 0), 0u);
   EXPECT_EQ(std::count(text.begin(), text.end(), '{'), std::count(text.begin(), text.end(), '}'));
   for (const char* expected :
-       {"def Xform \"arm\" (prepend apiSchemas = [\"PhysicsRigidBodyAPI\", \"PhysicsMassAPI\"])",
+       {"def Xform \"arm\" (\n        prepend apiSchemas = [\"PhysicsRigidBodyAPI\", \"PhysicsMassAPI\"]\n   "
+        " )\n    {",
         "float physics:mass = 3\n", "point3f physics:centerOfMass = (0.1, 0, 0)",
         "vector3f physics:velocity = (1, 2, 3)", "quatf xformOp:orient = (0.8, 0, 0.6, 0)",
         "bool physics:kinematicEnabled = 1", "def Cone \"bob_shape\"", "def Plane \"ground_shape\"",

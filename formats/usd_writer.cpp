@@ -67,8 +67,11 @@ class UsdWriter {
 };
 
 void UsdWriter::begin(const std::string& type, const std::string& name, const std::string& schemas) {
-  line("def " + type + " \"" + name + "\"" +
-       (schemas.empty() ? "" : " (prepend apiSchemas = [" + schemas + "])"));
+  line("def " + type + " \"" + name + "\"" + (schemas.empty() ? "" : " ("));
+  if (!schemas.empty()) {
+    line("    prepend apiSchemas = [" + schemas + "]");
+    line(")");
+  }
   line("{");
   ++depth_;
 }
