@@ -273,6 +273,24 @@ TEST(Urdf, OptionsFreeTheBaseAndKeepFixedJoints) {
   EXPECT_EQ(open_example("pendulum.urdf", options).bodies[0].filter, Filter{});
 }
 
+TEST(Urdf, AnInertiaOfZeroIsThatOfTheShapesAndFixedJointsNeedNoAxis) {
+  const SceneResult<Scene> scene = import_scene(
+      R"(<robot name="r"><link name="a"/><link name="b"><inertial><mass value="6"/><origin xyz="0 0 1"/>
+        <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>
+        <collision><geometry><box size="1 2 3"/></geometry></collision></link><link name="c"/>
+      <joint name="j" type="spherical"><parent link="a"/><child link="b"/></joint>
+      <joint name="k" type="fixed"><axis xyz="0 0 0"/><parent link="b"/><child link="c"/></joint></robot>)",
+      FileFormat::urdf, "a.urdf");
+  ASSERT_TRUE(scene) << scene.error().text();
+  const BodyDef& body = scene->bodies[index_of(*scene, "b")].def;
+  EXPECT_FLOAT_EQ(body.mass.value_or(0), 6);
+  EXPECT_FLOAT_EQ(body.inertia->xx, 6.5f);
+  EXPECT_FLOAT_EQ(body.inertia->zz, 2.5f);
+  EXPECT_EQ(*body.center_of_mass, (Vec3{0, 0, 1}));
+  EXPECT_TRUE(std::holds_alternative<BallDef>(joint_in(*scene, "j").def));
+  EXPECT_EQ(scene->notes.size(), 1u);
+}
+
 SceneResult<Scene> import_xml(const std::string& text, const ImportOptions& options = {}) {
   return import_scene(text, FileFormat::urdf, "a.urdf", options);
 }
@@ -405,6 +423,75 @@ TEST(Mjcf, DamagedFilesAreRefused) {
   for (int i = 0; i < 400; ++i) deep += "<body>";
   for (int i = 0; i < 400; ++i) deep += "</body>";
   expect_refused("<mujoco><worldbody>" + deep + "</worldbody></mujoco>", "nested too deep");
+}
+
+// ------------------------------------------------------------------------------------------------------------- MuJoCo
+
+// Where the bodies of a model are after 2 s: the centre of mass (m) and the orientation (w, x, y, z) in the frame of the file, which has
+// z up. MuJoCo 3.14 (npm package @mujoco/mujoco) computed them with its RK4 integrator and steps of 0.2 ms.
+struct MujocoBody {
+  const char* name;
+  double center[3], orientation[4];
+};
+struct MujocoModel {
+  const char* xml;
+  std::vector<MujocoBody> bodies;
+};
+
+MujocoModel mujoco_pendulum() {
+  return {R"(<mujoco><option timestep="0.0002" integrator="RK4" gravity="0 0 -9.81"/><worldbody>
+<body name="rod" pos="0 0 2"><joint name="pivot" type="hinge" axis="0 1 0" damping="0.02"/><geom type="capsule" fromto="0 0 0 0.6 0 -0.1" size="0.03" mass="1.2"/></body>
+</worldbody></mujoco>)",
+          {{"rod", {-0.2292629, 0.0000000, 1.8001537}, {0.4268897, 0.0000000, 0.9043037, 0.0000000}}}};
+}
+
+MujocoModel mujoco_cart_pole() {
+  return {R"(<mujoco><option timestep="0.0002" integrator="RK4"/><worldbody>
+<body name="cart" pos="0 0 1"><joint name="rail" type="slide" axis="1 0 0" damping="0.5"/><geom type="box" size="0.2 0.1 0.05" mass="2"/>
+ <body name="pole" pos="0 0 0.1"><joint name="hinge" type="hinge" axis="0 1 0" stiffness="0.5"/><geom type="capsule" fromto="0 0 0 0.1 0 0.8" size="0.03" mass="0.4"/></body></body>
+</worldbody></mujoco>)",
+          {{"cart", {-0.0252183, 0.0000000, 1.0000000}, {1.0000000, 0.0000000, 0.0000000, 0.0000000}},
+           {"pole", {0.2191432, 0.0000000, 1.4206048}, {0.9654971, 0.0000000, 0.2604139, 0.0000000}}}};
+}
+
+MujocoModel mujoco_arm() {
+  return {R"(<mujoco><compiler angle="radian"/><option timestep="0.0002" integrator="RK4"/>
+<default><joint damping="0.8" armature="0"/><geom contype="0" conaffinity="0"/></default><worldbody>
+<body name="l1" pos="0 0 0.3"><joint name="j1" axis="0 0 1"/><geom type="cylinder" size="0.08 0.1" mass="4"/>
+<body name="l2" pos="0 0 0.15"><joint name="j2" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 0 0 0.4" size="0.05" mass="3"/>
+<body name="l3" pos="0 0 0.4"><joint name="j3" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 0.3 0 0.1" size="0.04" mass="2"/>
+<body name="l4" pos="0.3 0 0.1"><joint name="j4" axis="1 0 0"/><geom type="box" size="0.1 0.04 0.03" pos="0.1 0 0.02" mass="1"/>
+<body name="l5" pos="0.2 0 0"><joint name="j5" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 0.1 0 0.05" size="0.03" mass="0.6"/>
+<body name="l6" pos="0.1 0 0.05"><joint name="j6" axis="1 0 0"/><geom type="box" size="0.03 0.06 0.02" pos="0.03 0.02 0" mass="0.3"/>
+</body></body></body></body></body></body></worldbody>
+<actuator><position joint="j1" kp="20"/><position joint="j2" kp="60"/><position joint="j3" kp="30"/><position joint="j4" kp="10"/><velocity joint="j5" kv="0.5"/></actuator></mujoco>)",
+          {{"l1", {0.0000000, 0.0000000, 0.3000000}, {1.0000000, 0.0000000, 0.0000000, 0.0002195}},
+           {"l2", {0.0539338, 0.0000237, 0.6425906}, {0.9906949, -0.0000299, 0.1361010, 0.0002175}},
+           {"l3", {0.2567283, 0.0001127, 0.7818848}, {0.9451378, -0.0000717, 0.3266717, 0.0002075}},
+           {"l4", {0.4965958, 0.0003350, 0.6825696}, {0.9451336, -0.0028348, 0.3266697, 0.0011625}},
+           {"l5", {0.5939242, 0.0001589, 0.5585838}, {0.7497616, -0.0030639, 0.6617009, -0.0000035}},
+           {"l6", {0.6276085, 0.0199192, 0.4820969}, {0.7494545, -0.0216762, 0.6614971, 0.0164236}}}};
+}
+
+TEST(Mjcf, ModelsMoveAsInMujoco) {
+  for (const MujocoModel& model : {mujoco_pendulum(), mujoco_cart_pole(), mujoco_arm()}) {
+    const SceneResult<Scene> scene = import_scene(model.xml, FileFormat::mjcf, "a.xml");
+    ASSERT_TRUE(scene) << scene.error().text();
+    Scene awake = *scene;
+    awake.world.sleeping = false;
+    SceneRunner runner = run_scene(std::move(awake), 0.001);
+    for (int i = 0; i < 2000; ++i) ASSERT_TRUE(runner.step());
+    const Quat y_up = from_axis_angle({1, 0, 0}, -0.5f * kPi);
+    for (const MujocoBody& body : model.bodies) {
+      const BodyId id = body_in(runner, body.name);
+      const auto& q = body.orientation;
+      const Quat expected = y_up * Quat{float(q[1]), float(q[2]), float(q[3]), float(q[0])};
+      const Quat apart = conjugate(expected) * runner.world().pose(id).orientation;
+      EXPECT_LT(2.0f * length(Vec3{apart.x, apart.y, apart.z}), 1.0e-3f) << body.name;
+      const DVec3 center{body.center[0], body.center[2], -body.center[1]};
+      EXPECT_LT(length(runner.world().center_of_mass(id) - center), 2.0e-4) << body.name;
+    }
+  }
 }
 
 #endif

@@ -1,6 +1,8 @@
 // glTF documents. The format: Khronos Group, "glTF 2.0 Specification". See gltf_document.h.
 #include "formats/gltf_document.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace gyre {
@@ -96,6 +98,13 @@ double component_value(const char* at, Component component, bool normalized) {
   return component.kind == 'i' ? max(value / (0.5 * span - 1.0), -1.0) : value / (span - 1.0);
 }
 
+// One of length 1, as far as floats can tell, stays as it is, bit by bit.
+Quat unit_quaternion(const std::vector<double>& q) {
+  const double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const Quat out{float(q[0]), float(q[1]), float(q[2]), float(q[3])};
+  return absolute(size - 1.0) < 1.0e-6 ? out : normalized(out);
+}
+
 }  // namespace
 
 const Json* json_member(const Json& object, const char* key) {
@@ -185,9 +194,15 @@ void GltfDocument::open() {
     for (const Json& name : *required) {
       const std::string word = name.is_string() ? name.get<std::string>() : "";
       const bool known = word == "KHR_physics_rigid_bodies" || word == "KHR_implicit_shapes" ||
-                         word == "KHR_collision_shapes" || word == "KHR_mesh_quantization" ||
-                         word.rfind("KHR_materials_", 0) == 0 || word.rfind("KHR_texture_", 0) == 0;
-      if (!known) fail("/extensionsRequired", "requires \"" + word + "\", which is not read");
+                         word == "KHR_collision_shapes" || word == "KHR_mesh_quantization";
+      // Extensions of pictures and sounds move nothing.
+      constexpr const char* kOfLooks[] = {"KHR_lights_",    "KHR_materials_",  "KHR_texture_",
+                                          "KHR_audio",      "EXT_lights_",     "EXT_texture_",
+                                          "KHR_animation_", "KHR_xmp",         "MSFT_texture",
+                                          "KHR_node_",      "KHR_environment", "OMI_environment"};
+      const bool is_look = std::any_of(std::begin(kOfLooks), std::end(kOfLooks),
+                                       [&](const char* start) { return word.rfind(start, 0) == 0; });
+      if (!known && !is_look) fail("/extensionsRequired", "requires \"" + word + "\", which is not read");
     }
   }
 }
@@ -210,9 +225,32 @@ const Json* GltfDocument::extension(int node, const char* name) const {
   return all == nullptr ? nullptr : json_member(*all, name);
 }
 
+const Json* GltfDocument::gyre_extras(int node, const char* name) const {
+  const Json* const extras = json_member(json_["nodes"][std::size_t(node)], "extras");
+  const Json* const gyre = extras == nullptr ? nullptr : json_member(*extras, "gyre");
+  const Json* const out = gyre == nullptr ? nullptr : json_member(*gyre, name);
+  return out != nullptr && out->is_object() ? out : nullptr;
+}
+
+std::optional<Transform> GltfDocument::rigid_between(int above, int node) const {
+  std::vector<int> chain;
+  if (!nodes_[std::size_t(above)].pose) return std::nullopt;
+  for (; node != above; node = nodes_[std::size_t(node)].parent) {
+    if (node < 0 || !nodes_[std::size_t(node)].local) return std::nullopt;
+    chain.push_back(node);
+  }
+  Transform out;
+  for (std::size_t i = chain.size(); i-- > 0;) {
+    const Transform& local = *nodes_[std::size_t(chain[i])].local;
+    out = i + 1 == chain.size() ? local : out * local;
+  }
+  return out;
+}
+
 void GltfDocument::place_node(int node, int parent, const Json& json, const std::string& pointer) {
   Mat3 linear;
   DVec3 translation;
+  std::optional<Transform> local;
   if (const auto m = json_numbers(json, "matrix", 16); !m.empty()) {
     const auto column = [&](std::size_t i) {
       return Vec3{float(m[4 * i]), float(m[4 * i + 1]), float(m[4 * i + 2])};
@@ -220,13 +258,20 @@ void GltfDocument::place_node(int node, int parent, const Json& json, const std:
     linear = {column(0), column(1), column(2)};
     translation = {m[12], m[13], m[14]};
   } else {
-    if (const auto q = json_numbers(json, "rotation", 4); !q.empty())
-      linear = to_matrix(normalized(Quat{float(q[0]), float(q[1]), float(q[2]), float(q[3])}));
+    Quat rotation;
+    Vec3 scale{1, 1, 1};
+    if (const auto q = json_numbers(json, "rotation", 4); !q.empty()) rotation = unit_quaternion(q);
     if (const auto s = json_numbers(json, "scale", 3); !s.empty())
-      linear = linear * diagonal({float(s[0]), float(s[1]), float(s[2])});
+      scale = {float(s[0]), float(s[1]), float(s[2])};
     if (const auto t = json_numbers(json, "translation", 3); !t.empty()) translation = {t[0], t[1], t[2]};
+    linear = to_matrix(rotation) * diagonal(scale);
+    if (scale == Vec3{1, 1, 1}) local = Transform{to_float(translation), rotation};
   }
   GltfNode& out = nodes_[std::size_t(node)];
+  out.local = local;
+  if (local && parent < 0) out.pose = Pose{translation, local->orientation};
+  if (local && parent >= 0 && nodes_[std::size_t(parent)].pose)
+    out.pose = *nodes_[std::size_t(parent)].pose * *local;
   out.parent = parent;
   out.name = json_text(json, "name", "node_" + std::to_string(node));
   out.linear = linear;

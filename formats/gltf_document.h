@@ -17,6 +17,9 @@ struct GltfNode {
   Mat3 linear{};        // world_from_node without its translation: rotation and scale
   DVec3 translation{};  // m
   std::vector<int> children{};
+  // Of nodes without scale, as the file gives it: with respect to the parent, and in the world if no node above has a scale.
+  std::optional<Transform> local{};
+  std::optional<Pose> pose{};
 };
 
 class GltfDocument {
@@ -30,6 +33,10 @@ class GltfDocument {
   // The object nodes[node].extensions[name]; null if there is none.
   const Json* extension(int node, const char* name) const;
   const Json* root_extension(const char* name) const;
+  // The object nodes[node].extras.gyre[name] of a file that Gyre wrote; null if there is none.
+  const Json* gyre_extras(int node, const char* name) const;
+  // The frame of a node in that of a node above it, or of itself; none if there is a scale between them.
+  std::optional<Transform> rigid_between(int above, int node) const;
 
   // All triangles of a mesh, in the frame of its node. Null indices are an error.
   MeshData mesh_data(std::int64_t mesh);

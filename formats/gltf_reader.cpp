@@ -1,4 +1,5 @@
 // glTF files to scenes: KHR_physics_rigid_bodies on nodes; without it, every mesh is a static body. See import.h.
+#include "formats/gltf_exact.h"
 #include "formats/gltf_shapes.h"
 #include "formats/model_tree.h"
 
@@ -21,7 +22,8 @@ struct GltfMaterial {
 
 class GltfReader {
  public:
-  explicit GltfReader(Import& import) : import_(import), document_(import), shapes_(import, document_) {}
+  explicit GltfReader(Import& import)
+      : import_(import), document_(import), shapes_(import, document_), exact_(import.exact) {}
   void read();
 
  private:
@@ -39,6 +41,9 @@ class GltfReader {
   std::optional<SceneColor> color_below(int node) const;
   void add_joints();
   void add_gltf_joint(int node, const Json& joint, const std::string& pointer);
+  std::optional<JointDef> rod_of(const Json& joint, int node, int other) const;
+  bool take_exact_joint(int node, int other, const Json& joint, const Json& description);
+  void take_exact_scene();
   std::vector<JointAxisDef> limits_of(const Json& joint, const std::string& pointer);
   void add_drives(const Json& joint, std::vector<JointAxisDef>& axes, const std::string& pointer);
   void show_meshes();
@@ -49,9 +54,12 @@ class GltfReader {
   GltfShapes shapes_;
   std::vector<GltfMaterial> materials_;
   std::map<std::string, int> system_bits_;
-  std::map<int, int> body_of_node_;    // of nodes with motion, and of static colliders
-  std::map<int, int> motion_of_node_;  // the nearest node with motion, itself included; -1: none
-  std::set<int> has_filter_;           // bodies
+  std::map<int, int> body_of_node_;  // of nodes with motion, and of static colliders
+  std::map<int, int>
+      motion_of_node_;        // the nearest node that is a body of its own, itself included; -1: none
+  std::set<int> has_filter_;  // bodies
+  std::set<int> exact_bodies_;
+  GltfExact& exact_;
 };
 
 const Json& GltfReader::physics_item(const char* section, std::int64_t index,
@@ -93,10 +101,11 @@ void GltfReader::read_materials() {
   if (list == nullptr || !list->is_array()) return;
   if (list->size() > kMaxGltfMaterials)
     document_.fail("/extensions/KHR_physics_rigid_bodies/physicsMaterials", "expected at most 256 materials");
+  std::set<std::string> names;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const Json& json = (*list)[i];
     SceneMaterial material;
-    material.name = "physics_material_" + std::to_string(i);
+    material.name = Import::unique(names, json_text(json, "name", ""), "physics_material");
     material.surface.static_friction = float(json_number(json, "staticFriction", 0.6));
     material.surface.dynamic_friction = float(json_number(json, "dynamicFriction", 0.6));
     material.surface.restitution = float(json_number(json, "restitution", 0));
@@ -105,7 +114,7 @@ void GltfReader::read_materials() {
   }
   // Colliders without a material have the values of a material without members.
   SceneMaterial plain;
-  plain.name = "physics_material";
+  plain.name = Import::unique(names, "", "physics_material");
   plain.surface.static_friction = plain.surface.dynamic_friction = 0.6f;
   import_.scene.materials.push_back(std::move(plain));
   materials_.push_back({});
@@ -168,6 +177,11 @@ void GltfReader::set_motion(SceneBody& body, const Json& motion) {
   const Mat3 turn =
       q.empty() ? Mat3{} : to_matrix(normalized(Quat{float(q[0]), float(q[1]), float(q[2]), float(q[3])}));
   body.def.inertia = to_symmetric(turn * diagonal(moments) * transpose(turn));
+  if (check_inertia(*body.def.inertia)) {
+    import_.findings.left_out("inertia that no body has, replaced by its mean moment");
+    const float mean = (moments.x + moments.y + moments.z) / 3.0f;
+    body.def.inertia = Sym3{mean, mean, mean, 0, 0, 0};
+  }
   if (!body.def.center_of_mass) body.def.center_of_mass = Vec3{};
 }
 
@@ -223,7 +237,23 @@ void GltfReader::add_collider(int node, const Json& collider, bool trigger, cons
   const bool moving = body.def.type == BodyType::dynamic;
   if (!body.shapes.empty() && body.sensor != trigger)
     return import_.findings.left_out("trigger or collider on a body that has the other");
-  std::optional<SceneShape> shape = shapes_.shape_of(collider, node, body.def.pose, moving, pointer);
+  const GltfShapes::Owner owner{motion >= 0 ? motion : node, body.def.pose, moving};
+  const Json* const gyre = document_.gyre_extras(node, "shape");
+  if (exact_bodies_.count(index) != 0 && gyre != nullptr && json_member(*gyre, "exact") != nullptr &&
+      json_member(*gyre, "of") != nullptr && (*gyre)["of"] == collider) {
+    if (!(*gyre)["exact"].is_object())
+      return;  // one hull of a decomposition, of which the first stands for all
+    SceneShape placeholder;
+    placeholder.local = shapes_.local_at(node, owner);
+    const std::int64_t mesh = json_integer(*gyre, "mesh", -1);
+    exact_.add_shape(index, body.shapes.size(),
+                     mesh < 0 ? -1 : shapes_.plain_mesh(mesh, document_.nodes()[std::size_t(node)].name),
+                     *gyre);
+    body.shapes.push_back(std::move(placeholder));
+    body.sensor = trigger;
+    return;
+  }
+  std::optional<SceneShape> shape = shapes_.shape_of(collider, node, owner, pointer);
   if (!shape) return;
   if (!materials_.empty()) {
     const std::int64_t material =
@@ -257,8 +287,18 @@ void GltfReader::add_bodies() {
     const int parent = document_.nodes()[std::size_t(node)].parent;
     const Json* const physics = document_.extension(node, kPhysics);
     const Json* const motion = physics == nullptr ? nullptr : json_member(*physics, "motion");
-    motion_of_node_[node] = motion != nullptr ? node : parent >= 0 ? motion_of_node_[parent] : -1;
+    const Json* const gyre = document_.gyre_extras(node, "body");
+    const bool is_body = motion != nullptr || gyre != nullptr;
+    motion_of_node_[node] = is_body ? node : parent >= 0 ? motion_of_node_[parent] : -1;
+    if (is_body) (void)body_at(node);
     if (motion != nullptr) set_motion(import_.scene.bodies[std::size_t(body_at(node))], *motion);
+    if (gyre == nullptr || json_member(*gyre, "exact") == nullptr) continue;
+    const Json* const of = json_member(*gyre, "of");
+    if (!(*gyre)["exact"].is_object() || (of == nullptr) != (motion == nullptr) ||
+        (of != nullptr && *of != *motion))
+      continue;
+    exact_bodies_.insert(body_at(node));
+    exact_.add_body(body_at(node), (*gyre)["exact"]);
   }
   for (const int node : document_.order()) {
     const Json* const physics = document_.extension(node, kPhysics);
@@ -272,7 +312,7 @@ void GltfReader::add_bodies() {
   for (const auto& [node, index] : body_of_node_) {
     SceneBody& body = import_.scene.bodies[std::size_t(index)];
     body.color = color_below(node);
-    finish_mass(body);
+    if (exact_bodies_.count(index) == 0) finish_mass(body);
   }
 }
 
@@ -320,7 +360,9 @@ void GltfReader::add_drives(const Json& joint, std::vector<JointAxisDef>& axes, 
     if (stiffness < 0 || damping < 0 || force < 0)
       document_.fail(pointer, "has a drive with a number below 0");
     const bool by_force = json_text(drive, "mode", "force") == "force";
-    if (stiffness == 0) {
+    if (stiffness == 0 && by_force && velocity == 0 && force >= kUnlimitedForce) {
+      out.damping = float(damping);
+    } else if (stiffness == 0) {
       out.motor.target_velocity = float(velocity);
       if (damping > 0) out.motor.max_force = float(force);
     } else if (by_force && force >= kUnlimitedForce) {
@@ -339,18 +381,93 @@ void GltfReader::add_drives(const Json& joint, std::vector<JointAxisDef>& axes, 
   }
 }
 
+// A single limit of all three linear axes bounds the distance of the two frames: a rod or a rope.
+std::optional<JointDef> GltfReader::rod_of(const Json& joint, int node, int other) const {
+  const Json* const limits = json_member(joint, "limits");
+  const Json* const drives = json_member(joint, "drives");
+  if (limits == nullptr || !limits->is_array() || limits->size() != 1 ||
+      (drives != nullptr && drives->is_array() && !drives->empty()))
+    return std::nullopt;
+  const Json& limit = (*limits)[0];
+  const Json* const axes = json_member(limit, "linearAxes");
+  if (axes == nullptr || *axes != Json::array({0, 1, 2}) || json_member(limit, "angularAxes") != nullptr)
+    return std::nullopt;
+  const double low = json_number(limit, "min", 0), high = json_number(limit, "max", kUnlimitedForce);
+  if (!(high > 0 && low >= 0 && low <= high)) return std::nullopt;
+  DistanceDef def;
+  def.anchor = document_.nodes()[std::size_t(node)].translation;
+  def.anchor_b = document_.nodes()[std::size_t(other)].translation;
+  if (low == high) {
+    def.length = float(low);
+    return def;
+  }
+  def.min_length = float(low);
+  if (high < kUnlimitedForce) def.max_length = float(high);
+  return def;
+}
+
+// A joint that Gyre wrote and nobody changed since, if its frames are still where they were.
+bool GltfReader::take_exact_joint(int node, int other, const Json& joint, const Json& description) {
+  const Json* const gyre = document_.gyre_extras(node, "joint");
+  const Json* const of = gyre == nullptr ? nullptr : json_member(*gyre, "of");
+  const Json* const exact = gyre == nullptr ? nullptr : json_member(*gyre, "exact");
+  if (of == nullptr || exact == nullptr || !exact->is_object() || *of != description) return false;
+  if (json_flag(joint, "enableCollision", false) != json_flag(*exact, "collide_connected", false))
+    return false;
+  const auto anchor = json_numbers(*exact, "anchor", 3);
+  if (anchor.size() != 3) return false;
+  const auto apart = [&](int at, const std::vector<double>& point) {
+    const DVec3 place = document_.nodes()[std::size_t(at)].translation;
+    return length(place - DVec3{point[0], point[1], point[2]}) > 1.0e-5 * (1.0 + length(place));
+  };
+  const Json* const anchor_b = json_member(*exact, "anchor_b");
+  const bool is_distance = json_text(*exact, "type", "") == "distance";
+  if (apart(node, anchor) || (!is_distance && apart(other, anchor))) return false;
+  if (anchor_b != nullptr && !anchor_b->is_null() && apart(other, json_numbers(*exact, "anchor_b", 3)))
+    return false;
+  exact_.add_joint(json_integer(*gyre, "index", 0), *exact);
+  return true;
+}
+
+void GltfReader::take_exact_scene() {
+  const Json* const extras = json_member(document_.json(), "extras");
+  const Json* const gyre = extras == nullptr ? nullptr : json_member(*extras, "gyre");
+  const Json* const exact = gyre == nullptr ? nullptr : json_member(*gyre, "exact");
+  if (exact != nullptr && exact->is_object()) {
+    const Json* const extension = document_.root_extension(kPhysics);
+    const Json* const materials =
+        extension == nullptr ? nullptr : json_member(*extension, "physicsMaterials");
+    const Json* const of = json_member(*gyre, "of");
+    exact_.set_scene(*exact,
+                     (of == nullptr) == (materials == nullptr) && (of == nullptr || *of == *materials));
+    if (const Json* const meshes = json_member(*exact, "meshes"); meshes != nullptr && meshes->is_object()) {
+      for (const auto& mesh : meshes->items()) import_.mesh_names.insert(mesh.key());
+    }
+  }
+  const Json* const joints = gyre == nullptr ? nullptr : json_member(*gyre, "joints");
+  for (std::size_t i = 0; joints != nullptr && joints->is_array() && i < joints->size(); ++i) {
+    if (const Json* const joint = json_member((*joints)[i], "exact"))
+      exact_.add_joint(json_integer((*joints)[i], "index", 0), *joint);
+  }
+}
+
 void GltfReader::add_gltf_joint(int node, const Json& joint, const std::string& pointer) {
   const std::int64_t other = json_integer(joint, "connectedNode", -1);
   if (other < 0 || std::size_t(other) >= document_.nodes().size())
     document_.fail(pointer + "/connectedNode", "names a node that does not exist");
   const Json& description =
       physics_item("physicsJoints", json_integer(joint, "joint", -1), pointer + "/joint");
+  if (take_exact_joint(node, int(other), joint, description)) return;
   const auto body = [&](int at) {
     const auto motion = motion_of_node_.find(at);
     return motion == motion_of_node_.end() || motion->second < 0 ? -1 : body_of_node_.at(motion->second);
   };
   const int a = body(node), b = body(int(other));
   if (a == b) return import_.findings.left_out("joint within one body");
+  if (std::optional<JointDef> rod = rod_of(description, node, int(other))) {
+    std::get<DistanceDef>(*rod).collide_connected = json_flag(joint, "enableCollision", false);
+    return add_joint(import_, document_.nodes()[std::size_t(node)].name, a, b, *std::move(rod));
+  }
   const Pose frame = place_of(document_.nodes()[std::size_t(node)]).pose,
              frame_b = place_of(document_.nodes()[std::size_t(other)]).pose;
   std::vector<JointAxisDef> axes = limits_of(description, pointer);
@@ -411,7 +528,7 @@ void GltfReader::show_meshes() {
     if (mesh < 0) continue;
     SceneBody& body = import_.scene.bodies[std::size_t(body_at(node))];
     SceneShape shape;
-    shape.geometry = SceneTriangles{shapes_.mesh_at(mesh, node, body.def.pose)};
+    shape.geometry = SceneTriangles{shapes_.mesh_at(mesh, node, {node, body.def.pose, false}, shape.local)};
     shape.color = document_.mesh_color(node);
     body.shapes.push_back(std::move(shape));
   }
@@ -426,6 +543,7 @@ void GltfReader::read() {
     }
   }
   if (!has_physics) return show_meshes();
+  take_exact_scene();
   read_materials();
   add_bodies();
   add_joints();

@@ -27,6 +27,10 @@ std::vector<Vec3> tapered_points(float bottom, float top, float half, bool round
 
 GltfPlace place_of(const GltfNode& node) {
   GltfPlace out;
+  if (node.pose) {
+    out.pose = *node.pose;
+    return out;
+  }
   const Mat3& m = node.linear;
   out.scale = {length(m.x), length(m.y), length(m.z)};
   const Vec3 x = normalized(m.x);
@@ -81,6 +85,7 @@ std::optional<SceneGeometry> GltfShapes::implicit_geometry(const Json& shape, Ve
     };
     const float bottom = radius("radiusBottom"), top = radius("radiusTop");
     if (!(max(bottom, top) > 0.0f)) document_.fail(pointer, "expected a radius above 0");
+    if (type == "cylinder" && top == 0.0f) return Cone{bottom, half};
     if (bottom != top) return SceneHull{tapered_points(bottom, top, half, type == "capsule"), -1};
     if (type == "capsule") return Capsule{top, half};
     return Cylinder{top, half};
@@ -96,12 +101,32 @@ std::optional<SceneGeometry> GltfShapes::implicit_geometry(const Json& shape, Ve
   return std::nullopt;
 }
 
-int GltfShapes::mesh_at(std::int64_t mesh, int node, const Pose& body) {
+Transform GltfShapes::local_at(int node, const Owner& owner) const {
+  if (const auto rigid = document_.rigid_between(owner.node, node)) return *rigid;
+  Transform out = inverse_times(owner.pose, place_of(document_.nodes()[std::size_t(node)]).pose);
+  out.orientation = normalized(out.orientation);
+  return out;
+}
+
+int GltfShapes::plain_mesh(std::int64_t mesh, const std::string& name) {
+  const auto known = plain_meshes_.find(mesh);
+  if (known != plain_meshes_.end()) return known->second;
+  const int out = import_.add_mesh(document_.mesh_data(mesh), name);
+  plain_meshes_.emplace(mesh, out);
+  return out;
+}
+
+int GltfShapes::mesh_at(std::int64_t mesh, int node, const Owner& owner, Transform& local) {
   const GltfNode& at = document_.nodes()[std::size_t(node)];
+  local = {};
+  if (const auto rigid = document_.rigid_between(owner.node, node)) {
+    local = *rigid;
+    return plain_mesh(mesh, at.name);
+  }
   MeshData data = document_.mesh_data(mesh);
-  const Vec3 offset = difference(at.translation, body.position);
+  const Vec3 offset = difference(at.translation, owner.pose.position);
   for (Vec3& vertex : data.vertices) {
-    vertex = rotate_inverse(body.orientation, at.linear * vertex + offset);
+    vertex = rotate_inverse(owner.pose.orientation, at.linear * vertex + offset);
     if (!is_finite(vertex))
       document_.fail("/meshes/" + std::to_string(mesh), "has a position that is not finite once scaled");
   }
@@ -112,20 +137,7 @@ int GltfShapes::mesh_at(std::int64_t mesh, int node, const Pose& body) {
   return import_.add_mesh(std::move(data), at.name);
 }
 
-SceneGeometry GltfShapes::mesh_geometry(std::int64_t mesh, int node, const Pose& body, bool moving,
-                                        bool hull) {
-  const int index = mesh_at(mesh, node, body);
-  if (hull) {
-    SceneHull out;
-    out.mesh = index;
-    return out;
-  }
-  if (moving && !import_.options.decompose)
-    import_.findings.left_out("mesh on a moving body, taken as its convex hull");
-  return import_.solid_mesh(index, moving);
-}
-
-std::optional<SceneShape> GltfShapes::shape_of(const Json& collider, int node, const Pose& body, bool moving,
+std::optional<SceneShape> GltfShapes::shape_of(const Json& collider, int node, const Owner& owner,
                                                const std::string& pointer) {
   const Json* const nested = json_member(collider, "geometry");
   const Json& geometry = nested == nullptr ? collider : *nested;
@@ -146,15 +158,23 @@ std::optional<SceneShape> GltfShapes::shape_of(const Json& collider, int node, c
       hull = hull || type == "convex";
     } else {
       const GltfPlace place = place_of(document_.nodes()[std::size_t(node)]);
-      const auto made = implicit_geometry(shape, place.scale, moving, pointer);
+      const auto made = implicit_geometry(shape, place.scale, owner.moving, pointer);
       if (!made) return std::nullopt;
       out.geometry = *made;
-      out.local = inverse_times(body, place.pose);
-      out.local.orientation = normalized(out.local.orientation);
+      out.local = local_at(node, owner);
       return out;
     }
   }
-  out.geometry = mesh_geometry(mesh, node, body, moving, hull);
+  const int index = mesh_at(mesh, node, owner, out.local);
+  if (hull) {
+    SceneHull points;
+    points.mesh = index;
+    out.geometry = points;
+    return out;
+  }
+  if (owner.moving && !import_.options.decompose)
+    import_.findings.left_out("mesh on a moving body, taken as its convex hull");
+  out.geometry = import_.solid_mesh(index, owner.moving);
   return out;
 }
 

@@ -35,7 +35,12 @@ bool ends_with(std::string_view path, std::string_view end) {
 
 // The scene as the scene reader makes it from its text, so that all of its checks and limits hold for imported files too.
 Scene checked(Import& import) {
-  const std::string text = write_scene(import.scene, {.inline_meshes = true});
+  std::string text = write_scene(import.scene, {.inline_meshes = true});
+  if (!import.exact.empty()) {
+    Json json = Json::parse(text);
+    import.exact.put_into(json);
+    text = json.dump();
+  }
   ReadOptions options;
   options.file = import.file;
   options.limits = import.options.limits;
@@ -119,6 +124,8 @@ std::string Import::read_file(const std::string& uri, const std::string& base, i
       place = fs::path(root) / path;
     }
   }
+  // Without an option, the folder of the file stands for the package's parent.
+  if (is_package && place.empty() && fs::exists(roots[0] / path, error)) place = roots[0] / path;
   if (is_package && place.empty())
     fail("found \"" + uri + "\", but --package names no folder for \"" + package + "\" (as in --package " +
              package + "=FOLDER)",
@@ -145,9 +152,7 @@ std::string Import::read_file(const std::string& uri, const std::string& base, i
 
 int Import::add_mesh(MeshData mesh, const std::string& name) {
   SceneMesh out;
-  std::set<std::string> names;
-  for (const SceneMesh& other : scene.meshes) names.insert(other.name);
-  out.name = unique(names, name, "mesh");
+  out.name = unique(mesh_names, name, "mesh");
   out.vertices = std::move(mesh.vertices);
   out.indices = std::move(mesh.indices);
   scene.meshes.push_back(std::move(out));

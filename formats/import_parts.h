@@ -1,6 +1,8 @@
 // Parts that the readers of other formats share: names, folders that may be read, findings, and a mesh table. Refusals are thrown as SceneError.
 #pragma once
 
+#include "formats/findings.h"
+#include "formats/gltf_exact.h"
 #include "formats/import.h"
 #include "scene/mesh_file.h"
 
@@ -11,18 +13,6 @@
 
 namespace gyre {
 
-// Elements that were left out, by name and reason, with their number.
-class Findings {
- public:
-  void left_out(const std::string& what) { ++counts_[what]; }
-  bool empty() const { return counts_.empty(); }
-  // "<gazebo> (2), mimic of a slider (1)"
-  std::string text() const;
-
- private:
-  std::map<std::string, int> counts_;
-};
-
 struct Import {
   std::string_view bytes;
   std::string file;    // named in errors
@@ -30,9 +20,10 @@ struct Import {
   const ImportOptions& options;
   Scene scene{};
   Findings findings{};
-  std::set<std::string> body_names{}, joint_names{};
+  std::set<std::string> body_names{}, joint_names{}, mesh_names{};
   std::map<std::string, int> meshes{};  // index in the scene by file and scale
   std::size_t mesh_bytes = 0;           // of all files that were read
+  GltfExact exact{};                    // goes into the scene before it is checked
 
   [[noreturn]] void fail(std::string message, int line = 0) const;
   // The name itself if it is free, else with a number.

@@ -1,6 +1,8 @@
 // Geoms of MJCF. See mjcf_geom.h.
 #include "formats/mjcf_geom.h"
 
+#include "formats/model_tree.h"
+
 #include <cmath>
 
 namespace gyre {
@@ -63,7 +65,6 @@ class GeomReader {
   bool read_geometry();
   void read_mesh_geom();
   void set_mass(MjcfGeom& out) const;
-  Result<MassProperties> unit_mass() const;
   void set_surface(MjcfGeom& out);
 
   Import& import_;
@@ -153,31 +154,10 @@ bool GeomReader::read_geometry() {
   return true;
 }
 
-// The mass properties at a density of 1 kg/m^3, in the frame of the shape.
-Result<MassProperties> GeomReader::unit_mass() const {
-  if (type_ == "ellipsoid") return ellipsoid_mass(ellipsoid_, 1.0f);
-  if (const auto* hull = std::get_if<SceneHull>(&shape_.geometry)) {
-    Result<Geometry> made = cook_hull(hull->points);
-    if (!made) return made.error();
-    return mass_properties(*made, 1.0f);
-  }
-  if (const auto* triangles = std::get_if<SceneTriangles>(&shape_.geometry)) {
-    const SceneMesh& mesh = import_.scene.meshes[std::size_t(triangles->mesh)];
-    Result<MassProperties> exact = mesh_mass(mesh.vertices, mesh.indices, 1.0f);
-    if (exact && exact->mass > 0.0f) return exact;
-    Result<Geometry> made = cook_hull(mesh.vertices);
-    if (!made) return made.error();
-    return mass_properties(*made, 1.0f);
-  }
-  if (const auto* sphere = std::get_if<Sphere>(&shape_.geometry)) return mass_properties(*sphere, 1.0f);
-  if (const auto* box = std::get_if<Box>(&shape_.geometry)) return mass_properties(*box, 1.0f);
-  if (const auto* capsule = std::get_if<Capsule>(&shape_.geometry)) return mass_properties(*capsule, 1.0f);
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape_.geometry)) return mass_properties(*cylinder, 1.0f);
-  return MassProperties{};
-}
-
 void GeomReader::set_mass(MjcfGeom& out) const {
-  Result<MassProperties> unit = unit_mass();
+  Result<MassProperties> unit = type_ == "ellipsoid"
+                                    ? Result<MassProperties>(ellipsoid_mass(ellipsoid_, 1.0f))
+                                    : unit_mass(import_.scene, shape_.geometry);
   if (!unit) geom_.fail(unit.error().message);
   if (!(unit->mass > 0.0f)) return;
   const double mass = geom_.number("mass", -1);

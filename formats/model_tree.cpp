@@ -131,7 +131,50 @@ std::optional<JointDef> six_dof_of(const std::vector<ModelAxis>& axes) {
   return def;
 }
 
+// A link with a mass and an inertia of zero: the inertia of its shapes at this mass, else that of a ball of water.
+MassProperties with_inertia(Import& import, const ModelLink& link) {
+  MassProperties out = *link.mass;
+  const Sym3 inertia = out.inertia;
+  if (!(inertia == Sym3{0, 0, 0, 0, 0, 0})) return out;
+  std::vector<MassProperties> parts;
+  for (const SceneShape& shape : link.shapes) {
+    const Result<MassProperties> part = unit_mass(import.scene, shape.geometry);
+    if (part && part->mass > 0.0f) parts.push_back(transformed(*part, shape.local));
+  }
+  if (!parts.empty()) {
+    import.findings.left_out("inertia of zero, taken from the shapes");
+    const MassProperties whole = combined(parts);
+    out.inertia = (out.mass / whole.mass) * whole.inertia;
+    return out;
+  }
+  import.findings.left_out("inertia of zero, taken as that of a ball of water");
+  const float radius = float(std::cbrt(0.75 * double(out.mass) / (1000.0 * kPiDouble)));
+  const float moment = 0.4f * out.mass * radius * radius;
+  out.inertia = {moment, moment, moment, 0, 0, 0};
+  return out;
+}
+
 }  // namespace
+
+Result<MassProperties> unit_mass(const Scene& scene, const SceneGeometry& geometry) {
+  const auto of_points = [](std::span<const Vec3> points) {
+    Result<Geometry> hull = cook_hull(points);
+    return hull ? mass_properties(*hull, 1.0f) : Result<MassProperties>(hull.error());
+  };
+  if (const auto* hull = std::get_if<SceneHull>(&geometry))
+    return of_points(hull->mesh >= 0 ? scene.meshes[std::size_t(hull->mesh)].vertices : hull->points);
+  if (const auto* triangles = std::get_if<SceneTriangles>(&geometry)) {
+    const SceneMesh& mesh = scene.meshes[std::size_t(triangles->mesh)];
+    Result<MassProperties> exact = mesh_mass(mesh.vertices, mesh.indices, 1.0f);
+    if (exact && exact->mass > 0.0f) return exact;
+    return of_points(mesh.vertices);
+  }
+  if (const auto* sphere = std::get_if<Sphere>(&geometry)) return mass_properties(*sphere, 1.0f);
+  if (const auto* box = std::get_if<Box>(&geometry)) return mass_properties(*box, 1.0f);
+  if (const auto* capsule = std::get_if<Capsule>(&geometry)) return mass_properties(*capsule, 1.0f);
+  if (const auto* cylinder = std::get_if<Cylinder>(&geometry)) return mass_properties(*cylinder, 1.0f);
+  return MassProperties{};
+}
 
 std::vector<int> build_bodies(Import& import, const std::vector<ModelLink>& links) {
   std::vector<int> body_of(links.size(), -1);
@@ -168,7 +211,8 @@ std::vector<int> build_bodies(Import& import, const std::vector<ModelLink>& link
       body.shapes.push_back(std::move(shape));
     }
     if (body.shapes.size() == link.shapes.size() && !link.shapes.empty()) body.filter = link.filter;
-    if (link.mass && link.mass->mass > 0.0f) part.masses.push_back(transformed(*link.mass, body_from_link));
+    if (link.mass && link.mass->mass > 0.0f)
+      part.masses.push_back(transformed(with_inertia(import, link), body_from_link));
   }
   for (std::size_t i = 0; i < parts.size(); ++i) set_mass(import, import.scene.bodies[i], parts[i].masses);
   return body_of;

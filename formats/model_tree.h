@@ -30,6 +30,9 @@ struct ModelAxis {
   Motor motor{};
 };
 
+// The mass properties of a solid shape at a density of 1 kg/m^3, in the frame of the shape. A mesh that is not closed counts as its hull.
+Result<MassProperties> unit_mass(const Scene& scene, const SceneGeometry& geometry);
+
 // Appends the bodies; parents stand before their children. Returns the body of each link.
 std::vector<int> build_bodies(Import& import, const std::vector<ModelLink>& links);
 

@@ -105,7 +105,8 @@ void UrdfReader::read_joints() {
     if (joint.parent == joint.child) element.fail("connects a link with itself");
     joint.origin = origin_of(element);
     if (const XmlElement axis = element.child("axis")) joint.axis = axis.vec3("xyz", {1, 0, 0});
-    if (!(length(joint.axis) > 0.0f)) element.fail("found an axis of no length");
+    const bool needs_axis = joint.type != "fixed" && joint.type != "floating" && joint.type != "spherical";
+    if (needs_axis && !(length(joint.axis) > 0.0f)) element.fail("found an axis of no length");
     joint.axis = normalized(joint.axis);
     if (!joint_names_.emplace(joint.name, int(joints_.size())).second)
       element.fail("found a second joint \"" + joint.name + "\"");
@@ -272,6 +273,11 @@ void UrdfReader::add_urdf_joint(const UrdfJoint& joint) {
     if (a == b) return;
     FixedDef def;
     def.anchor = import_.scene.bodies[std::size_t(b)].def.pose.position;
+    return add_joint(import_, joint.name, a, b, def);
+  }
+  if (joint.type == "spherical") {  // of PyBullet, not of the format
+    BallDef def;
+    def.anchor = tree_[std::size_t(links_[std::size_t(joint.child)].place)].pose.position;
     return add_joint(import_, joint.name, a, b, def);
   }
   if (joint.type == "planar") {

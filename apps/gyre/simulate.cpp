@@ -3,6 +3,7 @@
 #include "simulate.h"
 
 #include "exit_code.h"
+#include "formats/vtk_writer.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "scene/scene_labels.h"
@@ -78,6 +79,7 @@ class Simulation {
  private:
   int run_steps(std::uint64_t steps);
   bool record_step(double step_ms);
+  bool write_vtk(const VtkFile& file) const;
   bool finish_outputs(int ended);
   void print_result() const;
   int fail(const OutputFile& file) {
@@ -93,6 +95,7 @@ class Simulation {
   OutputFile record_, final_;
   FileSink sink_{record_};
   std::unique_ptr<Recorder> recorder_;
+  VtkSeries vtk_;
   StageSums stages_;
   RunFigures figures_;
 };
@@ -116,6 +119,14 @@ bool Simulation::open_outputs() {
   if (!options_.probes.empty() && !check(probes_.open(options_.probes), probes_.file())) return false;
   if (!options_.stats.empty() && !check(stats_.open(options_.stats), stats_.file())) return false;
   if (!options_.final.empty() && !check(final_.open(options_.final), final_)) return false;
+  if (!options_.vtk.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(options_.vtk, error);
+    if (error) {
+      say(options_.vtk + ": cannot be made (" + error.message() + ")");
+      return false;
+    }
+  }
   if (!options_.record.empty()) {
     if (!check(record_.open(options_.record), record_)) return false;
     RecordOptions what;
@@ -130,12 +141,25 @@ bool Simulation::open_outputs() {
   return true;
 }
 
+bool Simulation::write_vtk(const VtkFile& file) const {
+  OutputFile out;
+  const bool written =
+      out.open((std::filesystem::path(options_.vtk) / file.name).string()) && out.write(file.bytes) && out.commit();
+  if (!written) say(out.message());
+  return written;
+}
+
 bool Simulation::record_step(double step_ms) {
   const bool is_traced = runner_.steps() % options_.trace_every == 0;
   if (is_traced && trace_.file().is_open() && !trace_.add_rows(runner_))
     return fail(trace_.file()) == kExitGood;
   if (is_traced && probes_.file().is_open() && !probes_.add_rows(runner_))
     return fail(probes_.file()) == kExitGood;
+  if (!options_.vtk.empty() && runner_.steps() % options_.vtk_every == 0) {
+    for (const VtkFile& file : vtk_.add_state(runner_)) {
+      if (!write_vtk(file)) return false;
+    }
+  }
   if (stats_.file().is_open() && runner_.steps() > 0 && !stats_.add_row(runner_, step_ms, options_.count_crossings)) {
     return fail(stats_.file()) == kExitGood;
   }
@@ -192,6 +216,7 @@ bool Simulation::finish_outputs(int ended) {
   for (OutputFile* file : {&trace_.file(), &probes_.file(), &stats_.file()}) {
     if (file->is_open() && !file->commit()) return fail(*file) == kExitGood;
   }
+  if (!options_.vtk.empty() && !write_vtk(vtk_.collection("run"))) return false;
   // A state that is not finite is not a scene.
   if (final_.is_open() && ended != kExitNotFinite) {
     if (!final_.write(write_scene(runner_.final_scene())) || !final_.commit())

@@ -31,6 +31,8 @@ struct SimulateOptions {
   float record_accuracy = 1.0e-4f;  // m
   std::uint32_t record_hash_every = 128;
   std::uint64_t trace_every = 1;
+  std::string vtk;  // a folder
+  std::uint64_t vtk_every = 1;
   std::vector<std::string> explain;  // names of bodies
   bool trace_liquids = false;
   bool count_crossings = false;  // of cloths, in the table of figures

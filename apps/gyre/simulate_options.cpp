@@ -139,6 +139,15 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--trace-every", options.trace_every, "Trace and probe only every Nth step")
       ->type_name("N")
       ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"));
+  CLI::Option* vtk =
+      command
+          .add_option("--vtk", options.vtk,
+                      "Write surfaces and fields of the start and of every step for ParaView, which opens FOLDER/run.pvd")
+          ->type_name("FOLDER");
+  command.add_option("--vtk-every", options.vtk_every, "VTK files of every Nth step only")
+      ->type_name("N")
+      ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"))
+      ->needs(vtk);
   CLI::Option* stats = command.add_option("--stats", options.stats, "Write a table of figures of each step")
       ->type_name("FILE.csv");
   command.add_flag("--count-crossings", options.count_crossings,

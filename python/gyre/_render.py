@@ -1,29 +1,14 @@
 """Pictures as arrays, drawn by the program `gyre render`."""
 
 import os
-import shutil
-import subprocess
 import tempfile
 import zlib
 from pathlib import Path
 
 import numpy as np
 
-from ._library import HERE
-from ._runtime import GyreError
+from ._program import program, run_program
 from ._scenes import Scene
-
-
-def program():
-    """The gyre program: named by the environment, in the build folder around the package, beside the library, or on the path."""
-    named = os.environ.get("GYRE_PROGRAM")
-    for path in [Path(named)] if named else [folder / "bin" / "gyre" for folder in HERE.parents]:
-        if path.is_file():
-            return str(path)
-    found = shutil.which("gyre")
-    if found is None:
-        raise GyreError("gyre.render() needs the gyre program; set GYRE_PROGRAM to its path, or put it on the PATH")
-    return found
 
 
 def render(what, width=640, height=480, **options):
@@ -41,13 +26,11 @@ def render(what, width=640, height=480, **options):
             source = os.path.join(folder, "now.gyrec")
             with what.record(source, commands=False):
                 pass
-        command = [program(), "render", source, "--out", picture, "--size", f"{width}x{height}", "--quiet"]
+        command = [program("gyre.render()"), "render", source, "--out", picture, "--size", f"{width}x{height}", "--quiet"]
         for name, value in options.items():
             text = ",".join(str(float(v)) for v in np.ravel(value)) if np.ndim(value) else str(value)
             command.append(f"--{name.replace('_', '-')}={text}")
-        ran = subprocess.run(command, capture_output=True, text=True, check=False)
-        if ran.returncode != 0:
-            raise GyreError(f"gyre render: {ran.stderr.strip()}")
+        run_program(command)
         return read_png(Path(picture).read_bytes())
 
 

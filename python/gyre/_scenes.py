@@ -2,10 +2,12 @@
 
 import ctypes
 import os
+import tempfile
 from pathlib import Path
 
 from ._api import BodyId, FluidId, JointId, SoftId, World
 from ._library import HERE
+from ._program import program, run_program
 from ._runtime import COUNT, POINTER, Handle, call, done
 
 
@@ -104,9 +106,29 @@ class Scene(Handle):
         return self._write(self.handle, None).decode()
 
 
-def load_scene(name, threads=1, simd_width=0):
-    """Loads a scene file, or one of the scenes that come with Gyre by its name: load_scene("newtons_cradle")."""
-    return Scene.from_handle(done(Scene._load(os.fsencode(scene_path(name)), threads, simd_width)))
+def load_scene(name, threads=1, simd_width=0, **options):
+    """Loads a scene file, or one of the scenes that come with Gyre by its name: load_scene("newtons_cradle").
+
+    A robot (.urdf, .xml, .mjcf) or glTF file (.gltf, .glb) is converted by the program `gyre`. Options are then those of `gyre convert`,
+    with underscores: load_scene("robot.urdf", base="free", package=["arms=/robots/arms"], keep_fixed=True).
+    """
+    path = scene_path(name)
+    if Path(path).suffix.lower() not in (".urdf", ".xml", ".mjcf", ".gltf", ".glb"):
+        if options:
+            raise TypeError(f"load_scene() takes {', '.join(options)} of robots and glTF files only")
+        return Scene.from_handle(done(Scene._load(os.fsencode(path), threads, simd_width)))
+    with tempfile.TemporaryDirectory() as folder:
+        converted = os.path.join(folder, "converted.gyre.json")
+        command = [program("load_scene() of a robot or glTF file"), "convert", str(path), converted]
+        for option, value in options.items():
+            word = "--" + option.replace("_", "-")
+            if value is True:
+                command.append(word)
+            elif value is not False:
+                for each in [value] if isinstance(value, str) else value:
+                    command += [word, str(each)]
+        run_program(command)
+        return Scene.from_handle(done(Scene._load(os.fsencode(converted), threads, simd_width)))
 
 
 def read_scene(text, threads=1, simd_width=0):

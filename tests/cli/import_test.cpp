@@ -44,6 +44,36 @@ TEST_F(Import, AConvertedFileMovesBitByBitLikeTheFileItself) {
   EXPECT_EQ(direct.out, converted.out);
 }
 
+TEST_F(Import, ScenesAndRecordingsBecomeGltf) {
+  const std::string source = GYRE_SOURCE_DIR "/scenes/half_wood_half_lead.gyre.json";
+  ASSERT_EQ(gyre({"convert", source, "out.glb"}).code, 0);
+  const Finished direct =
+      gyre({"simulate", source, "--steps", "60", "--hash", "--quiet", "--record", "run.gyrec"});
+  const Finished converted = gyre({"simulate", "out.glb", "--steps", "60", "--hash", "--quiet"});
+  EXPECT_EQ(direct.code, 0) << direct.err;
+  EXPECT_EQ(direct.out, converted.out);
+  EXPECT_EQ(gyre({"convert", "run.gyrec", "run.gltf"}).code, 0);
+  std::ifstream file(folder_ / "run.gltf");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_NE(text.find("\"rotation\""), std::string::npos);
+  const Finished refused = gyre({"convert", "run.gyrec", "run.gyre.json"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find(".glb or .gltf"), std::string::npos) << refused.err;
+}
+
+TEST_F(Import, ARunBecomesVtkFiles) {
+  const std::string source = GYRE_SOURCE_DIR "/scenes/half_wood_half_lead.gyre.json";
+  ASSERT_EQ(gyre({"simulate", source, "--steps", "5", "--quiet", "--vtk", "vtk", "--vtk-every", "2"}).code,
+            0);
+  std::ifstream file(folder_ / "vtk" / "run.pvd");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  for (const char* name : {"bodies_0_000000.vtp", "bodies_0_000002.vtp", "bodies_0_000004.vtp"}) {
+    EXPECT_NE(text.find(name), std::string::npos) << text;
+    EXPECT_TRUE(fs::exists(folder_ / "vtk" / name));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "vtk" / "bodies_0_000005.vtp"));
+}
+
 #ifdef GYRE_WITH_XML
 TEST_F(Import, MeshesAreReadFromTheFoldersThatWereNamedAndFromNoOther) {
   const auto robot = [](const std::string& mesh) {

@@ -286,6 +286,17 @@ class States(unittest.TestCase):
         with self.assertRaises(gyre.GyreError):
             gyre.Replay.open(b"no recording")
 
+    def test_robots_and_gltf_files_load_as_scenes(self):
+        scene = gyre.load_scene("formats/playground.gltf", decompose=True)
+        self.assertIn("cart", scene.bodies)
+        scene.step()
+        robot = gyre.load_scene("formats/pendulum.urdf", base="free", keep_fixed=True)
+        self.assertEqual(len(robot.bodies), 5)
+        with self.assertRaisesRegex(gyre.GyreError, "gyre convert"):
+            gyre.load_scene("formats/playground.gltf", package="/nowhere", strict=True, base="sideways")
+        with self.assertRaisesRegex(TypeError, "robots and glTF files only"):
+            gyre.load_scene("newtons_cradle", base="free")
+
     def test_scenes_have_names(self):
         scene = gyre.load_scene("newtons_cradle")
         self.assertIn("ball 1", scene.bodies)

@@ -1,7 +1,7 @@
 // A pinhole camera. See camera.h.
 #include "render/camera.h"
 
-#include "render/turning.h"
+#include "formats/turning.h"
 
 namespace gyre {
 namespace {

@@ -4,7 +4,7 @@
 #include "render/fluid_draw.h"
 #include "render/soft_mesh.h"
 #include "render/tube.h"
-#include "render/turning.h"
+#include "formats/turning.h"
 #include "scene/scene_color.h"
 
 #include <algorithm>

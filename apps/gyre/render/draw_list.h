@@ -3,7 +3,7 @@
 #pragma once
 
 #include "render/camera.h"
-#include "render/shape_mesh.h"
+#include "formats/shape_mesh.h"
 #include "render/sight.h"
 #include "render/smoke.h"
 

@@ -4,7 +4,7 @@
 // its own: with strides near irrational shares of the count, so that no two go together.
 #include "render/light_samples.h"
 
-#include "render/turning.h"
+#include "formats/turning.h"
 
 #include <cmath>
 #include <cstdint>

@@ -10,7 +10,7 @@
 #include "render/player.h"
 #include "render/renderer.h"
 #include "render/survey.h"
-#include "render/turning.h"
+#include "formats/turning.h"
 
 #include <cmath>
 #include <cstdio>

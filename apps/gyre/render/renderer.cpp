@@ -5,7 +5,7 @@
 #include "render/light_samples.h"
 #include "render/shaders.h"
 #include "render/smoke_painter.h"
-#include "render/turning.h"
+#include "formats/turning.h"
 
 #include <epoxy/gl.h>
 

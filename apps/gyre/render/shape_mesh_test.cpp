@@ -1,5 +1,5 @@
 // Meshes for pictures against what the engine says of the shapes: closed, wound outward, and of the right volume.
-#include "render/shape_mesh.h"
+#include "formats/shape_mesh.h"
 
 #include "render/tube.h"
 

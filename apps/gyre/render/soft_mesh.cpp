@@ -1,7 +1,7 @@
 // Ropes, cloths and solids as triangles. See soft_mesh.h.
 #include "render/soft_mesh.h"
 
-#include "render/turning.h"
+#include "formats/turning.h"
 
 #include <set>
 #include <utility>

@@ -1,7 +1,7 @@
 // Ropes, cloths and solids as triangles, for pictures: their vertices as they are now, with normals that follow them.
 #pragma once
 
-#include "render/shape_mesh.h"
+#include "formats/shape_mesh.h"
 #include "render/tube.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // A first look at all that will be in a movie. See survey.h.
 #include "render/survey.h"
 
-#include "render/turning.h"
+#include "formats/turning.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Round bars along lines of points. See tube.h.
 #include "render/tube.h"
 
-#include "render/turning.h"
+#include "formats/turning.h"
 
 namespace gyre {
 namespace {

@@ -26,7 +26,8 @@ ShapeMesh make_shape_mesh(const AnyShape& shape, int segments);
 
 // Triangles with soft normals. A corner's normal is the mean, by area, of the triangles around the vertex whose normals differ from that
 // of its own by an angle with more than this cosine.
-ShapeMesh smooth_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices, float crease_cosine);
+ShapeMesh smooth_mesh(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices,
+                      float crease_cosine);
 
 // The sphere around the shape's origin that holds the shape; 0 for a plane.
 float bounding_radius(const AnyShape& shape);

@@ -2,9 +2,9 @@
 //
 // Spheres and boxes, rounded or not, are one thing: a ball cut into eight octants that are moved apart. Capsules, cylinders and
 // cones are profiles turned about y. Meshes and height fields get soft normals except across sharp edges.
-#include "render/shape_mesh.h"
+#include "formats/shape_mesh.h"
 
-#include "render/turning.h"
+#include "formats/turning.h"
 
 #include <algorithm>
 #include <cmath>
