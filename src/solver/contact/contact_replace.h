@@ -25,10 +25,11 @@ int find_pushing_block(void* memory, int begin, int end, std::uint32_t& lanes) {
 // Copies one lane of `count` vectors, one after the other in memory.
 template <int W, class T>
 void copy_lane(const T& from, T& to, int lane) {
-  static_assert(sizeof(T) % sizeof(Wide<W>) == 0);
+  constexpr std::size_t kBytes = sizeof(T), kVector = sizeof(Wide<W>);
+  static_assert(kBytes % kVector == 0);
   const auto* source = reinterpret_cast<const float*>(&from) + lane;
   auto* target = reinterpret_cast<float*>(&to) + lane;
-  for (std::size_t i = 0; i < sizeof(T) / sizeof(float); i += std::size_t(W)) target[i] = source[i];
+  for (std::size_t i = 0; i < kBytes / kVector; ++i) target[std::size_t(W) * i] = source[std::size_t(W) * i];
 }
 
 template <int W>
