@@ -11,7 +11,7 @@ namespace gyre {
 namespace {
 
 // In sizes of the pair. Contacts nearer than kNearest have the features that will meet; an impact leaves kImpactGap.
-constexpr float kNearest = 2.0e-3f, kImpactGap = 2.5e-4f;
+constexpr float kNearest = 2.0e-3f, kImpactGap = 1.0e-3f;
 
 // The present pose of a body's origin.
 Pose present_pose(const BodyStore& bodies, std::uint32_t body) {
