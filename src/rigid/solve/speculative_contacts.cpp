@@ -78,18 +78,13 @@ Impact meeting_time(const ContactSolve& s, const Contact& contact, const Sweep (
                                  : first_meeting(swept_b, swept_a, target, triangle);
 }
 
-// Updates the manifolds at the poses of the impact. What a manifold counted in the step stays with it.
-void update_manifolds(const ContactSolve& s, Contact& contact, const Sweep (&sweeps)[2], double share) {
+// Updates the manifolds at the poses of the impact; what a manifold counted in the step stays with it. Returns their number.
+int update_manifolds(const ContactSolve& s, Contact& contact, const Sweep (&sweeps)[2], double share) {
   RigidWorld& w = s.w;
   Manifold* const manifolds = &w.contacts.manifolds[contact.first_manifold];
   const int before = contact.manifold_count;
-  float totals[kMaxMeshManifolds];
-  Vec3 friction[kMaxMeshManifolds];
-  for (int m = 0; m < before; ++m) {
-    totals[m] = 0.0f;
-    for (int k = 0; k < manifolds[m].count; ++k) totals[m] += manifolds[m].points[k].total_impulse;
-    friction[m] = manifolds[m].total_friction;
-  }
+  Manifold former[kMaxMeshManifolds];
+  for (int m = 0; m < before; ++m) former[m] = manifolds[m];
   const BodyAtImpact a(w, contact.body_a, sweeps[0], share, s.settings.step),
       b(w, contact.body_b, sweeps[1], share, s.settings.step);
   const PairInput pair{&contact,
@@ -103,10 +98,18 @@ void update_manifolds(const ContactSolve& s, Contact& contact, const Sweep (&swe
   Recycled views;
   s.update_views(&pair, 0, 1, false, views);
   compute_manifold(pair, views.views[0], cached_triangles_of(w.contacts, contact));
-  for (int m = 0; m < min(before, int(contact.manifold_count)); ++m) {
-    manifolds[m].points[0].total_impulse = totals[m];
-    manifolds[m].total_friction = friction[m];
+  const int found = min(before, int(contact.manifold_count));
+  for (int m = 0; m < found; ++m) {
+    for (int k = 0; k < former[m].count; ++k)
+      manifolds[m].points[0].total_impulse += former[m].points[k].total_impulse;
+    manifolds[m].total_friction = former[m].total_friction;
   }
+  // The solver has as many manifolds as the step began with: the others stay as they were, and are held back.
+  for (int m = found; m < int(contact.manifold_count); ++m) manifolds[m] = {};
+  for (int m = found; m < before; ++m) manifolds[m] = former[m];
+  if (before != int(contact.manifold_count)) invalidate_cache(contact);
+  contact.manifold_count = std::uint16_t(before);
+  return found;
 }
 
 // Makes separations those of the present, less the motion since the step began; `seconds`: from now to the impact.
@@ -118,17 +121,6 @@ void date_back(const ContactSolve& s, const ContactConstraint& constraint, float
                                 displacement_of(s, constraint.body_a, point.from_a, seconds),
                             manifold.normal);
   }
-}
-
-// True if the constraint has points and its surface does not let the other body pass.
-bool finish_constraint(const RigidWorld& w, const Contact& contact, ContactConstraint& constraint) {
-  Manifold& manifold = *constraint.manifold;
-  if (manifold.count > 0 && !w.surface_rules.empty() &&
-      !apply_surface_rules(w, contact, manifold, constraint))
-    manifold = Manifold{};
-  constraint.point_count = std::int8_t(manifold.count);
-  if (manifold.count > 0) constraint.fast = record_hit_approach(w, contact, manifold) || constraint.fast;
-  return manifold.count > 0;
 }
 
 bool is_apart(const RigidWorld& w, const Contact& contact) {
@@ -172,23 +164,32 @@ bool find_meeting(const ContactSolve& s, std::uint32_t index) {
   Array<ContactConstraint>& constraints = s.lists.constraints;
   const std::uint32_t slot = s.lists.slots[index];
   Contact& contact = w.contacts.contacts[slot];
-  // All manifolds of a surface are found at once.
-  if (contact.manifold_room > 1 && !constraints[index].speculative)
-    return constraints[index].manifold->count > 0;
+  // All manifolds of a surface are found at once, in one of its constraints.
+  std::size_t first = index, end = index + 1;
+  while (first > 0 && s.lists.slots[first - 1] == slot) --first;
+  while (end < constraints.size() && s.lists.slots[end] == slot) ++end;
+  for (std::size_t i = first; i < end && contact.manifold_room > 1; ++i)
+    if (!constraints[i].speculative) return !constraints[index].speculative;
   const float substep = s.settings.substep;
   const Sweep sweeps[2] = {present_sweep(w.bodies, contact.body_a, substep),
                            present_sweep(w.bodies, contact.body_b, substep)};
   const Impact impact = meeting_time(s, contact, sweeps);
   if (!impact.hit) return false;
-  update_manifolds(s, contact, sweeps, impact.time);
-  std::size_t first = index;
-  while (first > 0 && s.lists.slots[first - 1] == slot) --first;
-  for (std::size_t i = first; i < constraints.size() && s.lists.slots[i] == slot; ++i) {
-    date_back(s, constraints[i], float(impact.time) * substep);
-    finish_constraint(w, contact, constraints[i]);
-    constraints[i].speculative = false;
+  const int found = update_manifolds(s, contact, sweeps, impact.time);
+  const Manifold* const manifolds = &w.contacts.manifolds[contact.first_manifold];
+  bool is_found = false;
+  for (std::size_t i = first; i < end; ++i) {
+    ContactConstraint& constraint = constraints[i];
+    Manifold& manifold = *constraint.manifold;
+    if (&manifold - manifolds >= found) continue;
+    date_back(s, constraint, float(impact.time) * substep);
+    constraint.point_count = std::int8_t(manifold.count);
+    constraint.fast = record_hit_approach(w, contact, manifold) || constraint.fast;
+    if (!w.surface_rules.empty() && !apply_surface_rules(w, contact, manifold, constraint)) continue;
+    constraint.speculative = false;
+    is_found = is_found || i == index;
   }
-  return constraints[index].manifold->count > 0;
+  return is_found;
 }
 
 }  // namespace gyre
