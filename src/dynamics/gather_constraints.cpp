@@ -2,6 +2,7 @@
 
 #include "base/prefetch.h"
 #include "rigid/batch/surface_rules.h"
+#include "rigid/solve/speculative_contacts.h"
 #include "solver/articulation/ball_joint_transfer.h"
 #include "solver/rest/static_equilibrium.h"
 #include "task/parallel.h"
@@ -63,12 +64,14 @@ class ContactGatherer {
         w_(batch.w),
         fall_(std::sqrt(reference_gravity(w_.settings))),
         has_rules_(!w_.surface_rules.empty()),
+        in_lanes_(row_solver_of(batch.w) == nullptr),
         is_alone_(is_alone) {}
 
   // The properties found among some contacts.
   struct Found {
     bool gaps = false;  // some constraints have no manifold and are skipped
     bool bouncy = false;
+    bool speculative = false;
   };
 
   Found gather(std::uint32_t slot, std::size_t index) const {
@@ -77,6 +80,7 @@ class ContactGatherer {
     const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPoseRead : kConstrained;
     touch_body(contact.body_a, ends.active_a, touch);
     touch_body(contact.body_b, ends.active_b, touch);
+    const bool speculative = in_lanes_ && is_speculative(w_, contact);
     const ColoringPair pair{ends.active_a ? local_index_[contact.body_a] : ColoringPair::kNone,
                             ends.active_b ? local_index_[contact.body_b] : ColoringPair::kNone};
     Found found;
@@ -86,6 +90,8 @@ class ContactGatherer {
       lists_.slots[index++] = slot;
       describe(contact, ends, constraint);
       if (!add_manifold(contact, manifold, constraint)) constraint.manifold = nullptr;
+      constraint.speculative = speculative;
+      found.speculative = found.speculative || speculative;
       found.gaps = found.gaps || constraint.manifold == nullptr;
       found.bouncy = found.bouncy || constraint.restitution > 0.0f;
     }
@@ -136,7 +142,7 @@ class ContactGatherer {
   bool add_manifold(const Contact& contact, Manifold& manifold, ContactConstraint& constraint) const {
     const Loads loads(manifold);
     constraint.manifold = &manifold;
-    constraint.point_count = std::int16_t(manifold.count);
+    constraint.point_count = std::int8_t(manifold.count);
     constraint.loaded = loads.any;
     constraint.can_roll = false;
     constraint.stiffness = manifold.load_age >= kRigidContactAge ? ContactStiffness::rigid
@@ -161,6 +167,7 @@ class ContactGatherer {
   RigidWorld& w_;
   float fall_;
   bool has_rules_;
+  bool in_lanes_;  // solvers of rows know only the points as the step begins
   bool is_alone_;
 };
 
@@ -205,7 +212,7 @@ void gather_contacts(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   s.pairs.resize_uninitialized(count);
   s.slots.resize_uninitialized(count);
   using Found = ContactGatherer::Found;
-  const auto either = [](Found a, Found b) { return Found{a.gaps || b.gaps, a.bouncy || b.bouncy}; };
+  const auto either = [](Found a, Found b) { return Found{a.gaps || b.gaps, a.bouncy || b.bouncy, a.speculative || b.speculative}; };
   const ContactGatherer gatherer(batch, tasks.worker_count() == 1);
   const auto gather_block = [&](int begin, int end, int) {
     Found found;
@@ -220,11 +227,12 @@ void gather_contacts(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   };
   const Found found =
       reduce_blocks(tasks, int(slots.size()), kContactsPerGather, Found{}, gather_block, either);
+  batch.contacts.has_speculative = found.speculative;
   if (found.gaps) close_gaps(s);
   s.impacts.clear();
   if (!found.bouncy) return;
-  for (const ContactConstraint& constraint : s.constraints) {
-    if (constraint.restitution > 0.0f) s.impacts.push_back(make_impact(constraint));
+  for (std::uint32_t i = 0; i < s.constraints.size(); ++i) {
+    if (s.constraints[i].restitution > 0.0f) s.impacts.push_back(make_impact(s.constraints[i], i));
   }
 }
 

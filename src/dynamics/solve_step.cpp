@@ -1,5 +1,6 @@
 #include "dynamics/solve_step.h"
 
+#include "collision/contact/contact_recycle.h"
 #include "dynamics/constraint_layout.h"
 #include "dynamics/gather_bodies.h"
 #include "dynamics/gather_constraints.h"
@@ -136,8 +137,11 @@ void color(const BatchContext& batch, std::span<const ColoringPair> pairs,
 void gather_constraints(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   gather_contacts(batch, arena, tasks);
   gather_joint_edges(batch, arena, tasks);
-  batch.contacts.rolling = find_rolling_contacts(batch.w, batch.scratch.contacts, batch.members.bodies,
-                                                 batch.contacts.settings.step, arena, tasks);
+  ContactSolve& contacts = batch.contacts;
+  contacts.rolling = find_rolling_contacts(batch.w, batch.scratch.contacts, batch.members.bodies,
+                                           contacts.settings.step, arena, tasks);
+  for (const RollingContact& rolling : contacts.rolling.contacts)
+    contacts.lists.constraints[rolling.constraint].speculative = false;
   batch.partition = partition_bodies(batch.scratch.contacts.pairs, batch.members.bodies.size(),
                                      tasks.worker_count(), arena);
 }
@@ -301,6 +305,7 @@ BatchContext describe_batch(RigidWorld& w, BatchScratch& scratch, const SolverKe
   batch.contacts.settings = contact_settings(w, seconds, plan);
   batch.contacts.impact_settings = {plan.h, kBounceShare * plan.h * length(w.settings.gravity)};
   batch.contacts.bodies = {motion, inertia};
+  batch.contacts.update_views = select_recycling(kernels.width);
   batch.joints.settings = joint_settings(w, plan.h);
   batch.joints.bodies = {motion, inertia, orientations};
   batch.joints.lane_start = {

@@ -111,13 +111,12 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   p.articulations<solve_articulation_after_contacts>();
   p.simd_articulations<&Simd::solve_after_contacts>();
   p.joint_islands<limit_energy_gain>();
-  // Positions, and delayed restitution.
+  // Positions.
   if (has_joints) p.bodies<integrate_positions>();
   if (!has_joints) p.bodies<add_contact_change_and_integrate>();
   p.spinning_bodies<integrate_fast_spinning>();
   if (p.begins_soft(half_step + 1)) p.soft_members<finish_soft_members>();
   if (p.begins_soft(half_step + 1)) p.soft_rows<bound_soft_surfaces>();
-  p.impacts<apply_delayed_contact_restitution>();
   // Joints are relaxed at the present poses, so that no velocity stays from the bias.
   p.stiffened_bodies<stiffen_bodies>();
   p.all_joints<prepare_other_joints>();

@@ -110,6 +110,21 @@ class SurfaceSweep {
     return first_;
   }
 
+  Impact first_meeting() {
+    const int piece_count = pieces();
+    Impact first;
+    for (int piece = 0; piece < piece_count && !first.hit; ++piece) {
+      const double from = double(piece) / double(piece_count);
+      first.time = double(piece + 1) / double(piece_count);
+      for_each_triangle(from, first.time, [&](std::uint32_t id) {
+        set_triangle(surface_.bare_triangle(id));
+        const Impact impact = time_of_impact(a_, near_frame_, from, first.time, scale_.target);
+        if (impact.hit) first = impact;
+      });
+    }
+    return first;
+  }
+
   bool crosses(double end, double clear) {
     bool met = false;
     for_each_triangle(end, end, [&](std::uint32_t id) {
@@ -397,6 +412,11 @@ TimeOfImpact convex_time_of_impact(const SweptShape& a, const SweptShape& core, 
 TimeOfImpact surface_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
                                     double end, const ImpactScale& scale, TriangleHull& triangle) {
   return SurfaceSweep(a, core, b, scale, triangle).first_impact(end);
+}
+
+Impact first_meeting(const SweptShape& a, const SweptShape& b, double target, TriangleHull& triangle) {
+  const ImpactScale scale{.target = target, .touching = target, .core_target = target};
+  return SurfaceSweep(a, a, b, scale, triangle).first_meeting();
 }
 
 bool crosses_surface(const SweptShape& a, const SweptShape& b, double end, double clear,

@@ -54,6 +54,9 @@ TimeOfImpact convex_time_of_impact(const SweptShape& a, const SweptShape& core, 
 TimeOfImpact surface_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
                                     double end, const ImpactScale& scale, TriangleHull& triangle);
 
+// The first time at which `a` comes within `target` (m) of a triangle of the surface `b`, from either side.
+Impact first_meeting(const SweptShape& a, const SweptShape& b, double target, TriangleHull& triangle);
+
 // True if `a` meets the surface `b` before `end`, from either side, and is farther than `clear` (m) from it at `end`.
 bool crosses_surface(const SweptShape& a, const SweptShape& b, double end, double clear,
                      const ImpactScale& scale, TriangleHull& triangle);

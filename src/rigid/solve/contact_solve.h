@@ -22,6 +22,8 @@ struct ContactSolve {
   std::span<std::uint16_t>
       rolling_lanes{};  // by block of contacts: bits of contacts whose points are yet to be advanced
   std::span<std::uint32_t> rolling_indices{};  // by lane: index of its rolling contact
+  bool has_speculative = false;                // among the contacts
+  RecycleContacts update_views = nullptr;      // for manifolds that are found within the step
   RestingTrees forest{};
   TreeSolve tree_solve{};
   std::span<RestingStructure> structures{};

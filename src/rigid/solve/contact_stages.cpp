@@ -1,5 +1,7 @@
 #include "rigid/solve/contact_stages.h"
 
+#include "rigid/solve/speculative_contacts.h"
+
 #include <bit>
 
 namespace gyre {
@@ -58,6 +60,20 @@ void restore_velocities(const ContactGroup& group, int begin, int end) {
   });
 }
 
+// Finds the manifolds of speculative contacts that would push, and solves those whose shapes meet.
+void solve_speculative(const ContactSolve& s, int begin, int end) {
+  const ContactKernels& kernels = s.kernels.contacts;
+  std::uint32_t lanes = 0;
+  while ((begin = kernels.find_pushing(s.blocks, begin, end, lanes)) < end) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      const std::uint32_t index = s.lists.order[std::size_t(begin * s.kernels.width + lane)];
+      if (find_meeting(s, index))
+        kernels.solve_anew(s.blocks, begin, lane, s.lists.constraints[index], s.bodies, s.settings);
+    }
+  }
+}
+
 }  // namespace
 
 void prepare_contacts(const ContactSolve& s, int begin, int end) {
@@ -76,12 +92,14 @@ void warm_start_contacts(const ContactGroup& group, int begin, int end) {
 void solve_contacts(const ContactGroup& group, int begin, int end) {
   const ContactSolve& s = *group.solve;
   // Blocks of the overflow group share bodies, so each block is advanced, solved and restored by itself.
-  const int blocks = group.serial && !s.rolling.contacts.empty() ? 1 : end - begin;
+  const int blocks = group.serial && (s.has_speculative || !s.rolling.contacts.empty()) ? 1 : end - begin;
   for (; begin < end; begin += blocks) {
     advance_contact_points(group, begin, begin + blocks);
     s.kernels.contacts.solve(s.blocks, int(group.first) + begin, int(group.first) + begin + blocks,
                              s.settings.substep);
     restore_velocities(group, begin, begin + blocks);
+    if (s.has_speculative)
+      solve_speculative(s, int(group.first) + begin, int(group.first) + begin + blocks);
   }
 }
 void relax_contacts(const ContactGroup& group, int begin, int end) {
@@ -95,10 +113,12 @@ void project_contacts(const ContactGroup& group, int begin, int end) {
 
 void record_contact_approach(const ContactSolve& s, int, int) { record_approach(s.lists.impacts, s.bodies); }
 void apply_contact_restitution(const ContactSolve& s, int, int) {
-  apply_restitution(s.lists.impacts, s.bodies, s.impact_settings);
-}
-void apply_delayed_contact_restitution(const ContactSolve& s, int, int) {
-  apply_delayed_restitution(s.lists.impacts, s.bodies, s.impact_settings);
+  const auto find = [&](ImpactContact& impact) {
+    if (!find_meeting(s, impact.constraint)) return false;
+    read_manifold(impact);
+    return true;
+  };
+  apply_restitution(s.lists.impacts, s.bodies, s.impact_settings, find);
 }
 
 void solve_resting_trees(const ContactSolve& s, int begin, int end) {

@@ -12,18 +12,17 @@ void prepare_contacts(const ContactSolve& s, int begin, int end);
 void finish_contacts(const ContactSolve& s, int begin, int end);
 
 void warm_start_contacts(const ContactGroup& group, int begin, int end);
-// Solves soft contacts without restitution. Points of rolling contacts advance first.
+// Solves soft contacts without restitution. Points of rolling contacts advance first; speculative contacts come last.
 void solve_contacts(const ContactGroup& group, int begin, int end);
 // Solves without springs, so that no velocity from them stays under load.
 void relax_contacts(const ContactGroup& group, int begin, int end);
 // Removes penetration by pushout. Motion records hold displacements instead of velocities.
 void project_contacts(const ContactGroup& group, int begin, int end);
 
-// Restitution, in one block. The first stage records closing speeds before the forces. The second applies bounces of points that meet
-// within the sub-step, the third the delayed ones.
+// Restitution, in one block. The first stage records velocities before the forces. The second applies bounces of points that meet within
+// the sub-step.
 void record_contact_approach(const ContactSolve& s, int begin, int end);
 void apply_contact_restitution(const ContactSolve& s, int begin, int end);
-void apply_delayed_contact_restitution(const ContactSolve& s, int begin, int end);
 
 // Solves resting trees; each is a block.
 void solve_resting_trees(const ContactSolve& s, int begin, int end);

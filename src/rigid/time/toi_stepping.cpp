@@ -81,10 +81,10 @@ ImpactContact make_touching_impact(const RigidWorld& w, const Contact& contact, 
   constraint.dynamic_friction = contact.surface.dynamic_friction;
   constraint.restitution = contact.surface.restitution;
   constraint.manifold = &manifold;
-  constraint.point_count = std::int16_t(manifold.count);
+  constraint.point_count = std::int8_t(manifold.count);
   if (!w.surface_rules.empty() && !apply_surface_rules(w, contact, manifold, constraint))
     constraint.restitution = 0.0f;
-  ImpactContact impact = make_impact(constraint);
+  ImpactContact impact = make_impact(constraint, 0);
   const float tolerance = 2.0f * touch_distance(contact);
   int touching = 0;
   for (int k = 0; k < impact.count; ++k) {
@@ -178,7 +178,7 @@ bool resolve_impacts(RigidWorld& w, ImpactScratch& scratch, float threshold) {
   // No forces act during an impact and no time passes. Every touching point that closes takes part.
   const ImpactSettings settings{1.0f, threshold};
   record_approach(scratch.impacts, bodies);
-  apply_restitution(scratch.impacts, bodies, settings);
+  apply_restitution(scratch.impacts, bodies, settings, [](ImpactContact&) { return true; });
   bool any = false;
   for (std::size_t i = 0; i < scratch.impacts.size(); ++i) {
     const ImpactContact& impact = scratch.impacts[i];

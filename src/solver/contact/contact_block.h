@@ -29,13 +29,14 @@ struct ContactConstraint {
   float restitution = 0.0f;
   std::int32_t body_a = kNoBody;  // index of the motion record; kNoBody for static bodies
   std::int32_t body_b = kNoBody;
-  std::int16_t point_count = 0;          // the manifold's
+  std::int8_t point_count = 0;           // the manifold's
   bool loaded = false;                   // it carried load in the last step
   bool can_roll = false;                 // a curved shape on a flat one
+  ContactStiffness stiffness = ContactStiffness::fresh;  // at the beginning of the step
   bool rigid = false;                    // without spring: part of a tree that is solved directly
   bool has_joint = false;                // one of the bodies has a joint
+  bool speculative = false;              // apart: its features are found anew before it pushes
   bool fast = false;                     // its closing speed may exceed the threshold of hit events
-  ContactStiffness stiffness = ContactStiffness::fresh;  // at the beginning of the step
   Manifold* manifold = nullptr;
 };
 static_assert(sizeof(ContactConstraint) <= 64 || sizeof(void*) != 8, "a cache line");
@@ -109,6 +110,12 @@ struct ContactKernels {
   void (*advance_points)(void* blocks, int block, const AdvancedArmsLane* lanes, int count);
   void (*warm_start)(void* blocks, int begin, int end);
   void (*solve)(void* blocks, int begin, int end, float substep);
+  // Speculative contacts get no impulse from `solve`. Returns the first block in which some would, or `end`, and those
+  // lanes as bits, once.
+  int (*find_pushing)(void* blocks, int begin, int end, std::uint32_t& lanes);
+  // Solves a speculative contact whose manifold was found anew. From then on it is like any other.
+  void (*solve_anew)(void* blocks, int block, int lane, const ContactConstraint& constraint, ContactBodies bodies,
+                     const ContactSettings& settings);
   void (*relax)(void* blocks, int begin, int end, float substep);
   // Pushout: motion records hold displacements (m, rad) instead of velocities.
   void (*project)(void* blocks, int begin, int end, float step);

@@ -178,6 +178,17 @@ GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& cold, const 
   for (int i = 0; i < Count; ++i) next[i] = select(tensile, tried[i], next[i]);
 }
 
+// Holds back the impulses of speculative lanes, and marks those that would push; the last solution counts.
+template <int W, int Count>
+__attribute__((noinline)) void hold_speculative(ContactBlock<W>& block, Wide<W> (&next)[Count]) {
+  const Wide<W> zero(0.0f);
+  auto pushes = next[0] > zero;
+  for (int i = 1; i < Count; ++i) pushes = pushes | (next[i] > zero);
+  block.pushing = std::uint16_t(lane_bits<W>(pushes) & block.speculative);
+  const auto held = Mask<W>::of_bits(block.speculative);
+  for (int i = 0; i < Count; ++i) next[i] = select(held, zero, next[i]);
+}
+
 // The normal rows of a manifold, solved together as a small complementarity problem: first as if all points
 // were in compression (all alike: no order, no rocking), then, if some are tensile, by projected iterations
 // on the impulses. Soft: the spring draws its points to a penetration of `slop`, from both sides, and yields
@@ -236,6 +247,7 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
   }
   if (Count > 1 && any(tensile))
     iterate_manifold_points<W, Count>(*block.cold, residual, accumulated, tensile, next);
+  if (block.speculative != 0) hold_speculative<W, Count>(block, next);
   Wide<W> total = next[0] - block.impulses[0];
   Vec3W<W> angular_sum = total * block.points[0].arm;
   block.impulses[0] = next[0];

@@ -60,9 +60,9 @@ struct alignas(64) ContactBlock {
   std::int32_t is_settled = 0;  // a solve with resting bodies left all impulses unchanged, and so will
                                 // the next
   // Lanes as bits: with a body that cannot move along some axes; with a jointed body; with a body A, B; with a movable body A, B; with friction at its
-  // limit; with a row for a point.
+  // limit; with a row for a point; that are speculative; of these, those that would push.
   std::uint16_t locked = 0, jointed = 0, has_a = 0, has_b = 0, movable_a = 0, movable_b = 0, slides = 0,
-                rows[kMaxManifoldPoints] = {};
+                rows[kMaxManifoldPoints] = {}, speculative = 0, pushing = 0;
   Vec3W<W> normal, tangent_1, tangent_2;
   // Friction at the centre of pressure.
   Vec3W<W> friction_from_a, friction_from_b;

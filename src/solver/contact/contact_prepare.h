@@ -37,7 +37,8 @@ static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize &&
 static_assert(offsetof(ContactConstraint, surface_velocity) == 4 * kConstraintVelocity);
 // Bytes in the last float of a group.
 static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 &&
-              offsetof(ContactConstraint, has_joint) == 4 * kConstraintKinds + 13);
+              offsetof(ContactConstraint, has_joint) == 4 * kConstraintKinds + 13 &&
+              offsetof(ContactConstraint, speculative) == 4 * kConstraintKinds + 14);
 
 // The constraints and manifolds of a block's lanes. Lanes without a contact, and missing points, read zeros
 // and are not written.
@@ -459,6 +460,8 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const WideInt<W> none(0), kinds = bit_pattern(in[3]);
   const Mask<W> rigid = (kinds & WideInt<W>(0xff)) != none;
   block.jointed = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
+  block.speculative = lane_bits<W>((kinds & WideInt<W>(0xff0000)) != none);
+  block.pushing = 0;
   Wide<W> age;
   prepare_impulses<W>(block, records, surface, settings, age);
   block.cold->fresh = select(age > zero, zero, one);
@@ -552,7 +555,10 @@ void write_block_impulse(void* memory, int index, int lane, const ContactImpulse
     set_lane(present, lane, value);
   };
   block.is_settled = 0;
-  for (int k = 0; k < kMaxManifoldPoints; ++k) replace(block.impulses[k], block.totals[k], impulse.normal[k]);
+  for (int k = 0; k < kMaxManifoldPoints; ++k) {
+    if (impulse.normal[k] > 0.0f) block.speculative = static_cast<std::uint16_t>(block.speculative & ~(1u << lane));
+    replace(block.impulses[k], block.totals[k], impulse.normal[k]);
+  }
   replace(block.friction_1, block.total_1, dot(impulse.friction, get_lane(block.tangent_1, lane)));
   replace(block.friction_2, block.total_2, dot(impulse.friction, get_lane(block.tangent_2, lane)));
   set_lane(block.twist, lane, impulse.twist);

@@ -89,6 +89,12 @@ GYRE_INLINE NormalMotion<W> displacements_so_far(const ContactBlock<W>& block,
   }
 }
 
+// Lanes with a row for a point, without speculative contacts.
+template <int W>
+GYRE_INLINE Mask<W> pushed_rows(const ContactBlock<W>& block, int point) {
+  return Mask<W>::of_bits(std::uint32_t(block.rows[point] & ~block.speculative));
+}
+
 // The pushout of each point, or the negative distance by which it may close. False if no lane penetrates.
 template <int W, bool kHasA>
 GYRE_INLINE bool find_pushouts(const ContactBlock<W>& block, const PairMotion<W, kHasA>& pair, float step,
@@ -101,7 +107,7 @@ GYRE_INLINE bool find_pushouts(const ContactBlock<W>& block, const PairMotion<W,
     const PointBlock<W>& point = block.points[i];
     const Wide<W> over =
         zero - (point.separation + displacements.at(point) + Wide<W>(float(kPushoutSlopFactor)) * block.slop);
-    const auto exists = Mask<W>::of_bits(block.rows[i]);
+    const auto exists = pushed_rows<W>(block, i);
     const auto deep = (over > zero) & exists;
     overlaps = overlaps | deep;
     pushouts[i] =
@@ -122,7 +128,7 @@ GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
   for (int i = 0; i < count; ++i) {
     impulses[i] = zero;
     const Wide<W> k = response.k[packed(i, i)];
-    inverse_diagonal[i] = select((k > zero) & Mask<W>::of_bits(block.rows[i]),
+    inverse_diagonal[i] = select((k > zero) & pushed_rows<W>(block, i),
                                  Wide<W>(1.0f) / select(k > zero, k, Wide<W>(1.0f)), zero);
   }
   GYRE_ROLLED

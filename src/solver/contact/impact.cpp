@@ -40,14 +40,31 @@ struct Bodies {
            dot(ja, inertia_a->inverse * ja) + dot(jb, inertia_b->inverse * jb);
   }
   void apply_impulse(Vec3 p, Vec3 from_a, Vec3 from_b) {
-    if (a != nullptr && (inertia_a->inverse_mass > 0.0f || inertia_a->inverse != Sym3{})) {
+    if (is_movable(a, *inertia_a)) {
       a->linear_velocity -= inertia_a->inverse_mass * along_free_axes(*inertia_a, p);
       a->angular_velocity -= inertia_a->inverse * cross(from_a, p);
     }
-    if (b != nullptr && (inertia_b->inverse_mass > 0.0f || inertia_b->inverse != Sym3{})) {
+    if (is_movable(b, *inertia_b)) {
       b->linear_velocity += inertia_b->inverse_mass * along_free_axes(*inertia_b, p);
       b->angular_velocity += inertia_b->inverse * cross(from_b, p);
     }
+  }
+  // Takes back the motion that an impulse, applied at once, adds before its time.
+  void delay_impulse(Vec3 p, float time, Vec3 from_a, Vec3 from_b) {
+    const Vec3 moment = time * p;
+    if (is_movable(a, *inertia_a)) {
+      a->delta_position += inertia_a->inverse_mass * along_free_axes(*inertia_a, moment);
+      a->delta_rotation += inertia_a->inverse * cross(from_a, moment);
+    }
+    if (is_movable(b, *inertia_b)) {
+      b->delta_position -= inertia_b->inverse_mass * along_free_axes(*inertia_b, moment);
+      b->delta_rotation -= inertia_b->inverse * cross(from_b, moment);
+    }
+  }
+
+ private:
+  static bool is_movable(const BodyMotion* body, const BodyInertia& inertia) {
+    return body != nullptr && (inertia.inverse_mass > 0.0f || inertia.inverse != Sym3{});
   }
 };
 
@@ -70,15 +87,21 @@ void meet_targets(ImpactContact& contact, Bodies& bodies) {
     // Converged to the precision of floats.
     if (change <= 1.0e-6f * absolute(contact.points[0].target)) break;
   }
+  for (int k = 0; k < contact.count; ++k) {
+    const ImpactPoint& point = contact.points[k];
+    if (point.impulse > 0.0f)
+      bodies.delay_impulse(point.impulse * contact.normal, point.time, point.from_a, point.from_b);
+  }
 }
 
 // Friction of the impact at its centre of pressure.
 void apply_friction(ImpactContact& contact, Bodies& bodies) {
-  float total = 0.0f;
+  float total = 0.0f, time = 0.0f;
   Vec3 from_a, from_b;
   for (int k = 0; k < contact.count; ++k) {
     const ImpactPoint& point = contact.points[k];
     total += point.impulse;
+    time += point.impulse * point.time;
     from_a += point.impulse * point.from_a;
     from_b += point.impulse * point.from_b;
   }
@@ -95,10 +118,12 @@ void apply_friction(ImpactContact& contact, Bodies& bodies) {
   const Vec3 direction = slip / speed;
   const float k_inverse = bodies.inverse_mass(direction, from_a, from_b);
   if (!(k_inverse > 0.0f)) return;
-  bodies.apply_impulse(-min(speed / k_inverse, contact.friction * total) * direction, from_a, from_b);
+  const Vec3 impulse = -min(speed / k_inverse, contact.friction * total) * direction;
+  bodies.apply_impulse(impulse, from_a, from_b);
+  bodies.delay_impulse(impulse, time / total, from_a, from_b);
 }
 
-// True if the point touches within the sub-step. Sets its separating speed.
+// True if the point would touch within the sub-step. Sets its separating speed and the time until then.
 bool apply_point_restitution(ImpactPoint& point, const ImpactContact& contact, const Bodies& bodies,
                              const ImpactSettings& settings) {
   const float closing = -dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
@@ -107,95 +132,91 @@ bool apply_point_restitution(ImpactPoint& point, const ImpactContact& contact, c
   const float separation =
       point.separation + dot(bodies.displacement(point.from_a, point.from_b), contact.normal);
   if (closing * settings.substep < separation) return false;
-  const float start = closing - point.force_speed;  // u: before the forces of this sub-step
-  const float half_force_speed = 0.5f * point.force_speed;
-  const float fall = 2.0f * point.force_speed / settings.substep * separation;  // 2 a s
-  const float energy = square(start + half_force_speed) + fall;
+  // a h: closing speed that the forces of this sub-step added.
+  const float force_speed =
+      -dot(contact.linear + cross(contact.angular_b, point.from_b) - cross(contact.angular_a, point.from_a),
+           contact.normal);
+  const float start = closing - force_speed;  // u: before the forces of this sub-step
+  const float half_force_speed = 0.5f * force_speed, acceleration = force_speed / settings.substep;
+  const float energy = square(start + half_force_speed) + 2.0f * acceleration * separation;
   if (!(energy > square(settings.threshold))) return false;
   const float leaving = square(contact.restitution) * energy;
-  if (leaving - fall >= square(half_force_speed)) {
-    point.target = max(std::sqrt(leaving - fall) - half_force_speed, 0.0f);
-    point.is_hit = true;
-  } else {
-    point.target = half_force_speed + std::sqrt(leaving);
-    point.pending = true;
+  point.time = contact.has_joint ? 0.0f : max(separation, 0.0f) / closing;
+  const float left = separation - point.time * closing;
+  // (w + a h / 2)^2 + 2 a (left - t w) = e^2 E
+  const float half = half_force_speed - acceleration * point.time;
+  const float squared = square(half) - square(half_force_speed) + leaving - 2.0f * acceleration * left;
+  point.target = max(std::sqrt(max(squared, 0.0f)) - half, 0.0f);
+  point.is_hit = true;
+  return true;
+}
+
+bool find_hit_points(ImpactContact& contact, const Bodies& bodies, const ImpactSettings& settings) {
+  bool is_hit = false;
+  for (int k = 0; k < contact.count; ++k) {
+    contact.points[k].is_hit = false;
+    if (apply_point_restitution(contact.points[k], contact, bodies, settings)) is_hit = true;
   }
-  return point.is_hit;
+  return is_hit;
 }
 
 }  // namespace
 
-ImpactContact make_impact(const ContactConstraint& constraint) {
+ImpactContact make_impact(const ContactConstraint& constraint, std::uint32_t index) {
   ImpactContact contact;
   contact.manifold = constraint.manifold;
   contact.body_a = constraint.body_a;
   contact.body_b = constraint.body_b;
   contact.restitution = constraint.restitution;
   contact.friction = constraint.dynamic_friction;
-  contact.normal = constraint.manifold->normal;
-  contact.count = constraint.manifold->count;
+  contact.constraint = index;
+  contact.speculative = constraint.speculative;
+  contact.has_joint = constraint.has_joint;
+  read_manifold(contact);
+  return contact;
+}
+
+void read_manifold(ImpactContact& contact) {
+  contact.normal = contact.manifold->normal;
+  contact.count = contact.manifold->count;
   for (int k = 0; k < contact.count; ++k) {
-    const ContactPointState& from = constraint.manifold->points[k];
+    const ContactPointState& from = contact.manifold->points[k];
     contact.points[k].from_a = from.from_a;
     contact.points[k].from_b = from.from_b;
     contact.points[k].separation = from.separation;
   }
-  return contact;
 }
 
 void record_approach(std::span<ImpactContact> contacts, ContactBodies bodies) {
   for (ImpactContact& contact : contacts) {
     const Bodies pair(contact, bodies);
-    for (int k = 0; k < contact.count; ++k) {
-      ImpactPoint& point = contact.points[k];
-      point.force_speed = -dot(pair.velocity(point.from_a, point.from_b), contact.normal);
-      point.pending = false;
-    }
+    contact.linear = pair.velocity({}, {});
+    contact.angular_a = pair.a == nullptr ? Vec3{} : pair.a->angular_velocity;
+    contact.angular_b = pair.b == nullptr ? Vec3{} : pair.b->angular_velocity;
   }
 }
 
 void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
-                       const ImpactSettings& settings) {
-  // Effect of the forces: closing speed now minus closing speed before.
+                       const ImpactSettings& settings, FindMeeting find_meeting) {
+  // Effect of the forces: velocities now minus velocities before.
   for (ImpactContact& contact : contacts) {
     const Bodies pair(contact, bodies);
-    for (int k = 0; k < contact.count; ++k) {
-      ImpactPoint& point = contact.points[k];
-      point.force_speed = -dot(pair.velocity(point.from_a, point.from_b), contact.normal) - point.force_speed;
-    }
+    contact.linear = pair.velocity({}, {}) - contact.linear;
+    contact.angular_a = (pair.a == nullptr ? Vec3{} : pair.a->angular_velocity) - contact.angular_a;
+    contact.angular_b = (pair.b == nullptr ? Vec3{} : pair.b->angular_velocity) - contact.angular_b;
   }
   for (int pass = 0; pass < kPasses; ++pass) {
     bool any = false;
     for (ImpactContact& contact : contacts) {
       Bodies pair(contact, bodies);
-      bool is_hit = false;
-      for (int k = 0; k < contact.count; ++k) {
-        contact.points[k].is_hit = false;
-        if (apply_point_restitution(contact.points[k], contact, pair, settings)) is_hit = true;
-      }
-      if (!is_hit) continue;
+      if (!find_hit_points(contact, pair, settings)) continue;
+      if (contact.speculative && (!find_meeting(contact) || !find_hit_points(contact, pair, settings)))
+        continue;
       any = true;
       meet_targets(contact, pair);
       apply_friction(contact, pair);
     }
     if (!any) break;
-  }
-}
-
-void apply_delayed_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
-                               const ImpactSettings&) {
-  for (ImpactContact& contact : contacts) {
-    bool pending = false;
-    for (int k = 0; k < contact.count; ++k) {
-      ImpactPoint& point = contact.points[k];
-      point.is_hit = point.pending;
-      pending = pending || point.pending;
-      point.pending = false;
-    }
-    if (!pending) continue;
-    Bodies pair(contact, bodies);
-    meet_targets(contact, pair);
-    apply_friction(contact, pair);
   }
 }
 

@@ -10,13 +10,14 @@
 // boundary of the step. So a bounce does not depend on the phase of the step or on how early the contact was
 // found. For a constant relative acceleration a (closing positive), semi-implicit Euler conserves E(u, s) =
 // (u + a h / 2)^2 + 2 a s; the surfaces meet with speed sqrt(E). For a rebound speed of e sqrt(E) the
-// separating speed w is
+// separating speed w obeys (w + a h / 2)^2 + 2 a s' = e^2 E.
 //
-// (w + a h / 2)^2 + 2 a s = e^2 E at once, at the distance s, if the body rises that far,
-//
-// w = a h / 2 + e sqrt(E) delayed until the body has reached the surface, otherwise.
+// The bodies meet after the time t = s / closing speed of the sub-step. They move on from there with the new velocities: an
+// impulse that changes a velocity by dv also moves the body by -t dv. So s' = -t w, and neither momentum nor its moment depends
+// on where in a sub-step they meet. Bodies with joints stay where they are: s' = s.
 #pragma once
 
+#include "base/function_ref.h"
 #include "solver/contact/contact_block.h"
 
 #include <span>
@@ -26,11 +27,10 @@ namespace gyre {
 struct ImpactPoint {
   Vec3 from_a, from_b;
   float separation = 0.0f;  // as the step began
-  float force_speed = 0.0f;  // a h: closing speed added by the forces of this sub-step
-  float target = 0.0f;       // target of the separating speed
-  float impulse = 0.0f;      // N s, of the present impact
+  float target = 0.0f;      // target of the separating speed
+  float time = 0.0f;        // s, from the beginning of the sub-step until the surfaces meet
+  float impulse = 0.0f;     // N s, of the present impact
   bool is_hit = false;
-  bool pending = false;  // restitution is delayed until the body has reached the surface
 };
 
 struct ImpactContact {
@@ -42,6 +42,11 @@ struct ImpactContact {
   Vec3 normal;
   std::int32_t count = 0;
   ImpactPoint points[kMaxManifoldPoints];
+  std::uint32_t constraint = 0;  // index
+  bool speculative = false;      // its features are found anew before it bounces
+  bool has_joint = false;        // bounces at once: a body may not be moved away from its joints
+  // Before the forces of a sub-step: velocities, of B's centre against A's, and angular; after them: what they changed.
+  Vec3 linear, angular_a, angular_b;
 };
 
 struct ImpactSettings {
@@ -49,15 +54,16 @@ struct ImpactSettings {
   float threshold = 0.0f;  // m/s: slower impacts do not bounce
 };
 
-ImpactContact make_impact(const ContactConstraint& constraint);
+ImpactContact make_impact(const ContactConstraint& constraint, std::uint32_t index);
+// Takes normal and points of the manifold.
+void read_manifold(ImpactContact& contact);
 
-// Before the forces of a sub-step: records the closing speed of the points.
+// Before the forces of a sub-step: records the velocities of both bodies.
 void record_approach(std::span<ImpactContact> contacts, ContactBodies bodies);
+// Finds the features of a contact where its shapes meet within the sub-step; false if they do not meet.
+using FindMeeting = FunctionRef<bool(ImpactContact&)>;
 // After the forces, before the constraints: applies impulses to points that would touch in this sub-step.
 void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
-                       const ImpactSettings& settings);
-// After the bodies have moved: applies delayed restitution.
-void apply_delayed_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
-                               const ImpactSettings& settings);
+                       const ImpactSettings& settings, FindMeeting find_meeting);
 
 }  // namespace gyre

@@ -6,6 +6,7 @@
 #include "solver/contact/moving_contact_points.h"
 #include "solver/contact/contact_prepare.h"
 #include "solver/contact/contact_project.h"
+#include "solver/contact/contact_replace.h"
 #include "solver/kernels/solver_kernels.h"
 #include "solver/motion/motion_kernel.h"
 #include "solver/motion/rotation_kernel.h"
@@ -17,7 +18,7 @@ template <int W>
 constexpr SolverKernels solver_kernels() {
   return {W,
           {sizeof(ContactBlock<W>), sizeof(ContactBlockCold<W>), prepare_blocks<W>, advance_points<W>, warm_start_blocks<W>,
-           solve_blocks<W>, relax_blocks<W>, project_blocks<W>, read_block_impulse<W>, write_block_impulse<W>,
+           solve_blocks<W>, find_pushing_block<W>, solve_lane_anew<W>, relax_blocks<W>, project_blocks<W>, read_block_impulse<W>, write_block_impulse<W>,
            make_block_rigid<W>, finish_blocks<W>},
           motion_kernels<W>(),
           rotation_kernels<W>(),
