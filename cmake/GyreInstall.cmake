@@ -62,6 +62,9 @@ if(TARGET gyre_c)
   install(FILES ${PROJECT_BINARY_DIR}/package/gyre-c.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endif()
 
+if(TARGET gyre_mpi)
+  install(TARGETS gyre_mpi RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)
+endif()
 if(TARGET gyre_cli)
   install(TARGETS gyre_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   # The program writes its own completion scripts and manual page (apps/CMakeLists.txt).

@@ -82,6 +82,7 @@ int run(int argc, char** argv) {
   add_view(app, exit_code);
   add_bench(app, exit_code);
   add_validate(app, exit_code);
+  add_sweep(app, exit_code);
   add_schema(app, exit_code);
   add_completion(app, exit_code);
   add_manual(app, exit_code);
