@@ -295,9 +295,9 @@ class World {
   JointAxisDef joint_axis_def(JointId joint, JointAxis axis) const;
   Motor motor(JointId joint) const;
   PoseDrive drive(JointId joint) const;
-  // The tables of materials. Copies up to out.size() rows, by ascending id; returns how many there are.
-  std::size_t material_pairs(std::span<MaterialPair> out) const;
-  std::size_t surface_rules(std::span<SurfaceRule> out) const;
+  // Rows of the tables of materials; with ids 0 if there is no such row. The order of a and b does not matter.
+  MaterialPair material_pair(std::uint16_t a, std::uint16_t b) const;
+  SurfaceRule surface_rule(std::uint16_t id) const;
   // Ropes, cloths and solids. Copies up to out.size() ids, in order of index; returns how many there are.
   std::size_t softs(std::span<SoftId> out) const;
   SoftInfo soft_info(SoftId soft) const;

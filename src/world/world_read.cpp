@@ -321,15 +321,17 @@ PoseDrive World::drive(JointId joint) const {
   const JointDetail* const detail = detail_of(state_->rigid.joints, joint.index);
   return detail != nullptr ? detail->drive : PoseDrive{};
 }
-std::size_t World::material_pairs(std::span<MaterialPair> out) const {
-  const auto& rows = state_->rigid.material_pairs;
-  for (std::size_t i = 0; i < rows.size() && i < out.size(); ++i) out[i] = rows[i];
-  return rows.size();
+MaterialPair World::material_pair(std::uint16_t a, std::uint16_t b) const {
+  for (const MaterialPair& row : state_->rigid.material_pairs) {
+    if (row.a == min(a, b) && row.b == max(a, b)) return row;
+  }
+  return {};
 }
-std::size_t World::surface_rules(std::span<SurfaceRule> out) const {
-  const auto& rows = state_->rigid.surface_rules;
-  for (std::size_t i = 0; i < rows.size() && i < out.size(); ++i) out[i] = rows[i];
-  return rows.size();
+SurfaceRule World::surface_rule(std::uint16_t id) const {
+  for (const SurfaceRule& row : state_->rigid.surface_rules) {
+    if (row.id == id) return row;
+  }
+  return {};
 }
 bool World::pair_ignored(BodyId a, BodyId b) const {
   return exists(a) && exists(b) && is_pair_ignored(state_->rigid, a.index, b.index);

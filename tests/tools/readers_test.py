@@ -29,8 +29,7 @@ STATELESS = {
 }
 # The readers of settings whose names differ from the setters'.
 READERS_OF_SETTERS = {
-    "set_velocity": "linear_velocity", "set_damping": "linear_damping", "set_material_pair": "material_pairs", "set_surface_rule": "surface_rules",
-    "set_joint_axis": "joint_axis_def", "set_sleeping": "def", "set_awake": "is_awake", "set_integrator": "def", "set_springs": "def",
+    "set_velocity": "linear_velocity", "set_damping": "linear_damping", "set_joint_axis": "joint_axis_def", "set_sleeping": "def", "set_awake": "is_awake", "set_integrator": "def", "set_springs": "def",
     "set_time_stepping": "def", "set_solver": "def", "set_combine_rules": "def", "set_threads": "def", "set_broad_phase": "def",
     "set_mass": "mass_properties", "set_sensor": "is_sensor", "set_break_load": "joint_info", "set_vertices": "vertices",
     "set_emitters": "gas_def",
