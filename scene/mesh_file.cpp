@@ -201,7 +201,42 @@ std::string refuse_mesh_path(std::string_view path) {
   return {};
 }
 
+namespace {
+
+// To the end rather than trusting a size that may change; one byte beyond the limit tells that there is more.
+std::string read_to_end(std::FILE* file, const SceneLimits& limits, std::string& bytes) {
+  bytes.clear();
+  for (;;) {
+    const std::size_t had = bytes.size();
+    const std::size_t chunk = std::min<std::size_t>(std::size_t(1) << 20, limits.file_bytes + 1 - had);
+    if (chunk == 0) return "is larger than " + std::to_string(limits.file_bytes) + " bytes";
+    bytes.resize(had + chunk);
+    const std::size_t got = std::fread(bytes.data() + had, 1, chunk, file);
+    bytes.resize(had + got);
+    if (got < chunk) break;
+  }
+  if (std::ferror(file)) return "cannot be read to its end";
+  return {};
+}
+
+// Standard input can be read once; its bytes are kept for a second reader.
+std::string read_standard_input(const SceneLimits& limits, std::string& bytes) {
+  static std::string kept;
+  static bool is_read = false;
+  if (!is_read) {
+    const std::string problem = read_to_end(stdin, limits, kept);
+    if (!problem.empty()) return problem;
+    is_read = true;
+  }
+  bytes = kept;
+  return bytes.size() > limits.file_bytes ? "is larger than " + std::to_string(limits.file_bytes) + " bytes"
+                                          : std::string();
+}
+
+}  // namespace
+
 std::string read_whole_file(const std::string& path, const SceneLimits& limits, std::string& bytes) {
+  if (path == kStandardInput) return read_standard_input(limits, bytes);
   std::error_code error;
   const fs::file_status status = fs::status(fs::path(path), error);
   if (status.type() == fs::file_type::not_found) return "there is no such file";
@@ -210,19 +245,7 @@ std::string read_whole_file(const std::string& path, const SceneLimits& limits, 
   if (!fs::is_regular_file(status)) return "is not a regular file";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) return "cannot be opened for reading";
-  // Read to the end rather than trusting a size that may change; one byte beyond the limit tells that there is more.
-  bytes.clear();
-  for (;;) {
-    const std::size_t had = bytes.size();
-    const std::size_t chunk = std::min<std::size_t>(std::size_t(1) << 20, limits.file_bytes + 1 - had);
-    if (chunk == 0) return "is larger than " + std::to_string(limits.file_bytes) + " bytes";
-    bytes.resize(had + chunk);
-    const std::size_t got = std::fread(bytes.data() + had, 1, chunk, file.get());
-    bytes.resize(had + got);
-    if (got < chunk) break;
-  }
-  if (std::ferror(file.get())) return "cannot be read to its end";
-  return {};
+  return read_to_end(file.get(), limits, bytes);
 }
 
 SceneResult<MeshData> load_mesh_file(const std::string& folder, const std::string& path,

@@ -22,7 +22,9 @@ struct MeshData {
 // system reads as a drive, a share, a device or an address.
 std::string refuse_mesh_path(std::string_view path);
 
-// The whole file, at most limits.file_bytes; only a regular file. Returns the reason if that fails, else an empty text.
+constexpr std::string_view kStandardInput = "-";  // as a path of read_whole_file
+
+// The whole file, at most limits.file_bytes; a regular file, or standard input. Returns the reason if that fails, else an empty text.
 std::string read_whole_file(const std::string& path, const SceneLimits& limits, std::string& bytes);
 
 // Reads a mesh file below `folder` (also through symbolic links it must stay there). `file` of an error is the mesh's path.

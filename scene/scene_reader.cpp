@@ -269,6 +269,11 @@ SceneResult<Scene> load_scene(const std::string& path, const SceneLimits& limits
     std::string text;
     const std::string problem = read_whole_file(path, limits, text);
     if (!problem.empty()) return SceneError{path, 0, 0, "", problem};
+    if (text.rfind("GYREPLAY", 0) == 0) {
+      return SceneError{path, 0, 0, "",
+                        "is a recording, expected a scene; gyre replay plays a recording, gyre info describes it, "
+                        "gyre render and gyre view show it"};
+    }
     return read_scene(text, options);
   } catch (const std::exception& error) {
     return SceneError{"scene", 0, 0, "", error.what()};

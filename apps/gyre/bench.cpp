@@ -3,6 +3,7 @@
 #include "bench/scenes/gyre_engine.h"
 #include "commands.h"
 #include "exit_code.h"
+#include "option_checks.h"
 #include "progress.h"
 #include "scene/json_writer.h"
 
@@ -81,6 +82,30 @@ class TimedEngine final : public bench::Engine {
   StepTimes times_;
 };
 
+// Shows how many steps were made.
+class WatchedEngine final : public bench::Engine {
+ public:
+  WatchedEngine(bench::Engine& engine, Progress& progress) : engine_(engine), progress_(progress) {}
+  const char* name() const override { return engine_.name(); }
+  std::string settings() const override { return engine_.settings(); }
+  bool create(const bench::Scene& scene, int threads, bool sleep, std::string& why_not) override {
+    return engine_.create(scene, threads, sleep, why_not);
+  }
+  void step() override {
+    engine_.step();
+    progress_.show(++steps_);  // on a terminal 10 lines a second, 0.1 ms of it
+  }
+  bench::BodyState state(int body) override { return engine_.state(body); }
+  bool cast_ray(bench::V3 from, bench::V3 by, double& fraction) override {
+    return engine_.cast_ray(from, by, fraction);
+  }
+
+ private:
+  bench::Engine& engine_;
+  Progress& progress_;
+  std::uint64_t steps_ = 0;
+};
+
 BenchResult run_scene(const bench::Scene& scene, const BenchOptions& options) {
   BenchResult result;
   result.scene = scene.name;
@@ -93,10 +118,13 @@ BenchResult run_scene(const bench::Scene& scene, const BenchOptions& options) {
     std::vector<StageSum> stages;
     TimedEngine timed(engine, stages);
     bench::Engine& measured = options.stages ? static_cast<bench::Engine&>(timed) : engine;
+    Progress progress(true, std::uint64_t(steps), "steps");
+    WatchedEngine watched(measured, progress);
     const double begin = bench::wall_ms();
     if (!measured.create(scene, options.threads, options.sleeping, result.skipped)) return result;
     const double create_ms = bench::wall_ms() - begin;
-    rounds.emplace_back(0.0, bench::run(measured, scene, steps));
+    rounds.emplace_back(0.0, bench::run(watched, scene, steps));
+    progress.clear();
     rounds.back().second.create_ms = create_ms;
     rounds.back().first = rounds.back().second.mean_ms;
     for (StageSum& stage : stages) stage.ms /= double(rounds.back().second.steps);
@@ -198,7 +226,8 @@ bool choose_scenes(const BenchOptions& options, std::vector<bench::Scene>& scene
       std::string all;
       for (const char* known : bench::scene_names()) all += std::string(" ") + known;
       std::fprintf(stderr,
-                   "gyre bench: no scene '%s' to be stepped; there are:%s, and with N bodies (rows), to a million: %s\n",
+                   "gyre bench: no scene '%s' to be stepped; there are:%s, and with N bodies (rows), to a "
+                   "million: %s\n",
                    name.c_str(), all.c_str(), bench::numbered_scene_names().c_str());
       return false;
     }
@@ -211,12 +240,9 @@ int run_bench(const BenchOptions& options) {
   std::vector<bench::Scene> scenes;
   if (!choose_scenes(options, scenes)) return kExitUsage;
   if (!options.json) print_head();
-  Progress progress(true, scenes.size(), "scenes");
   std::vector<BenchResult> results;
   for (const bench::Scene& scene : scenes) {
-    progress.show(results.size());
     results.push_back(run_scene(scene, options));
-    progress.clear();
     if (!options.json) print_row(results.back());
     std::fflush(stdout);
   }
@@ -233,11 +259,10 @@ void add_bench(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("bench", "Run the benchmark scenes: times, and figures of quality beside them");
   auto options = std::make_shared<BenchOptions>();
-  command->add_option("SCENE", options->scenes,
-                      "Their names; none: all. With N bodies (to a million), or rows: " + bench::numbered_scene_names());
-  command->add_option("--threads", options->threads, "Threads, 0 = all")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
+  command->add_option(
+      "SCENE", options->scenes,
+      "Their names; none: all. With N bodies (to a million), or rows: " + bench::numbered_scene_names());
+  add_threads_option(*command, options->threads, "Threads, 0 = all")->capture_default_str();
   command->add_option("--steps", options->steps, "Steps of 1/60 s, 0 = as many as the scene has")
       ->check(CLI::Range(0, 1000000));
   command->add_option("--substeps", options->substeps, "Sub-steps a step")

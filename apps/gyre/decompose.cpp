@@ -1,7 +1,9 @@
 // gyre decompose: a mesh file to convex hulls, with what they are like.
 #include "commands.h"
+#include "complain.h"
 #include "exit_code.h"
 #include "interrupt.h"
+#include "option_checks.h"
 #include "output_file.h"
 #include "progress.h"
 #include "scene/decomposition_folder.h"
@@ -26,11 +28,6 @@ struct DecomposeOptions {
   std::string cache = default_decomposition_folder();
   bool no_cache = false, json = false, quiet = false;
 };
-
-int fail(const std::string& message, int code = kExitInvalid) {
-  std::fprintf(stderr, "gyre: %s\n", message.c_str());
-  return code;
-}
 
 // Wavefront OBJ, one object for each hull.
 std::string to_obj(const Decomposition& made) {
@@ -132,11 +129,11 @@ bool show_progress(void* user, float done) {
 int run_decompose(const DecomposeOptions& options) {
   std::string bytes;
   const std::string problem = read_whole_file(options.mesh, {}, bytes);
-  if (!problem.empty()) return fail(options.mesh + ": " + problem);
+  if (!problem.empty()) return complain(options.mesh + ": " + problem);
   const SceneResult<MeshData> mesh = parse_mesh(bytes, options.mesh, {});
-  if (!mesh) return fail(mesh.error().text());
+  if (!mesh) return complain(mesh.error().text());
   OutputFile out;
-  if (!options.out.empty() && !out.open(options.out)) return fail(out.message());
+  if (!options.out.empty() && !out.open(options.out)) return complain(out.message());
 
   watch_interrupt();
   Progress progress(!options.quiet, kTicks, "permille");
@@ -156,14 +153,14 @@ int run_decompose(const DecomposeOptions& options) {
   Result<Decomposition> made = decompose_stored(def, split, &run.cached);
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   progress.clear();
-  if (!made && made.error().code == ErrorCode::cancelled) return fail("interrupted", kExitInterrupted);
+  if (!made && made.error().code == ErrorCode::cancelled) return complain("interrupted", kExitInterrupted);
   if (!made && made.error().code == ErrorCode::invalid_argument)
-    return fail(made.error().message, kExitUsage);
-  if (!made) return fail(options.mesh + ": " + made.error().message);
+    return complain(made.error().message, kExitUsage);
+  if (!made) return complain(options.mesh + ": " + made.error().message);
   if (folder.failed()) std::fprintf(stderr, "gyre: the result cannot be kept in %s\n", options.cache.c_str());
   run.made = *std::move(made);
   run.triangles = mesh->indices.size() / 3;
-  if (out.is_open() && !(out.write(to_obj(run.made)) && out.commit())) return fail(out.message());
+  if (out.is_open() && !(out.write(to_obj(run.made)) && out.commit())) return complain(out.message());
   if (options.json) {
     print_json(run);
   } else if (!options.quiet) {
@@ -179,7 +176,9 @@ void add_decompose(CLI::App& app, int& exit_code) {
       app.add_subcommand("decompose", "Cut a concave mesh into convex hulls, and say how near they come");
   const auto options = std::make_shared<DecomposeOptions>();
   options->def.threads = 0;
-  command->add_option("MESH", options->mesh, "The mesh (Wavefront OBJ, STL or PLY)")->required()->type_name("");
+  command->add_option("MESH", options->mesh, "The mesh (Wavefront OBJ, STL or PLY)")
+      ->required()
+      ->type_name("");
   command->add_option("--out", options->out, "Write the hulls, one object each")->type_name("FILE.obj");
   command
       ->add_option(
@@ -193,17 +192,16 @@ void add_decompose(CLI::App& app, int& exit_code) {
       ->add_option("--max-hull-vertices", options->def.max_hull_vertices,
                    "At most so many vertices each, 8 to 255; 128 if not given")
       ->type_name("N");
-  command->add_option("--meaning", options->meaning, "What the triangles are: automatic, solid or shell")
-      ->type_name("WORD")
-      ->check(CLI::IsMember({"automatic", "solid", "shell"}));
+  take_one_of(
+      command->add_option("--meaning", options->meaning, "What the triangles are: automatic, solid or shell")
+          ->type_name("WORD"),
+      {"automatic", "solid", "shell"});
   command
       ->add_option("--shell-thickness", options->def.shell_thickness,
                    "Thickness of a shell in m; 0: half of what --concavity allows")
       ->type_name("M");
-  command
-      ->add_option("--threads", options->def.threads,
-                   "Threads; 0 = all cores, as if not given; never changes the result")
-      ->type_name("N");
+  add_threads_option(*command, options->def.threads,
+                     "Threads; 0 = all cores, as if not given; never changes the result");
   command
       ->add_option("--cache", options->cache,
                    "Where results are kept; $GYRE_CACHE or ~/.cache/gyre if not given")

@@ -1,19 +1,21 @@
 // Options for files of other programs. See import_options.h.
 #include "import_options.h"
 
+#include "option_checks.h"
+
 #include <CLI/CLI.hpp>
 
 namespace gyre {
 
 void add_import_options(CLI::App& command, ImportOptions& options) {
   const std::string group = "URDF, MJCF and glTF";
-  command
-      .add_option_function<std::string>(
-          "--base", [&options](const std::string& word) { options.free_base = word == "free"; },
-          "URDF: whether the root link is fixed to the world (the default) or free")
-      ->type_name("fixed|free")
-      ->check(CLI::IsMember({"fixed", "free"}))
-      ->group(group);
+  take_one_of(command
+                  .add_option_function<std::string>(
+                      "--base", [&options](const std::string& word) { options.free_base = word == "free"; },
+                      "URDF: whether the root link is fixed to the world (the default) or free")
+                  ->type_name("fixed|free")
+                  ->group(group),
+              {"fixed", "free"});
   command
       .add_option("--package", options.packages,
                   "A further folder that meshes may be read from; with NAME= the folder of package://NAME. "

@@ -1,9 +1,10 @@
-// gyre info: what a scene holds, the mass properties of each body as the engine found them, and how tight bounding volumes of
+// gyre info: the content of a scene or recording, the mass properties of each body as the engine found them, and how tight bounding volumes of
 // its meshes are.
 #include "commands.h"
 #include "exit_code.h"
 #include "import_options.h"
 #include "mesh_bounds.h"
+#include "recording_file.h"
 #include "scene/json_writer.h"
 #include "scene/number_text.h"
 #include "scene/scene_runner.h"
@@ -92,8 +93,9 @@ void print_text(const SceneRunner& runner) {
   out += "joints  " + listed(counts.joints, joint_words().data()) + "\n";
   const std::size_t softs = scene.ropes.size() + scene.cloths.size() + scene.soft_bodies.size();
   if (softs > 0) {
-    out += "soft    " + std::to_string(scene.ropes.size()) + " ropes, " + std::to_string(scene.cloths.size()) +
-           " cloths, " + std::to_string(scene.soft_bodies.size()) + " soft bodies\n";
+    out += "soft    " + std::to_string(scene.ropes.size()) + " ropes, " +
+           std::to_string(scene.cloths.size()) + " cloths, " + std::to_string(scene.soft_bodies.size()) +
+           " soft bodies\n";
   }
   if (!scene.gases.empty() || !scene.liquids.empty()) {
     out += "fluids  " + std::to_string(scene.gases.size()) + " gases, " +
@@ -124,9 +126,8 @@ void print_text(const SceneRunner& runner) {
     out += std::string("\n") + (info.kind == SoftKind::solid ? "soft body" : to_string(info.kind)) + " \"" +
            soft.name + "\", " + std::to_string(info.vertices) + " vertices, " + rounded(info.mass) + " kg\n";
   });
-  runner.for_each_fluid([&](const SceneFluid& fluid, FluidId id) {
-    out += fluid_text(fluid, runner.world().fluid_info(id));
-  });
+  runner.for_each_fluid(
+      [&](const SceneFluid& fluid, FluidId id) { out += fluid_text(fluid, runner.world().fluid_info(id)); });
   for (const SceneMesh& mesh : scene.meshes) append_mesh_bounds(out, mesh);
   std::fwrite(out.data(), 1, out.size(), stdout);
 }
@@ -237,6 +238,7 @@ void print_json(const SceneRunner& runner) {
 }
 
 int show_info(const std::string& path, const ImportOptions& import, bool as_json) {
+  if (is_recording(path)) return show_recording(path, as_json);
   SceneResult<Scene> scene = open_split_scene(path, import);
   if (!scene) {
     std::fprintf(stderr, "gyre: %s\n", scene.error().text().c_str());
@@ -265,12 +267,17 @@ void add_info(CLI::App& app, int& exit_code) {
     ImportOptions import;
   };
   CLI::App* command = app.add_subcommand(
-      "info", "Show what a scene holds, the mass properties of its bodies and the bounds of its meshes");
+      "info", "Show what a scene or a recording holds, mass properties of bodies and bounds of meshes");
   const auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->scene, "The scene file (*.gyre.json), or a robot or glTF file")->required()->type_name("");
+  command
+      ->add_option("SCENE", options->scene,
+                   "The scene (*.gyre.json), robot, glTF file or recording (*.gyrec); - for standard input")
+      ->required()
+      ->type_name("");
   command->add_flag("--json", options->json, "Print it as JSON");
   add_import_options(*command, options->import);
-  command->callback([options, &exit_code] { exit_code = show_info(options->scene, options->import, options->json); });
+  command->callback(
+      [options, &exit_code] { exit_code = show_info(options->scene, options->import, options->json); });
 }
 
 }  // namespace gyre

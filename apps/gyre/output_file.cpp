@@ -31,13 +31,13 @@ long process_number() {
 OutputFile::~OutputFile() { discard(); }
 
 bool OutputFile::fail(const std::string& what) {
-  message_ = path_ + ": " + what;
+  message_ = (is_standard_output() ? "standard output" : path_) + ": " + what;
   discard();
   return false;
 }
 
 void OutputFile::discard() {
-  if (file_) std::fclose(file_);
+  if (file_ && !is_standard_output()) std::fclose(file_);
   file_ = nullptr;
   if (!temporary_.empty()) std::remove(temporary_.c_str());
   temporary_.clear();
@@ -47,6 +47,10 @@ void OutputFile::discard() {
 bool OutputFile::open(const std::string& path) {
   path_ = path;
   target_ = path;
+  if (is_standard_output()) {
+    file_ = stdout;
+    return true;
+  }
   std::error_code error;
   const fs::file_status status = fs::status(fs::path(path), error);
   if (fs::is_directory(status)) return fail("is a folder, expected a file to write");
@@ -81,7 +85,7 @@ bool OutputFile::commit() {
   if (!file_) return false;
   const bool written =
       buffer_.empty() || std::fwrite(buffer_.data(), 1, buffer_.size(), file_) == buffer_.size();
-  const bool closed = std::fclose(file_) == 0;
+  const bool closed = (is_standard_output() ? std::fflush(file_) : std::fclose(file_)) == 0;
   file_ = nullptr;
   if (!written || !closed) return fail(std::string("cannot be written: ") + std::strerror(errno));
   buffer_.clear();

@@ -1,4 +1,5 @@
-// A file that appears whole or not at all: written under another name beside its place and put there by commit().
+// A file that appears whole or not at all: written under another name beside its place and put there by commit(). Devices, pipes and standard
+// output ("-") are written as they are.
 #pragma once
 
 #include <cstdio>
@@ -6,6 +7,8 @@
 #include <string_view>
 
 namespace gyre {
+
+constexpr std::string_view kStandardOutput = "-";  // as a path
 
 class OutputFile {
  public:
@@ -26,6 +29,7 @@ class OutputFile {
  private:
   bool fail(const std::string& what);
   void discard();
+  bool is_standard_output() const { return path_ == kStandardOutput; }
 
   std::FILE* file_ = nullptr;
   std::string path_;

@@ -8,10 +8,12 @@
 #include "progress.h"
 #include "scene/scene_labels.h"
 #include "scene/scene_writer.h"
+#include "spelling.h"
 #include "summary.h"
 
 #include <gyre/replay.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -35,11 +37,10 @@ class FileSink : public ByteSink {
 // Two outputs in one file, or one in the place of the scene, would destroy each other. Only the final scene may take the
 // place of the scene that it goes on from.
 std::string find_clash(const SimulateOptions& options) {
-  const std::pair<const char*, const std::string*> outputs[] = {{"--record", &options.record},
-                                                                {"--trace", &options.trace},
-                                                                {"--probes", &options.probes},
-                                                                {"--stats", &options.stats},
-                                                                {"--final", &options.final}};
+  const std::pair<const char*, const std::string*> outputs[] = {
+      {"--record", &options.record},     {"--trace", &options.trace},   {"--joints", &options.joints},
+      {"--contacts", &options.contacts}, {"--probes", &options.probes}, {"--stats", &options.stats},
+      {"--final", &options.final}};
   const auto place = [](const std::string& path) {
     std::error_code error;
     const std::filesystem::path resolved = std::filesystem::weakly_canonical(path, error);
@@ -52,7 +53,7 @@ std::string find_clash(const SimulateOptions& options) {
   };
   for (const auto& [option, path] : outputs) {
     if (path->empty() || is_device(*path)) continue;
-    if (path != &options.final && place(*path) == place(options.scene)) {
+    if (path != &options.final && *path != kStandardOutput && place(*path) == place(options.scene)) {
       return std::string(option) + " would overwrite the scene";
     }
     for (const auto& [other_option, other] : outputs) {
@@ -65,14 +66,22 @@ std::string find_clash(const SimulateOptions& options) {
   return {};
 }
 
+bool writes_to_standard_output(const SimulateOptions& options) {
+  for (const std::string* path : {&options.record, &options.trace, &options.joints, &options.contacts,
+                                  &options.probes, &options.stats, &options.final}) {
+    if (*path == kStandardOutput) return true;
+  }
+  return false;
+}
+
 // One run: the scene, its outputs, and how it ended.
 class Simulation {
  public:
   Simulation(const SimulateOptions& options, SceneRunner runner)
       : options_(options), runner_(std::move(runner)) {}
 
-  // The first of --explain's names that no body has; null if all are known.
-  const std::string* find_unknown_body() const;
+  // The first name in the options that the scene does not have, as a message; empty if all are known.
+  std::string find_unknown_body() const;
   bool open_outputs();
   int run();
 
@@ -90,6 +99,8 @@ class Simulation {
   const SimulateOptions& options_;
   SceneRunner runner_;
   TraceTable trace_;
+  JointForceTable joints_;
+  ContactPointTable contacts_;
   ProbeTable probes_;
   StatsTable stats_;
   OutputFile record_, final_;
@@ -100,11 +111,27 @@ class Simulation {
   RunFigures figures_;
 };
 
-const std::string* Simulation::find_unknown_body() const {
-  for (const std::string& name : options_.explain) {
-    if (!find_body(runner_, name)) return &name;
-  }
-  return nullptr;
+std::string Simulation::find_unknown_body() const {
+  const Scene& scene = runner_.scene();
+  std::vector<std::string> bodies, all;
+  for (const SceneBody& body : scene.bodies) bodies.push_back(body.name);
+  all = bodies;
+  for (const auto& soft : scene.ropes) all.push_back(soft.name);
+  for (const auto& soft : scene.cloths) all.push_back(soft.name);
+  for (const auto& soft : scene.soft_bodies) all.push_back(soft.name);
+  for (const auto& fluid : scene.liquids) all.push_back(fluid.name);
+  const auto find = [](const char* option, const std::vector<std::string>& wanted,
+                       const std::vector<std::string>& known) -> std::string {
+    for (const std::string& name : wanted) {
+      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+      const std::string guess = nearest_word(name, known);
+      return std::string(option) + ": the scene has no body \"" + name + "\"" +
+             (guess.empty() ? "" : "; did you mean \"" + guess + "\"?");
+    }
+    return {};
+  };
+  const std::string problem = find("--explain", options_.explain, bodies);
+  return problem.empty() ? find("--trace-only", options_.trace_only, all) : problem;
 }
 
 bool Simulation::open_outputs() {
@@ -113,9 +140,11 @@ bool Simulation::open_outputs() {
     return opened;
   };
   if (!options_.trace.empty() &&
-      !check(trace_.open(options_.trace, options_.trace_liquids), trace_.file())) {
+      !check(trace_.open(options_.trace, options_.trace_only, options_.trace_liquids), trace_.file())) {
     return false;
   }
+  if (!options_.joints.empty() && !check(joints_.open(options_.joints), joints_.file())) return false;
+  if (!options_.contacts.empty() && !check(contacts_.open(options_.contacts), contacts_.file())) return false;
   if (!options_.probes.empty() && !check(probes_.open(options_.probes), probes_.file())) return false;
   if (!options_.stats.empty() && !check(stats_.open(options_.stats), stats_.file())) return false;
   if (!options_.final.empty() && !check(final_.open(options_.final), final_)) return false;
@@ -151,16 +180,18 @@ bool Simulation::write_vtk(const VtkFile& file) const {
 
 bool Simulation::record_step(double step_ms) {
   const bool is_traced = runner_.steps() % options_.trace_every == 0;
-  if (is_traced && trace_.file().is_open() && !trace_.add_rows(runner_))
-    return fail(trace_.file()) == kExitGood;
-  if (is_traced && probes_.file().is_open() && !probes_.add_rows(runner_))
-    return fail(probes_.file()) == kExitGood;
+  const auto add_rows = [&](auto& table) {
+    if (!is_traced || !table.file().is_open() || table.add_rows(runner_)) return true;
+    return fail(table.file()) == kExitGood;
+  };
+  if (!add_rows(trace_) || !add_rows(joints_) || !add_rows(contacts_) || !add_rows(probes_)) return false;
   if (!options_.vtk.empty() && runner_.steps() % options_.vtk_every == 0) {
     for (const VtkFile& file : vtk_.add_state(runner_)) {
       if (!write_vtk(file)) return false;
     }
   }
-  if (stats_.file().is_open() && runner_.steps() > 0 && !stats_.add_row(runner_, step_ms, options_.count_crossings)) {
+  if (stats_.file().is_open() && runner_.steps() > 0 &&
+      !stats_.add_row(runner_, step_ms, options_.count_crossings)) {
     return fail(stats_.file()) == kExitGood;
   }
   if (recorder_ && recorder_->failed()) {
@@ -213,7 +244,8 @@ bool Simulation::finish_outputs(int ended) {
       return false;
     }
   }
-  for (OutputFile* file : {&trace_.file(), &probes_.file(), &stats_.file()}) {
+  for (OutputFile* file :
+       {&trace_.file(), &joints_.file(), &contacts_.file(), &probes_.file(), &stats_.file()}) {
     if (file->is_open() && !file->commit()) return fail(*file) == kExitGood;
   }
   if (!options_.vtk.empty() && !write_vtk(vtk_.collection("run"))) return false;
@@ -234,7 +266,8 @@ void Simulation::print_result() const {
     out += times_text(figures_) + explanations_text(figures_);
     if (options_.hash) out += hash_text(runner_.world()) + "\n";
   }
-  std::fwrite(out.data(), 1, out.size(), stdout);
+  // A table on standard output is for the next program alone.
+  std::fwrite(out.data(), 1, out.size(), writes_to_standard_output(options_) ? stderr : stdout);
 }
 
 int Simulation::run() {
@@ -295,8 +328,9 @@ int simulate(const SimulateOptions& options) {
     return kExitInvalid;
   }
   Simulation simulation(options, *std::move(runner));
-  if (const std::string* const unknown = simulation.find_unknown_body()) {
-    say("--explain: the scene has no body \"" + *unknown + "\"");
+  const std::string unknown = simulation.find_unknown_body();
+  if (!unknown.empty()) {
+    say(unknown);
     return kExitUsage;
   }
   if (!simulation.open_outputs()) return kExitInvalid;

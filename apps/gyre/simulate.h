@@ -25,15 +25,16 @@ struct SimulateOptions {
   int threads = 1;
   std::string solver, integrator, broad_phase, stepping, springs;  // empty: what the scene says
   bool no_sleeping = false;
-  std::string record, trace, probes, stats, final;
-  std::string record_as = "all";  // or poses, commands
+  std::string record, trace, joints, contacts, probes, stats, final;  // paths; empty: not written
+  std::string record_as = "all";                                      // or poses, commands
   std::uint32_t record_every = 1;
   float record_accuracy = 1.0e-4f;  // m
   std::uint32_t record_hash_every = 128;
   std::uint64_t trace_every = 1;
   std::string vtk;  // a folder
   std::uint64_t vtk_every = 1;
-  std::vector<std::string> explain;  // names of bodies
+  std::vector<std::string> explain;     // names of bodies
+  std::vector<std::string> trace_only;  // names of bodies, soft matter and liquids; empty: all
   bool trace_liquids = false;
   bool count_crossings = false;  // of cloths, in the table of figures
   ImportOptions import;

@@ -2,6 +2,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "import_options.h"
+#include "option_checks.h"
 #include "simulate.h"
 
 #include <CLI/CLI.hpp>
@@ -13,32 +14,6 @@
 
 namespace gyre {
 namespace {
-
-CLI::Validator number_between(double low, bool open_low, double high, const std::string& expected) {
-  return CLI::Validator(
-      [=](std::string& text) {
-        double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && (open_low ? value > low : value >= low) &&
-            value <= high) {
-          return std::string();
-        }
-        return "found " + text + ", expected " + expected;
-      },
-      "", "");
-}
-
-CLI::Validator one_of(std::vector<std::string> list) {
-  return CLI::Validator(
-      [list](std::string& text) {
-        std::string expected;
-        for (const std::string& word : list) {
-          if (word == text) return std::string();
-          expected += (expected.empty() ? "" : ", ") + word;
-        }
-        return "found " + text + ", expected one of " + expected;
-      },
-      "", "");
-}
 
 std::vector<std::string> broad_phases() {
   std::vector<std::string> names;
@@ -62,42 +37,42 @@ void add_time_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--substeps", options.substeps, "Sub-steps in a step, 1 to 64")
       ->type_name("N")
       ->check(number_between(1, false, 64, "an integer from 1 to 64"));
-  command
-      .add_option("--threads", options.threads,
-                  "Worker threads, 0 for all of the machine; never changes a result")
-      ->type_name("N")
-      ->check(number_between(0, false, 1024, "an integer from 0 to 1024"));
+  add_threads_option(command, options.threads,
+                     "Worker threads, 0 for all of the machine; never changes a result");
 }
 
 void add_method_options(CLI::App& command, SimulateOptions& options) {
-  command.add_option("--solver", options.solver, "Solver of contacts and joints: soft_step, sequential_impulses or lcp")
-      ->type_name("NAME")
-      ->check(one_of({"soft_step", "sequential_impulses", "lcp"}));
-  command
-      .add_option("--integrator", options.integrator,
-                  "Integrator: explicit_euler, semi_implicit_euler, rk4 or verlet")
-      ->type_name("NAME")
-      ->check(one_of({"explicit_euler", "semi_implicit_euler", "rk4", "verlet"}));
-  command
-      .add_option(
-          "--broad-phase", options.broad_phase,
-          "Broad phase: bvh, grid, octree, quadtree, kd_tree, bsp_tree, sweep_and_prune or brute_force; "
-          "never changes a result")
-      ->type_name("NAME")
-      ->check(one_of(broad_phases()));
-  command
-      .add_option("--stepping", options.stepping,
-                  "Time plan: fixed, adaptive (to impacts) or error_controlled")
-      ->type_name("NAME")
-      ->check(one_of({"fixed", "adaptive", "error_controlled"}));
+  take_one_of(command
+                  .add_option("--solver", options.solver,
+                              "Solver of contacts and joints: soft_step, sequential_impulses or lcp")
+                  ->type_name("NAME"),
+              {"soft_step", "sequential_impulses", "lcp"});
+  take_one_of(command
+                  .add_option("--integrator", options.integrator,
+                              "Integrator: explicit_euler, semi_implicit_euler, rk4 or verlet")
+                  ->type_name("NAME"),
+              {"explicit_euler", "semi_implicit_euler", "rk4", "verlet"});
+  take_one_of(
+      command
+          .add_option(
+              "--broad-phase", options.broad_phase,
+              "Broad phase: bvh, grid, octree, quadtree, kd_tree, bsp_tree, sweep_and_prune or brute_force; "
+              "never changes a result")
+          ->type_name("NAME"),
+      broad_phases());
+  take_one_of(command
+                  .add_option("--stepping", options.stepping,
+                              "Time plan: fixed, adaptive (to impacts) or error_controlled")
+                  ->type_name("NAME"),
+              {"fixed", "adaptive", "error_controlled"});
   command.add_option("--tolerance", options.tolerance, "Error of a step in m, if the time plan is not fixed")
       ->type_name("M")
       ->check(number_between(1e-9, false, 1, "a number from 1e-9 to 1"));
-  command
-      .add_option("--springs", options.springs,
-                  "Springs of distance joints: implicit, or explicit (forces to the integrator)")
-      ->type_name("NAME")
-      ->check(one_of({"implicit", "explicit"}));
+  take_one_of(command
+                  .add_option("--springs", options.springs,
+                              "Springs of distance joints: implicit, or explicit (forces to the integrator)")
+                  ->type_name("NAME"),
+              {"implicit", "explicit"});
   command.add_flag("--no-sleeping", options.no_sleeping, "Resting bodies stay awake");
 }
 
@@ -106,11 +81,12 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
                             .add_option("--record", options.record,
                                         "Write a recording, to be looked at and replayed bit by bit")
                             ->type_name("FILE.gyrec");
-  command
-      .add_option("--record-as", options.record_as,
-                  "What it holds: all; poses (only to be looked at); commands (only to be replayed)")
-      ->type_name("WHAT")
-      ->check(one_of({"all", "poses", "commands"}))
+  take_one_of(
+      command
+          .add_option("--record-as", options.record_as,
+                      "What it holds: all; poses (only to be looked at); commands (only to be replayed)")
+          ->type_name("WHAT"),
+      {"all", "poses", "commands"})
       ->needs(record);
   command.add_option("--record-every", options.record_every, "Poses of every Nth step, and of the last")
       ->type_name("N")
@@ -124,19 +100,34 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
       ->needs(record);
   command
       .add_option("--record-hash-every", options.record_hash_every,
-                  "A hash of the whole state after every Nth step, 128 if not given, and the last; one of what moves after the others")
+                  "A hash of the whole state after every Nth step, 128 if not given, and the last; one of "
+                  "what moves after the others")
       ->type_name("N")
       ->check(number_between(1, false, 1e9, "an integer from 1 to 1e9"))
       ->needs(record);
-  CLI::Option* trace = command
-                           .add_option("--trace", options.trace,
-                                       "Write a table of the motion of every body and every vertex of soft matter")
-                           ->type_name("FILE.csv");
+  CLI::Option* trace =
+      command
+          .add_option("--trace", options.trace,
+                      "Write a table of the motion of every body and every vertex of soft matter")
+          ->type_name("FILE.csv");
+  command
+      .add_option("--trace-only", options.trace_only,
+                  "In --trace, only this body, rope, cloth or solid; may be repeated")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->needs(trace);
+  command.add_option("--joints", options.joints, "Write a table of the forces and torques of every joint")
+      ->type_name("FILE.csv");
+  command.add_option("--contacts", options.contacts, "Write a table of every contact point and its forces")
+      ->type_name("FILE.csv");
   command.add_flag("--trace-liquids", options.trace_liquids, "In --trace, the particles of liquids too")
       ->needs(trace);
   command.add_option("--probes", options.probes, "Write a table of gases and liquids at the scene's probes")
       ->type_name("FILE.csv");
-  command.add_option("--trace-every", options.trace_every, "Trace and probe only every Nth step")
+  command
+      .add_option("--trace-every", options.trace_every,
+                  "Rows of --trace, --joints, --contacts and --probes only every Nth step")
       ->type_name("N")
       ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"));
   CLI::Option* vtk =
@@ -149,9 +140,10 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
       ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"))
       ->needs(vtk);
   CLI::Option* stats = command.add_option("--stats", options.stats, "Write a table of figures of each step")
-      ->type_name("FILE.csv");
-  command.add_flag("--count-crossings", options.count_crossings,
-                   "In --stats, count where cloths pass through themselves and each other; exact, and slow")
+                           ->type_name("FILE.csv");
+  command
+      .add_flag("--count-crossings", options.count_crossings,
+                "In --stats, count where cloths pass through themselves and each other; exact, and slow")
       ->needs(stats);
   command.add_option("--final", options.final, "Write the final state as a scene")->type_name("FILE.json");
   command
@@ -169,9 +161,13 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
 }  // namespace
 
 void add_simulate(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("simulate", "Run a scene");
+  CLI::App* command = app.add_subcommand("simulate", "Run a scene. An output file - is standard output");
   const auto options = std::make_shared<SimulateOptions>();
-  command->add_option("SCENE", options->scene, "The scene file (*.gyre.json), or a robot or glTF file")->required()->type_name("");
+  command
+      ->add_option("SCENE", options->scene,
+                   "The scene file (*.gyre.json), or a robot or glTF file; - for standard input")
+      ->required()
+      ->type_name("");
   add_time_options(*command, *options);
   add_method_options(*command, *options);
   add_output_options(*command, *options);

@@ -82,9 +82,9 @@ std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
   out += "end: " + counted(counts.awake_bodies, "body", "bodies") + " awake, " +
          counted(counts.contact_points, "contact point", "contact points") + ", deepest overlap " +
          rounded(1.0e3 * double(world.max_penetration()), 3) + " mm\n";
-  out += "energy: " + rounded(energy.kinetic + energy.potential + energy.elastic + energy.soft_elastic, 4) + " J (kinetic " +
-         rounded(energy.kinetic, 4) + ", potential " + rounded(energy.potential, 4) + ", elastic " +
-         rounded(energy.elastic, 4);
+  out += "energy: " + rounded(energy.kinetic + energy.potential + energy.elastic + energy.soft_elastic, 4) +
+         " J (kinetic " + rounded(energy.kinetic, 4) + ", potential " + rounded(energy.potential, 4) +
+         ", elastic " + rounded(energy.elastic, 4);
   if (counts.softs > 0) out += ", soft elastic " + rounded(energy.soft_elastic, 4);
   out += ")\n";
   return out;

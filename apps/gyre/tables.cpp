@@ -1,45 +1,14 @@
 // The tables that a simulation writes. See tables.h.
 #include "tables.h"
 
+#include "csv_row.h"
 #include "fluid_figures.h"
-#include "scene/number_text.h"
+
+#include <algorithm>
 
 namespace gyre {
-namespace {
-
-constexpr int kDigits = 9;  // enough for a float to read back the same
-
-void add_number(std::string& row, double value) {
-  row += ',';
-  append_rounded(row, value, kDigits);
-}
-void add_count(std::string& row, long long count) {
-  row += ',';
-  row += std::to_string(count);
-}
-template <class V>
-void add_vector(std::string& row, const V& v) {
-  for (int axis = 0; axis < 3; ++axis) add_number(row, double(v[axis]));
-}
-
-// A name as one cell (RFC 4180).
-void add_text(std::string& row, const std::string& text) {
-  row += ',';
-  if (text.find_first_of(",\"") == std::string::npos) {
-    row += text;
-    return;
-  }
-  row += '"';
-  for (const char c : text) {
-    if (c == '"') row += '"';
-    row += c;
-  }
-  row += '"';
-}
-
-}  // namespace
-
-bool TraceTable::open(const std::string& path, bool with_liquids) {
+bool TraceTable::open(const std::string& path, const std::vector<std::string>& only, bool with_liquids) {
+  only_ = only;
   with_liquids_ = with_liquids;
   return file_.open(path) && file_.write("step,time,body,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,awake\n");
 }
@@ -79,11 +48,16 @@ bool TraceTable::add_particles(const std::string& begin, const std::string& name
   return true;
 }
 
+bool TraceTable::has(const std::string& name) const {
+  return only_.empty() || std::find(only_.begin(), only_.end(), name) != only_.end();
+}
+
 bool TraceTable::add_rows(const SceneRunner& runner) {
   const World& world = runner.world();
   std::string begin = std::to_string(runner.steps());
   add_number(begin, runner.time());
   for (std::size_t i = 0; i < runner.bodies().size(); ++i) {
+    if (!has(runner.scene().bodies[i].name)) continue;
     const BodyId id = runner.bodies()[i];
     const Quat q = world.pose(id).orientation;
     row_ = begin;
@@ -97,14 +71,84 @@ bool TraceTable::add_rows(const SceneRunner& runner) {
   }
   bool written = true;
   runner.for_each_soft([&](const SceneSoft& soft, SoftId id) {
+    if (!has(soft.name)) return;
     written = written && add_vertices(begin, soft.name, world.vertices(id), world.soft_info(id).awake);
   });
   if (!with_liquids_) return written;
   runner.for_each_fluid([&](const SceneFluid& fluid, FluidId id) {
     const bool is_liquid = world.fluid_info(id).kind == FluidKind::liquid;
-    written = written && (!is_liquid || add_particles(begin, fluid.name, world, id));
+    written = written && (!is_liquid || !has(fluid.name) || add_particles(begin, fluid.name, world, id));
   });
   return written;
+}
+
+namespace {
+
+// The name of a body of the scene; "world" for the world, "?" for a body that is gone.
+std::string name_of(const SceneRunner& runner, BodyId id) {
+  if (!id) return "world";
+  const SceneBody* const body = runner.body_of(id);
+  return body != nullptr ? body->name : "?";
+}
+
+}  // namespace
+
+bool JointForceTable::open(const std::string& path) {
+  return file_.open(path) &&
+         file_.write("step,time,joint,kind,body_a,body_b,fx,fy,fz,tx,ty,tz,position,velocity\n");
+}
+
+bool JointForceTable::add_rows(const SceneRunner& runner) {
+  std::string begin = std::to_string(runner.steps());
+  add_number(begin, runner.time());
+  const World& world = runner.world();
+  for (std::size_t i = 0; i < runner.joints().size(); ++i) {
+    const JointId id = runner.joints()[i];
+    if (!world.exists(id)) continue;  // it broke
+    const SceneJoint& joint = runner.scene().joints[i];
+    const JointInfo info = world.joint_info(id);
+    const JointState state = world.joint_state(id);
+    row_ = begin;
+    add_text(row_, joint.name.empty() ? "joint " + std::to_string(i) : joint.name);
+    add_text(row_, to_string(info.kind));
+    add_text(row_, name_of(runner, info.a));
+    add_text(row_, name_of(runner, info.b));
+    add_vector(row_, state.force);
+    add_vector(row_, state.torque);
+    add_number(row_, double(state.position));
+    add_number(row_, double(state.velocity));
+    row_ += '\n';
+    if (!file_.write(row_)) return false;
+  }
+  return true;
+}
+
+bool ContactPointTable::open(const std::string& path) {
+  return file_.open(path) &&
+         file_.write("step,time,body_a,body_b,px,py,pz,nx,ny,nz,separation,normal_force,fx,fy,fz,vx,vy,vz\n");
+}
+
+bool ContactPointTable::add_rows(const SceneRunner& runner) {
+  std::string begin = std::to_string(runner.steps());
+  add_number(begin, runner.time());
+  const World& world = runner.world();
+  points_.resize(world.contacts({}));
+  world.contacts(points_);
+  const double rate = 1.0 / runner.scene().world.time_step;
+  for (const ContactPoint& point : points_) {
+    row_ = begin;
+    add_text(row_, name_of(runner, point.body_a));
+    add_text(row_, name_of(runner, point.body_b));
+    add_vector(row_, point.position);
+    add_vector(row_, point.normal);
+    add_number(row_, double(point.separation));
+    add_number(row_, double(point.normal_impulse) * rate);
+    for (int axis = 0; axis < 3; ++axis) add_number(row_, double(point.friction_impulse[axis]) * rate);
+    add_vector(row_, point.relative_velocity);
+    row_ += '\n';
+    if (!file_.write(row_)) return false;
+  }
+  return true;
 }
 
 bool ProbeTable::open(const std::string& path) {

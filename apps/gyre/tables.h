@@ -1,5 +1,5 @@
-// The tables that a simulation writes, step by step (CSV): the motion of every body and vertex, figures of the whole world, and fluids at
-// probes.
+// The tables that a simulation writes, step by step (CSV): the motion of every body and vertex, forces of joints, contact points, figures of
+// the whole world, and fluids at probes.
 #pragma once
 
 #include "output_file.h"
@@ -14,20 +14,49 @@ namespace gyre {
 // bodies, NAME[i]; then, if asked for, one per particle of liquids.
 class TraceTable {
  public:
-  bool open(const std::string& path, bool with_liquids);
+  // `only`: names of bodies and soft matter; empty: all.
+  bool open(const std::string& path, const std::vector<std::string>& only, bool with_liquids);
   bool add_rows(const SceneRunner& runner);
   OutputFile& file() { return file_; }
 
  private:
   bool add_vertices(const std::string& begin, const std::string& name, const SoftVertices& vertices,
                     bool is_awake);
+  bool has(const std::string& name) const;
   bool add_particles(const std::string& begin, const std::string& name, const World& world, FluidId id);
 
   OutputFile file_;
   std::string row_;
   bool with_liquids_ = false;
+  std::vector<std::string> only_;
   std::vector<DVec3> positions_;
   std::vector<Vec3> velocities_;
+};
+
+// One row per joint that is there: the mean force (N) and torque (N m) on body b over the last step, position and velocity along its axis.
+class JointForceTable {
+ public:
+  bool open(const std::string& path);
+  bool add_rows(const SceneRunner& runner);
+  OutputFile& file() { return file_; }
+
+ private:
+  OutputFile file_;
+  std::string row_;
+};
+
+// One row per contact point: forces (N) are means over the last step, friction on body b; the friction of a whole manifold stands at its
+// first point.
+class ContactPointTable {
+ public:
+  bool open(const std::string& path);
+  bool add_rows(const SceneRunner& runner);
+  OutputFile& file() { return file_; }
+
+ private:
+  OutputFile file_;
+  std::string row_;
+  std::vector<ContactPoint> points_;
 };
 
 // One row per probe of gases and liquids.

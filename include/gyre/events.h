@@ -101,11 +101,23 @@ struct StepStats {
   bool bounded = false;  // Stepping::max_impacts was reached: what was left of the step was a fixed one
 };
 
+enum class Severity : std::uint8_t {
+  warning,  // the world goes on, but not as it should: a spring that the step cannot follow
+  error,    // a call was refused, or a body stopped being finite
+};
+
 // A refused call, or a report of the step. The message names the object, the field, the value and the allowed range.
 struct Problem {
   ErrorCode code = ErrorCode::none;
   BodyId body{};  // null if it is not about one body
   char message[232] = {};
+  Severity severity = Severity::error;
+};
+
+// Called for each problem at once, from the thread that changes or steps the world: for logs. It must not call the world.
+struct ProblemHook {
+  void (*call)(void* user, const Problem& problem) = nullptr;  // null: none
+  void* user = nullptr;
 };
 
 }  // namespace gyre

@@ -43,6 +43,13 @@ struct QueryFilter {
   bool (*accepts_soft)(void* user, SoftId soft) = nullptr;
 };
 
+// The smallest box along the world's axes around a body or a shape. Without any shape, or around a plane: low is above high.
+struct WorldBounds {
+  DVec3 low{1, 1, 1}, high{-1, -1, -1};  // m
+
+  constexpr bool operator==(const WorldBounds&) const = default;
+};
+
 struct Ray {
   DVec3 origin{};
   Vec3 translation{};  // m, from the origin to the end of the ray

@@ -24,6 +24,15 @@ Result<World> load_snapshot(std::span<const std::byte> bytes, const WorldDef& de
 // recording of the world continues.
 Error restore_snapshot(World& world, std::span<const std::byte> bytes);
 
+// A second world in the same state, with the same settings: for searches that try several futures. Ids of `world` name the same objects in the
+// clone, until one of the two adds an object. Events of the last step, the problem hook and a recorder are left behind. Refused during a step.
+Result<World> clone(const World& world);
+
+// A snapshot with bytes of the caller's own behind it: scores, timers, the state of a script. load_snapshot() and restore_snapshot() pass over
+// them; snapshot_user_bytes() finds them again; none if there are none or they are damaged.
+std::vector<std::byte> save_snapshot_with(const World& world, std::span<const std::byte> user_bytes);
+std::vector<std::byte> snapshot_user_bytes(std::span<const std::byte> snapshot);
+
 // A ring of the last `capacity` in-memory snapshots, for rollback netcode.
 class Rollback {
  public:

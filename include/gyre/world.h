@@ -124,6 +124,13 @@ struct Momentum {
   DVec3 angular{};  // kg m^2/s, about the world's origin
 };
 
+// Mass properties that replace those of the shapes. What is left out follows from the shapes and their densities.
+struct MassDef {
+  std::optional<float> mass{};           // kg; scales the shapes' inertia unless inertia is given too
+  std::optional<Vec3> center_of_mass{};  // m, body frame
+  std::optional<Sym3> inertia{};         // kg m^2, about the centre of mass, body axes
+};
+
 class World {
  public:
   // Refuses a definition out of range; the error names the field.
@@ -155,7 +162,19 @@ class World {
   bool set_velocity(BodyId body, Vec3 linear, Vec3 angular);
   // Sets the velocity with which the kinematic body reaches `pose` at the end of a step of `seconds`. It pushes bodies in its path.
   bool move_kinematic(BodyId body, const Pose& pose, float seconds);
+  // Many of them, for moving platforms and animated scenes: poses[i] is that of bodies[i]. False if any is refused or the spans differ in
+  // length; the others are carried out.
+  bool move_kinematics(std::span<const BodyId> bodies, std::span<const Pose> poses, float seconds);
   bool set_type(BodyId body, BodyType type);
+  // Replaces BodyDef::mass, center_of_mass and inertia. The origin of the body stays where it is.
+  bool set_mass(BodyId body, const MassDef& mass);
+  bool set_locked_axes(BodyId body, const LockedAxes& locked);
+  bool set_continuous(BodyId body, bool continuous);  // BodyDef::continuous
+  bool set_can_sleep(BodyId body, bool can_sleep);    // BodyDef::can_sleep; false wakes it
+  bool set_user_data(BodyId body, std::uint64_t user_data);
+  // Two bodies that ignore each other have no contacts, as two that a joint connects. It does not matter which is a. The table forgets a body
+  // that is removed. Sensors of one do not see the other; queries find both as before.
+  bool set_pair_ignored(BodyId a, BodyId b, bool ignored);
   bool set_gravity(Vec3 gravity);
   bool set_gravity_scale(BodyId body, float scale);
   bool set_damping(BodyId body, float linear, float angular);
@@ -164,12 +183,19 @@ class World {
   bool set_surface_rule(const SurfaceRule& rule);  // replaces the rule of the same id; wakes every body
   bool set_field(FieldId field, const FieldDef& def);
   bool set_filter(ShapeId shape, const Filter& filter);
+  bool set_density(ShapeId shape, float density);  // ShapeDef::density; the mass of the body is computed anew
+  bool set_sensor(ShapeId shape, bool sensor);     // likewise, since sensors have no mass
+  // Another form, or another place in the body. Contacts begin anew, and the mass of the body is computed anew.
+  bool set_geometry(ShapeId shape, const AnyShape& geometry);
+  bool set_local_transform(ShapeId shape, const Transform& local);
+  bool set_user_data(ShapeId shape, std::uint64_t user_data);
   bool set_motor(JointId joint, const Motor& motor);
   // Replaces all that acts on one axis: limits, motor, spring, friction. six_dof: any; hinge, universal and cone (twist): angular_x;
   // universal: angular_z too; slider and path: linear_x; wheel: linear_x (suspension), angular_x (steering), angular_z (spin). Only
   // axes of a six_dof and steering can be locked: where they are then.
   bool set_joint_axis(JointId joint, JointAxis axis, const JointAxisDef& def);
   bool set_drive(JointId joint, const PoseDrive& drive);  // motor, mouse, cone
+  bool set_break_load(JointId joint, float force, float torque);  // N and N m at which it breaks; 0 = unbreakable
   // A joint that is not enabled does nothing, but keeps its bodies from colliding as before.
   bool set_joint_enabled(JointId joint, bool enabled);
   bool set_sleeping(bool enabled);
@@ -193,6 +219,9 @@ class World {
   bool add_force(BodyId body, Vec3 force);                    // N, at the centre of mass
   bool add_force_at(BodyId body, Vec3 force, DVec3 point);    // N, at a world point: with the torque (point - centre) x force
   bool add_torque(BodyId body, Vec3 torque);                  // N m
+  // N or N m along one axis of a joint, on b and opposite on a, as a motor of that force would act: for controllers that compute torques. The
+  // axes are those that set_joint_axis() takes; a joint that is not enabled or has no such axis refuses.
+  bool add_joint_load(JointId joint, JointAxis axis, float load);
   // Impulses change the velocity at once.
   bool add_impulse(BodyId body, Vec3 impulse);                // N s, at the centre of mass
   bool add_impulse_at(BodyId body, Vec3 impulse, DVec3 point);
@@ -241,6 +270,7 @@ class World {
   LockedAxes locked_axes(BodyId body) const;
   // Copies up to out.size() joints of the body, in order of index; returns how many there are.
   std::size_t joints(BodyId body, std::span<JointId> out) const;
+  bool pair_ignored(BodyId a, BodyId b) const;  // by set_pair_ignored()
   MassProperties mass_properties(BodyId body) const;  // body frame; mass 0 unless dynamic
   std::span<const ShapeId> shapes(BodyId body) const;
   BodyId body_of(ShapeId shape) const;
@@ -261,6 +291,13 @@ class World {
   // angular_y (b).
   JointAxisState joint_axis_state(JointId joint, JointAxis axis) const;
   bool joint_enabled(JointId joint) const;
+  // What acts on an axis, as it is in force; the zero value for axes that set_joint_axis() does not take. And what set_motor() and set_drive() set.
+  JointAxisDef joint_axis_def(JointId joint, JointAxis axis) const;
+  Motor motor(JointId joint) const;
+  PoseDrive drive(JointId joint) const;
+  // Rows of the tables of materials; with ids 0 if there is no such row. The order of a and b does not matter.
+  MaterialPair material_pair(std::uint16_t a, std::uint16_t b) const;
+  SurfaceRule surface_rule(std::uint16_t id) const;
   // Ropes, cloths and solids. Copies up to out.size() ids, in order of index; returns how many there are.
   std::size_t softs(std::span<SoftId> out) const;
   SoftInfo soft_info(SoftId soft) const;
@@ -300,6 +337,11 @@ class World {
   BodyColumns awake_bodies() const;  // awake dynamic and kinematic bodies
   // Copies up to out.size() contact points in a fixed order; returns how many there are.
   std::size_t contacts(std::span<ContactPoint> out) const;
+  // The same of one body or shape: found by an index, so that a game may ask for each of its characters.
+  std::size_t body_contacts(BodyId body, std::span<ContactPoint> out) const;
+  std::size_t shape_contacts(ShapeId shape, std::span<ContactPoint> out) const;
+  WorldBounds body_bounds(BodyId body) const;
+  WorldBounds shape_bounds(ShapeId shape) const;
 
   // ---------------------------------------------------------------------------------------------------------- queries
   // See queries.h. Each question has a form that returns the nearest answer (cast_ray), one that says whether there is any
@@ -310,6 +352,8 @@ class World {
 
   std::optional<CastHit> cast_ray(DVec3 origin, Vec3 translation, const QueryFilter& filter = {}) const;
   bool cast_ray_any(DVec3 origin, Vec3 translation, const QueryFilter& filter = {}) const;
+  // The nearest hit on the shapes of one body, sensors included.
+  std::optional<CastHit> cast_ray_body(BodyId body, DVec3 origin, Vec3 translation) const;
   // The first hit of every shape that the ray meets, by fraction.
   std::size_t cast_ray_all(DVec3 origin, Vec3 translation, std::span<CastHit> out, const QueryFilter& filter = {}) const;
 
@@ -380,6 +424,8 @@ class World {
   std::size_t contact_pairs(std::span<ContactPair> out) const;
   // Refused calls and reports of the step, since the last step began. At most 256 are kept.
   std::span<const Problem> problems() const;
+  // Sees every problem, beyond the 256 that are kept too. It is no part of the state: snapshots and clones do not have it.
+  void set_problem_hook(const ProblemHook& hook);
   WorldStats stats() const;
   StepStats step_stats() const;
   SpringStability spring_stability() const;  // of the present state

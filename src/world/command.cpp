@@ -6,12 +6,13 @@
 #include "dynamics/soft_contacts.h"
 #include "math/rotation.h"
 #include "rigid/collision_bodies.h"
-#include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
+#include "rigid/sleep/island.h"
+#include "world/body_commands.h"
 #include "world/field_commands.h"
+#include "world/fluid_commands.h"
 #include "world/joint_commands.h"
 #include "world/query_sight.h"
-#include "world/fluid_commands.h"
 #include "world/soft_commands.h"
 #include "world/soft_events.h"
 #include "world/world_state.h"
@@ -23,15 +24,17 @@ namespace {
 // Values beyond the range of float must not enter the state.
 Vec3 finite_or(Vec3 value, Vec3 otherwise) { return is_finite(value) ? value : otherwise; }
 
-// Wakes a body to which the user applies a force or impulse.
+}  // namespace
+
 void wake_if_movable(RigidWorld& w, std::uint32_t body) {
   if (is_movable(w.bodies.flags[body])) wake(w, body);
 }
 
-// Removes all contacts of a shape and reports their ends.
 void drop_contacts(RigidWorld& w, std::uint32_t shape) {
   remove_contacts_of_shape(w.contacts, shape, [&](std::uint32_t, const Contact& contact) { report_end(w, contact); }, w.listed);
 }
+
+namespace {
 
 // The fields of a proxy that follow from the body.
 void refresh_proxy(RigidWorld& w, std::uint32_t shape) {
@@ -95,7 +98,11 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   for_each_contact_of_body(w, body, [&](std::uint32_t slot) { invalidate_cache(w.contacts.contacts[slot]); });
   mark_moved(w, body);
 }
+}  // namespace
+
 void refresh_mass(RigidWorld& w, std::uint32_t body) { refresh_mass(w, body, origin_pose(w.bodies, body)); }
+
+namespace {
 
 // The shapes of a body, ascending.
 template <class List>
@@ -132,9 +139,13 @@ ShapeId attach_shape(RigidWorld& w, std::uint32_t body, const ShapeDef& def) {
   return id;
 }
 
+}  // namespace
+
 void refit_body(RigidWorld& w, std::uint32_t body) {
   for (const ShapeId id : w.bodies.shapes[body]) refit_placed_shape(w, id.index);
 }
+
+namespace {
 
 std::uint8_t bits(const bool (&axes)[3]) {
   return std::uint8_t((axes[0] ? 1 : 0) | (axes[1] ? 2 : 0) | (axes[2] ? 4 : 0));
@@ -178,6 +189,7 @@ CommandResult execute(WorldState& s, const RemoveBody& c) {
   wake_if_movable(w, body);
   wake_neighbours(w, body);
   forget_body(s.soft, body);
+  forget_ignored_pairs(w, body);
   while (!joints_of(w.bodies, body).empty()) remove_joint(w, joints_of(w.bodies, body).front());
   for (const ShapeId id : w.bodies.shapes[body]) {
     drop_soft_contacts(s, id.index);
@@ -456,6 +468,52 @@ CommandResult execute(WorldState& s, const AddImpulse& c) {
   motion.linear_velocity = bounded(motion.linear_velocity + inertia.inverse_mass * c.impulse) + Vec3{};
   motion.angular_velocity = bounded(motion.angular_velocity + inertia.inverse * c.angular) + Vec3{};
   mark_moved(s.rigid, body);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetMass& c) {
+  set_mass(s, c.body.index, c.mass);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetDensity& c) {
+  set_density(s, c.shape.index, c.density);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetLockedAxes& c) {
+  set_locked_axes(s, c.body.index, c.locked);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetContinuous& c) {
+  s.rigid.bodies.flags[c.body.index].continuous = c.continuous ? 1 : 0;
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetCanSleep& c) {
+  set_can_sleep(s, c.body.index, c.can_sleep);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetSensor& c) {
+  set_sensor(s, c.shape.index, c.sensor);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetShape& c) {
+  set_shape(s, c.shape.index, c.geometry, c.local);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetBodyUserData& c) {
+  s.rigid.bodies.user_data[c.body.index] = c.user_data;
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetShapeUserData& c) {
+  s.rigid.shapes.user_data[c.shape.index] = c.user_data;
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetBreakLoad& c) {
+  JointRecord& joint = s.rigid.joints.records[c.joint.index];
+  joint.break_force = c.force;
+  joint.break_torque = c.torque;
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetPairIgnored& c) {
+  set_pair_ignored(s, c.a.index, c.b.index, c.ignored);
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const Step& c) {

@@ -11,7 +11,9 @@
 #include <gyre/fluid.h>
 #include <gyre/result.h>
 #include <gyre/soft.h>
+#include <gyre/world.h>
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -187,6 +189,52 @@ struct SetEmitters {
 struct Step {
   float seconds = 0;
 };
+struct SetMass {
+  BodyId body;
+  MassDef mass;
+};
+struct SetDensity {
+  ShapeId shape;
+  float density = 0;
+};
+struct SetLockedAxes {
+  BodyId body;
+  LockedAxes locked;
+};
+struct SetContinuous {
+  BodyId body;
+  bool continuous = false;
+};
+struct SetCanSleep {
+  BodyId body;
+  bool can_sleep = true;
+};
+struct SetSensor {
+  ShapeId shape;
+  bool sensor = false;
+};
+// What is absent stays.
+struct SetShape {
+  ShapeId shape;
+  std::optional<AnyShape> geometry;
+  std::optional<Transform> local;
+};
+struct SetBodyUserData {
+  BodyId body;
+  std::uint64_t user_data = 0;
+};
+struct SetShapeUserData {
+  ShapeId shape;
+  std::uint64_t user_data = 0;
+};
+struct SetBreakLoad {
+  JointId joint;
+  float force = 0, torque = 0;
+};
+struct SetPairIgnored {
+  BodyId a, b;
+  bool ignored = true;
+};
 
 // Recordings store the index of a command in this list: append new ones.
 using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
@@ -194,7 +242,8 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
                              SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled,
                              SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices, AddFluid, RemoveFluid, SetEmitters,
-                             SetSleepShare, SetSleepSpeed>;
+                             SetSleepShare, SetSleepSpeed, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetShape,
+                             SetBodyUserData, SetShapeUserData, SetBreakLoad, SetPairIgnored>;
 
 // The result of a command: success, and the id of the new object.
 struct CommandResult {

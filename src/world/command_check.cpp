@@ -85,7 +85,8 @@ Error check_shape_def(const ShapeDef& def, BodyType type) {
   return ok();
 }
 
-Error check_mass_overrides(const BodyDef& def) {
+template <class Def>  // BodyDef or MassDef
+Error check_mass_overrides(const Def& def) {
   if (def.mass && !(is_finite(*def.mass) && *def.mass > 0.0f)) {
     return refuse("body.mass is %g; it must be finite and above 0", double(*def.mass));
   }
@@ -423,6 +424,40 @@ Error check(const WorldState& s, const AddImpulse& c) {
   if (e.ok()) e = check_finite("impulse", c.impulse);
   if (e.ok()) e = check_finite("angular impulse", c.angular);
   return e;
+}
+Error check(const WorldState& s, const SetMass& c) {
+  const Error e = check_body(s, c.body, "set_mass");
+  return e ? e : check_mass_overrides(c.mass);
+}
+Error check(const WorldState& s, const SetDensity& c) {
+  const Error e = check_shape_id(s, c.shape, "set_density");
+  return e ? e : check_range("density", c.density, 0.0f, 1.0e20f);
+}
+Error check(const WorldState& s, const SetLockedAxes& c) { return check_body(s, c.body, "set_locked_axes"); }
+Error check(const WorldState& s, const SetContinuous& c) { return check_body(s, c.body, "set_continuous"); }
+Error check(const WorldState& s, const SetCanSleep& c) { return check_body(s, c.body, "set_can_sleep"); }
+Error check(const WorldState& s, const SetSensor& c) { return check_shape_id(s, c.shape, "set_sensor"); }
+Error check(const WorldState& s, const SetShape& c) {
+  const Error e = check_shape_id(s, c.shape, c.geometry ? "set_geometry" : "set_local_transform");
+  if (e) return e;
+  ShapeDef def;
+  if (c.geometry) def.geometry = *c.geometry;
+  if (c.local) def.local = *c.local;
+  return check_shape_def(def, s.rigid.bodies.flags[s.rigid.shapes.bodies[c.shape.index]].type);
+}
+Error check(const WorldState& s, const SetBodyUserData& c) { return check_body(s, c.body, "set_user_data"); }
+Error check(const WorldState& s, const SetShapeUserData& c) {
+  return check_shape_id(s, c.shape, "set_user_data");
+}
+Error check(const WorldState& s, const SetBreakLoad& c) {
+  return first_of({check_joint_id(s, c.joint, "set_break_load"),
+                   check_range("break force", c.force, 0.0f, 1.0e30f),
+                   check_range("break torque", c.torque, 0.0f, 1.0e30f)});
+}
+Error check(const WorldState& s, const SetPairIgnored& c) {
+  const Error e = first_of({check_body(s, c.a, "set_pair_ignored"), check_body(s, c.b, "set_pair_ignored")});
+  if (e) return e;
+  return c.a == c.b ? refuse("set_pair_ignored: a and b are the same body (%u)", c.a.index) : ok();
 }
 Error check(const WorldState&, const Step& c) {
   if (is_finite(c.seconds) && c.seconds > 0.0f && c.seconds <= 1.0f) return ok();

@@ -35,10 +35,6 @@ void erase_slot(List& list, std::uint32_t slot) {
   }
 }
 
-// The key of the body pair of a joint, by which its collision is disabled.
-std::uint64_t block_key(const JointRecord& joint) {
-  return pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
-}
 bool blocks(const JointRecord& joint) {
   return !joint.collide_connected && joint.body_a != kNoBody && joint.body_b != kNoBody;
 }
@@ -48,19 +44,6 @@ void recheck_pairs(RigidWorld& w, const JointRecord& joint) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body == kNoBody) continue;
     for (const ShapeId id : w.bodies.shapes[std::size_t(body)]) w.shapes.changed.push_back(id.index);
-  }
-}
-
-// Disables the collision of two bodies; their contacts are removed.
-void block_pair(RigidWorld& w, const JointRecord& joint) {
-  w.joints.blocked.find_or_insert(block_key(joint), 0u)++;
-  for (const ShapeId id : w.bodies.shapes[std::size_t(joint.body_a)]) {
-    for (const std::uint32_t contact : list_contacts_of_shape(w.contacts, id.index, w.listed)) {
-      const Contact& pair = w.contacts.contacts[contact];
-      if (pair_key(pair.body_a, pair.body_b) != block_key(joint)) continue;
-      report_end(w, pair);
-      remove_contact(w.contacts, contact);
-    }
   }
 }
 
@@ -377,6 +360,24 @@ bool has_pose_drive(JointKind kind) {
   return kind == JointKind::cone || kind == JointKind::mouse || kind == JointKind::motor;
 }
 
+void block_bodies(RigidWorld& w, std::uint32_t a, std::uint32_t b) {
+  const std::uint64_t key = pair_key(a, b);
+  w.joints.blocked.find_or_insert(key, 0u)++;
+  for (const ShapeId id : w.bodies.shapes[a]) {
+    for (const std::uint32_t contact : list_contacts_of_shape(w.contacts, id.index, w.listed)) {
+      const Contact& pair = w.contacts.contacts[contact];
+      if (pair_key(pair.body_a, pair.body_b) != key) continue;
+      report_end(w, pair);
+      remove_contact(w.contacts, contact);
+    }
+  }
+}
+
+void unblock_bodies(RigidWorld& w, std::uint32_t a, std::uint32_t b) {
+  std::uint32_t* count = w.joints.blocked.find(pair_key(a, b));
+  if (count != nullptr && --*count == 0) w.joints.blocked.erase(pair_key(a, b));
+}
+
 JointId add_joint(RigidWorld& w, const FlatJoint& def) {
   const std::uint32_t slot = w.joints.ids.acquire().index;
   activate_joint(w, slot);
@@ -406,7 +407,7 @@ JointId add_joint(RigidWorld& w, const FlatJoint& def) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body != kNoBody) insert_sorted(make_joints_of(w.bodies, std::uint32_t(body)), slot);
   }
-  if (blocks(joint)) block_pair(w, joint);
+  if (blocks(joint)) block_bodies(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
   return joint_id(w, slot);
 }
 
@@ -417,8 +418,7 @@ void remove_joint(RigidWorld& w, std::uint32_t slot) {
     if (body != kNoBody) erase_slot(make_joints_of(w.bodies, std::uint32_t(body)), slot);
   }
   if (blocks(joint)) {
-    std::uint32_t* count = w.joints.blocked.find(block_key(joint));
-    if (count != nullptr && --*count == 0) w.joints.blocked.erase(block_key(joint));
+    unblock_bodies(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
     recheck_pairs(w, joint);
   }
   if (const JointDetail* const detail = detail_of(w.joints, slot)) {

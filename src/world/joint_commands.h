@@ -12,6 +12,9 @@ void set_motor(RigidWorld& w, std::uint32_t slot, const Motor& motor);
 void set_joint_axis(RigidWorld& w, std::uint32_t slot, JointAxis axis, const JointAxisDef& def);
 void set_drive(RigidWorld& w, std::uint32_t slot, const PoseDrive& drive);
 void set_joint_enabled(RigidWorld& w, std::uint32_t slot, bool enabled);
+// Disables the collision of two bodies once more; their contacts are removed. And takes one of these back.
+void block_bodies(RigidWorld& w, std::uint32_t a, std::uint32_t b);
+void unblock_bodies(RigidWorld& w, std::uint32_t a, std::uint32_t b);
 // The centre of mass of a body moved within the body: joints keep their anchors.
 void shift_joint_ends(RigidWorld& w, std::uint32_t body, Vec3 by);
 

@@ -98,6 +98,17 @@ std::uint32_t readable_axes(JointKind kind) {
   }
 }
 
+template <class Record>
+Motor motor_of(const Record& from) {
+  Motor motor;
+  motor.target_velocity = from.motor_velocity;
+  if (from.has_motor_target) motor.target_position = from.motor_position;
+  motor.max_force = from.motor_force;
+  motor.frequency = from.motor_frequency;
+  motor.damping_ratio = from.motor_damping;
+  return motor;
+}
+
 // Forces along the one axis of joints that store it in their record: the total without the rows across it.
 float force_in_record(const JointRecord& joint, const JointMotion& s) {
   const Vec3 along = rotate(s.frame_a, {1, 0, 0});
@@ -146,6 +157,67 @@ JointAxisState read_joint_axis(const RigidWorld& w, std::uint32_t slot, JointAxi
   reading.position = detail->axes[i].position;
   if (seconds > 0.0f) reading.force = detail->axes[i].total / seconds;
   return reading;
+}
+
+Motor read_motor(const JointRecord& joint) { return motor_of(joint); }
+
+JointAxisDef read_joint_axis_def(const RigidWorld& w, std::uint32_t slot, JointAxis axis) {
+  const JointRecord& joint = w.joints.records[slot];
+  const int i = int(axis);
+  JointAxisDef def;
+  if (i < 0 || i >= kJointAxisCount || ((open_axes(joint.kind) >> i) & 1u) == 0) return def;
+  const JointDetail* const detail = detail_of(w.joints, slot);
+  if (detail == nullptr) {  // a hinge or slider without springs and friction
+    def.motion = joint.has_limits ? AxisMotion::limited : AxisMotion::free;
+    if (joint.has_limits) def.limits = joint.limits;
+    def.motor = motor_of(joint);
+    return def;
+  }
+  const JointAxisRecord& from = detail->axes[i];
+  def.motion = from.motion;
+  def.limits = from.limits;
+  def.limit_frequency = from.limit_frequency;
+  def.limit_damping_ratio = from.limit_damping;
+  def.motor = motor_of(from);
+  def.stiffness = from.stiffness;
+  def.damping = from.damping;
+  def.rest_position = from.rest_position;
+  def.friction = from.friction;
+  return def;
+}
+
+bool read_joint_load(const RigidWorld& w, std::uint32_t slot, JointAxis axis, float load, JointLoad& out) {
+  const JointRecord& joint = w.joints.records[slot];
+  const int i = int(axis);
+  if (i < 0 || i >= kJointAxisCount || ((open_axes(joint.kind) >> i) & 1u) == 0) return false;
+  const JointMotion s = state_of(w, joint);
+  out = {};
+  if (joint.body_a != kNoBody) out.a = body_id(w, std::uint32_t(joint.body_a));
+  if (joint.body_b != kNoBody) out.b = body_id(w, std::uint32_t(joint.body_b));
+  if (i >= 3) {
+    // The direction whose product with the relative angular velocity is the velocity of the axis: power is load times velocity.
+    const Vec3 direction = joint.kind == JointKind::hinge  ? rotate(s.frame_a, {1, 0, 0})
+                           : joint.kind == JointKind::cone ? twist_axis(s.frame_a, s.frame_b)
+                                                           : angle_axis(s.frame_a, s.frame_b, i - 3);
+    out.torque_b = load * direction;
+    out.torque_a = -out.torque_b;
+    return true;
+  }
+  Vec3 direction = rotate(s.frame_a, Vec3{i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f});
+  if (joint.kind == JointKind::path) {
+    const JointDetail* const detail = detail_of(w.joints, slot);
+    const PathCurve curve{path_of(w.joints, *detail), detail->path_closed};
+    direction = rotate(s.frame_a, normalized(sample_path(curve, detail->path_parameter).first));
+  }
+  out.force = load * direction;
+  const DVec3 point = joint_anchors(w, joint).b;
+  const auto torque = [&](std::int32_t body) {
+    return body == kNoBody ? Vec3{}
+                           : cross(difference(point, w.bodies.poses[std::size_t(body)].center), out.force);
+  };
+  out.torque_a = -torque(joint.body_a);
+  out.torque_b = torque(joint.body_b);
+  return true;
 }
 
 double spring_energy(const RigidWorld& w, std::uint32_t slot) {

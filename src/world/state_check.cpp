@@ -45,6 +45,20 @@ const char* fault_in_sleep_speeds(const RigidWorld& w) {
   return nullptr;
 }
 
+const char* fault_in_ignored_pairs(const RigidWorld& w) {
+  const IgnoredPair* before = nullptr;
+  for (const IgnoredPair& pair : w.ignored_pairs) {
+    if (pair.a >= pair.b || pair.b >= w.bodies.ids.capacity() || !w.bodies.ids.live(pair.a) ||
+        !w.bodies.ids.live(pair.b)) {
+      return "an ignored pair of bodies that are not there";
+    }
+    if (before != nullptr && (before->a > pair.a || (before->a == pair.a && before->b >= pair.b)))
+      return "ignored pairs that are not in order";
+    before = &pair;
+  }
+  return nullptr;
+}
+
 const char* fault_in_sizes(const RigidWorld& w) {
   const BodyStore& b = w.bodies;
   const std::size_t bodies = b.ids.capacity();
@@ -212,6 +226,7 @@ const char* fault_in(const RigidWorld& w) {
   if (fault == nullptr) fault = fault_in_sizes(w);
   if (fault == nullptr) fault = fault_in_motion(w);
   if (fault == nullptr) fault = fault_in_sleep_speeds(w);
+  if (fault == nullptr) fault = fault_in_ignored_pairs(w);
   if (fault != nullptr) return fault;
   for (std::uint32_t i = 0; fault == nullptr && i < w.bodies.ids.capacity(); ++i)
     fault = fault_in_body(w.bodies, i);

@@ -190,6 +190,10 @@ template <Is<SleepSettings> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.share);
 }
+template <Is<IgnoredPair> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.a), f(r.b);
+}
 template <Is<BodySleepSpeed> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.speed);

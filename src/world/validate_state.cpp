@@ -153,6 +153,12 @@ Error StateValidator::blocked_bodies() const {
       error = broken("joint %u keeps its bodies from colliding, but they are not known to be kept", slot);
   });
   if (error) return error;
+  for (const IgnoredPair& pair : w_.ignored_pairs) {
+    ++joints;
+    if (!w_.joints.blocked.contains(pair_key(pair.a, pair.b)))
+      error = broken("bodies %u and %u ignore each other, but that is not known", pair.a, pair.b);
+  }
+  if (error) return error;
   w_.joints.blocked.for_each([&](std::uint64_t, std::uint32_t count) { counted += count; });
   return joints == counted ? Error{} : broken("bodies are kept from colliding by more joints than there are");
 }

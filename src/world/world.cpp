@@ -3,6 +3,7 @@
 
 #include "base/float_mode.h"
 #include "world/command.h"
+#include "world/joint_reading.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -39,6 +40,50 @@ bool World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
 bool World::move_kinematic(BodyId body, const Pose& pose, float seconds) {
   return submit(*state_, MoveKinematic{body, pose, seconds}).done;
 }
+bool World::move_kinematics(std::span<const BodyId> bodies, std::span<const Pose> poses, float seconds) {
+  if (bodies.size() != poses.size()) {
+    report_problem(*state_, ErrorCode::invalid_argument, {}, "move_kinematics: %zu bodies, but %zu poses",
+                   bodies.size(), poses.size());
+    return false;
+  }
+  bool all = true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) all = move_kinematic(bodies[i], poses[i], seconds) && all;
+  return all;
+}
+bool World::set_mass(BodyId body, const MassDef& mass) { return submit(*state_, SetMass{body, mass}).done; }
+bool World::set_density(ShapeId shape, float density) {
+  return submit(*state_, SetDensity{shape, density}).done;
+}
+bool World::set_locked_axes(BodyId body, const LockedAxes& locked) {
+  return submit(*state_, SetLockedAxes{body, locked}).done;
+}
+bool World::set_continuous(BodyId body, bool continuous) {
+  return submit(*state_, SetContinuous{body, continuous}).done;
+}
+bool World::set_can_sleep(BodyId body, bool can_sleep) {
+  return submit(*state_, SetCanSleep{body, can_sleep}).done;
+}
+bool World::set_sensor(ShapeId shape, bool sensor) { return submit(*state_, SetSensor{shape, sensor}).done; }
+bool World::set_geometry(ShapeId shape, const AnyShape& geometry) {
+  return submit(*state_, SetShape{shape, geometry, {}}).done;
+}
+bool World::set_local_transform(ShapeId shape, const Transform& local) {
+  return submit(*state_, SetShape{shape, {}, local}).done;
+}
+bool World::set_user_data(BodyId body, std::uint64_t user_data) {
+  return submit(*state_, SetBodyUserData{body, user_data}).done;
+}
+bool World::set_user_data(ShapeId shape, std::uint64_t user_data) {
+  return submit(*state_, SetShapeUserData{shape, user_data}).done;
+}
+bool World::set_break_load(JointId joint, float force, float torque) {
+  return submit(*state_, SetBreakLoad{joint, force, torque}).done;
+}
+bool World::set_pair_ignored(BodyId a, BodyId b, bool ignored) {
+  return submit(*state_, SetPairIgnored{a, b, ignored}).done;
+}
+void World::set_problem_hook(const ProblemHook& hook) { state_->problem_hook = hook; }
+
 bool World::set_type(BodyId body, BodyType type) { return submit(*state_, SetType{body, type}).done; }
 bool World::set_gravity(Vec3 gravity) { return submit(*state_, SetGravity{gravity}).done; }
 bool World::set_gravity_scale(BodyId body, float scale) { return submit(*state_, SetGravityScale{body, scale}).done; }
@@ -171,6 +216,22 @@ bool World::add_impulse_at(BodyId body, Vec3 impulse, DVec3 point) {
   return submit(*state_, AddImpulse{body, impulse, cross(difference(point, center_of_mass(body)), impulse)}).done;
 }
 bool World::add_angular_impulse(BodyId body, Vec3 impulse) { return submit(*state_, AddImpulse{body, {}, impulse}).done; }
+
+bool World::add_joint_load(JointId joint, JointAxis axis, float load) {
+  const FloatMode mode;
+  const bool there = exists(joint);
+  JointLoad on;
+  if (!there || !joint_enabled(joint) || !read_joint_load(state_->rigid, joint.index, axis, load, on)) {
+    report_problem(*state_, there ? ErrorCode::invalid_argument : ErrorCode::stale_id, {},
+                   "add_joint_load: joint %u %s", joint.index,
+                   there ? "is not enabled or has no such axis to act on" : "does not exist in this world");
+    return false;
+  }
+  bool done = true;
+  if (on.a) done = submit(*state_, AddForce{on.a, -on.force, on.torque_a}).done && done;
+  if (on.b) done = submit(*state_, AddForce{on.b, on.force, on.torque_b}).done && done;
+  return done;
+}
 
 bool World::step(float seconds) { return submit(*state_, Step{seconds}).done; }
 

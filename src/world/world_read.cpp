@@ -1,11 +1,14 @@
 // The reading side of the public World: single getters, bulk columns, sums over the world.
 #include <gyre/world.h>
 
+#include "base/container/sort.h"
 #include "base/float_mode.h"
 #include "rigid/batch/surface_rules.h"
 #include "rigid/integrate/spring_stability.h"
+#include "world/body_commands.h"
 #include "world/field_commands.h"
 #include "world/fluid_commands.h"
+#include "world/joint_commands.h"
 #include "world/joint_reading.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
@@ -218,37 +221,130 @@ bool World::joint_enabled(JointId id) const {
 BodyColumns World::bodies() const { return read_bodies(*state_, state_->all_bodies, false); }
 BodyColumns World::awake_bodies() const { return read_bodies(*state_, state_->awake_bodies, true); }
 
+namespace {
+
+// The points of one contact, from number `count` on. Returns the number behind its last point.
+std::size_t list_points(const RigidWorld& w, const Contact& contact, std::span<ContactPoint> out,
+                        std::size_t count) {
+  if (contact.manifold_room == 0) return count;
+  for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
+    for (int k = 0; k < manifold.count; ++k, ++count) {
+      if (count >= out.size()) continue;
+      const ContactPointState& from = manifold.points[k];
+      ContactPoint& point = out[count];
+      point.shape_a = shape_id(w, contact.shape_a);
+      point.shape_b = shape_id(w, contact.shape_b);
+      point.body_a = body_id(w, contact.body_a);
+      point.body_b = body_id(w, contact.body_b);
+      point.position = w.bodies.poses[contact.body_a].center + from.from_a;
+      point.normal = manifold.normal;
+      point.tangent_1 = any_perpendicular(manifold.normal);
+      point.tangent_2 = cross(manifold.normal, point.tangent_1);
+      point.separation = from.separation;
+      point.triangle = triangle_at(w, contact, point.position);
+      point.normal_impulse = from.total_impulse;
+      point.friction_impulse = k == 0 ? manifold.total_friction : Vec3{};
+      const BodyMotion& a = w.bodies.motion[contact.body_a];
+      const BodyMotion& b = w.bodies.motion[contact.body_b];
+      point.relative_velocity = b.linear_velocity + cross(b.angular_velocity, from.from_b) -
+                                a.linear_velocity - cross(a.angular_velocity, from.from_a);
+    }
+  }
+  return count;
+}
+
+// The points of the contacts of some shapes, in the order of World::contacts.
+std::size_t list_points_of(const RigidWorld& w, std::span<const ShapeId> shapes,
+                           std::span<ContactPoint> out) {
+  Array<std::uint64_t> slots;
+  for (const ShapeId id : shapes)
+    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) { slots.push_back(slot); });
+  Array<std::uint64_t> scratch;
+  scratch.resize(slots.size());
+  radix_sort_u64(slots.view(), scratch.view());
+  std::size_t count = 0;
+  for (const std::uint64_t slot : slots)
+    count = list_points(w, w.contacts.contacts[std::size_t(slot)], out, count);
+  return count;
+}
+
+void merge_bounds(const RigidWorld& w, std::uint32_t shape, WorldBounds& out) {
+  const Shape& own = w.shapes.colliders[shape].shape;
+  if (own.kind == ShapeKind::plane) return;
+  const Pose pose = origin_pose(w.bodies, w.shapes.bodies[shape]) * w.shapes.body_from_shape[shape];
+  const Aabb box = bounds(own, {{}, pose.orientation});
+  const DVec3 low = pose.position + box.low, high = pose.position + box.high;
+  const bool first = out.low.x > out.high.x;
+  out.low = first ? low : DVec3{min(out.low.x, low.x), min(out.low.y, low.y), min(out.low.z, low.z)};
+  out.high = first ? high : DVec3{max(out.high.x, high.x), max(out.high.y, high.y), max(out.high.z, high.z)};
+}
+
+}  // namespace
+
 std::size_t World::contacts(std::span<ContactPoint> out) const {
   const FloatMode mode;
   const RigidWorld& w = state_->rigid;
   std::size_t count = 0;
-  for (const Contact& contact : w.contacts.contacts) {
-    if (contact.manifold_room == 0) continue;
-    for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
-      for (int k = 0; k < manifold.count; ++k, ++count) {
-        if (count >= out.size()) continue;
-        const ContactPointState& from = manifold.points[k];
-        ContactPoint& point = out[count];
-        point.shape_a = shape_id(w, contact.shape_a);
-        point.shape_b = shape_id(w, contact.shape_b);
-        point.body_a = body_id(w, contact.body_a);
-        point.body_b = body_id(w, contact.body_b);
-        point.position = w.bodies.poses[contact.body_a].center + from.from_a;
-        point.normal = manifold.normal;
-        point.tangent_1 = any_perpendicular(manifold.normal);
-        point.tangent_2 = cross(manifold.normal, point.tangent_1);
-        point.separation = from.separation;
-        point.triangle = triangle_at(w, contact, point.position);
-        point.normal_impulse = from.total_impulse;
-        point.friction_impulse = k == 0 ? manifold.total_friction : Vec3{};
-        const BodyMotion& a = w.bodies.motion[contact.body_a];
-        const BodyMotion& b = w.bodies.motion[contact.body_b];
-        point.relative_velocity = b.linear_velocity + cross(b.angular_velocity, from.from_b) -
-                                  a.linear_velocity - cross(a.angular_velocity, from.from_a);
-      }
-    }
-  }
+  for (const Contact& contact : w.contacts.contacts) count = list_points(w, contact, out, count);
   return count;
+}
+std::size_t World::body_contacts(BodyId body, std::span<ContactPoint> out) const {
+  if (!exists(body)) return 0;
+  const FloatMode mode;
+  return list_points_of(state_->rigid, shapes(body), out);
+}
+std::size_t World::shape_contacts(ShapeId shape, std::span<ContactPoint> out) const {
+  if (!exists(shape)) return 0;
+  const FloatMode mode;
+  return list_points_of(state_->rigid, std::span<const ShapeId>(&shape, 1), out);
+}
+WorldBounds World::body_bounds(BodyId body) const {
+  const FloatMode mode;
+  WorldBounds out;
+  for (const ShapeId shape : shapes(body)) merge_bounds(state_->rigid, shape.index, out);
+  return out;
+}
+WorldBounds World::shape_bounds(ShapeId shape) const {
+  const FloatMode mode;
+  WorldBounds out;
+  if (exists(shape)) merge_bounds(state_->rigid, shape.index, out);
+  return out;
+}
+JointAxisDef World::joint_axis_def(JointId joint, JointAxis axis) const {
+  return exists(joint) ? read_joint_axis_def(state_->rigid, joint.index, axis) : JointAxisDef{};
+}
+Motor World::motor(JointId joint) const {
+  return exists(joint) ? read_motor(state_->rigid.joints.records[joint.index]) : Motor{};
+}
+PoseDrive World::drive(JointId joint) const {
+  if (!exists(joint) || !has_pose_drive(state_->rigid.joints.records[joint.index].kind)) return {};
+  const JointDetail* const detail = detail_of(state_->rigid.joints, joint.index);
+  return detail != nullptr ? detail->drive : PoseDrive{};
+}
+MaterialPair World::material_pair(std::uint16_t a, std::uint16_t b) const {
+  for (const MaterialPair& row : state_->rigid.material_pairs) {
+    if (row.a == min(a, b) && row.b == max(a, b)) return row;
+  }
+  return {};
+}
+SurfaceRule World::surface_rule(std::uint16_t id) const {
+  for (const SurfaceRule& row : state_->rigid.surface_rules) {
+    if (row.id == id) return row;
+  }
+  return {};
+}
+bool World::pair_ignored(BodyId a, BodyId b) const {
+  return exists(a) && exists(b) && is_pair_ignored(state_->rigid, a.index, b.index);
+}
+std::optional<CastHit> World::cast_ray_body(BodyId body, DVec3 origin, Vec3 translation) const {
+  QueryFilter filter;
+  filter.sensors = true;
+  filter.soft = false;
+  filter.user = &body;
+  filter.accepts = [](void* user, ShapeId, BodyId candidate) {
+    return candidate == *static_cast<const BodyId*>(user);
+  };
+  return exists(body) ? cast_ray(origin, translation, filter) : std::nullopt;
 }
 
 std::size_t World::contact_pairs(std::span<ContactPair> out) const {

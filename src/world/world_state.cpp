@@ -213,6 +213,8 @@ void derive_state(RigidWorld& w) {
       w.joints.blocked.find_or_insert(pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b)), 0u)++;
     }
   });
+  for (const IgnoredPair& pair : w.ignored_pairs)
+    w.joints.blocked.find_or_insert(pair_key(pair.a, pair.b), 0u)++;
   rebuild_index(w.contacts);
   activate_all_constraints(w);
   w.broadphase_stale = true;
@@ -227,15 +229,18 @@ std::uint64_t hash_state(const WorldState& state) {
 
 void report_problem(WorldState& state, ErrorCode code, BodyId body, const char* format, ...) {
   constexpr std::size_t kMaxProblems = 256;  // bounds the memory of hosts that never read problems
-  if (state.problems.size() >= kMaxProblems) return;
+  const bool is_kept = state.problems.size() < kMaxProblems;
+  if (!is_kept && state.problem_hook.call == nullptr) return;
   Problem problem;
+  problem.severity = code == ErrorCode::unstable ? Severity::warning : Severity::error;
   problem.code = code;
   problem.body = body;
   va_list arguments;
   va_start(arguments, format);
   std::vsnprintf(problem.message, sizeof problem.message, format, arguments);
   va_end(arguments);
-  state.problems.push_back(problem);
+  if (is_kept) state.problems.push_back(problem);
+  if (state.problem_hook.call != nullptr) state.problem_hook.call(state.problem_hook.user, problem);
 }
 
 }  // namespace gyre

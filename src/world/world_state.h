@@ -77,6 +77,7 @@ struct WorldState {
   StageHook stage_hook;
   CommandLog* log = nullptr;
   Array<Problem> problems;
+  ProblemHook problem_hook;
   Array<std::uint32_t> frozen;
   RigidEvents published_events;  // events of the last step; rigid.events collects those of the next
   SoftEvents published_soft_events;  // soft.events collects those of the next step
@@ -128,7 +129,7 @@ constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || s
                                  std::is_same_v<Column, Array<MotionSettings>> || std::is_same_v<Column, Array<LastMove>> ||
                                  std::is_same_v<Column, Array<SolverSettings>> || std::is_same_v<Column, SoftStore> ||
                                  std::is_same_v<Column, FluidStore> || std::is_same_v<Column, Array<SleepSettings>> ||
-                                 std::is_same_v<Column, Array<BodySleepSpeed>>;
+                                 std::is_same_v<Column, Array<BodySleepSpeed>> || std::is_same_v<Column, Array<IgnoredPair>>;
 
 // Calls visit(name, column) for every state column, in a fixed order. A column is an Array or an IsColumn of records
 // that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
@@ -141,6 +142,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("solver", s.rigid.solver);
   visit("sleep_settings", s.rigid.sleep_settings);
   visit("material_pairs", s.rigid.material_pairs);
+  visit("ignored_pairs", s.rigid.ignored_pairs);
   visit("surface_rules", s.rigid.surface_rules);
   visit("fields", s.rigid.fields);
   visit("body_ids", s.rigid.bodies.ids);

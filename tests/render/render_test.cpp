@@ -80,7 +80,7 @@ class Render : public ::testing::Test {
 TEST_F(Render, WrongUsageIsStatusTwoAndOneLine) {
   expect_refused({}, 2, "SCENE");
   expect_refused({"box.gyre.json"}, 2, "--out");
-  expect_refused({"box.gyre.json", "--out", "a.jpg"}, 2, ".png or .gif");
+  expect_refused({"box.gyre.json", "--out", "a.jpg"}, 2, ".png, .gif, .mp4 or .webm");
   expect_refused({"box.gyre.json", "--out", "a%s.png"}, 2, "%04d");
   expect_refused({"box.gyre.json", "--out", "a.png", "--size", "0x10"}, 2, "WIDTHxHEIGHT");
   expect_refused({"box.gyre.json", "--out", "a.png", "--size", "640"}, 2, "found 640");

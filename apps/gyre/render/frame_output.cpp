@@ -10,6 +10,11 @@
 namespace gyre {
 
 bool FrameOutput::open() {
+  if (path_.kind == OutputKind::video) {
+    if (video_.open(path_.before, seconds_)) return true;
+    message_ = video_.message();
+    return false;
+  }
   if (path_.kind != OutputKind::numbered) {
     if (file_.open(path_.before)) return true;
     message_ = file_.message();
@@ -33,6 +38,11 @@ bool FrameOutput::write(OutputFile& file, const std::string& bytes) {
 
 bool FrameOutput::add(Picture picture) {
   ++frames_;
+  if (path_.kind == OutputKind::video) {
+    if (video_.add(picture)) return true;
+    message_ = video_.message();
+    return false;
+  }
   if (path_.kind == OutputKind::movie) {
     movie_.push_back(std::move(picture));
     return true;
@@ -47,6 +57,12 @@ bool FrameOutput::add(Picture picture) {
 }
 
 bool FrameOutput::finish() {
+  if (path_.kind == OutputKind::video) {
+    const bool whole = video_.commit();
+    message_ = video_.message();
+    bytes_ = video_.bytes();
+    return whole;
+  }
   if (path_.kind != OutputKind::movie || movie_.empty()) return true;
   const std::string bytes = gif_bytes(movie_, seconds_, message_);
   return !bytes.empty() && write(file_, bytes);

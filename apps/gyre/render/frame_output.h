@@ -1,9 +1,10 @@
-// Takes pictures and writes them as files: a PNG each, or one GIF of all.
+// Takes pictures and writes them as files: a PNG each, one GIF, or one MP4 or WebM of all.
 #pragma once
 
 #include "output_file.h"
 #include "render/frame_path.h"
 #include "render/picture.h"
+#include "render/video_file.h"
 
 #include <cstdint>
 #include <string>
@@ -31,6 +32,7 @@ class FrameOutput {
   FramePath path_;
   double seconds_;
   OutputFile file_;  // of a picture or a movie
+  VideoFile video_;
   std::vector<Picture> movie_;
   std::uint64_t frames_ = 0, bytes_ = 0;
   std::string message_;

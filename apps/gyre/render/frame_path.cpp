@@ -33,9 +33,10 @@ std::string FramePath::at(std::uint64_t frame) const {
 
 std::string parse_frame_path(const std::string& text, FramePath& out) {
   out = {};
-  const bool movie = ends_with(text, ".gif");
-  if (!movie && !ends_with(text, ".png"))
-    return "found " + text + ", expected a path that ends in .png or .gif";
+  const bool video = ends_with(text, ".mp4") || ends_with(text, ".webm");
+  const bool movie = ends_with(text, ".gif") || video;
+  if (!movie && !ends_with(text, ".png") && text != "-")
+    return "found " + text + ", expected a path that ends in .png, .gif, .mp4 or .webm, or - for a PNG on standard output";
   for (std::size_t i = 0; i < text.size(); ++i) {
     std::string& part = out.kind == OutputKind::numbered ? out.after : out.before;
     if (text[i] != '%') {
@@ -49,7 +50,7 @@ std::string parse_frame_path(const std::string& text, FramePath& out) {
   }
   if (movie && out.kind == OutputKind::numbered)
     return "found " + text + ", a movie is one file without a number";
-  if (movie) out.kind = OutputKind::movie;
+  if (movie) out.kind = video ? OutputKind::video : OutputKind::movie;
   return {};
 }
 

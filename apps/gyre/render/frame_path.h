@@ -6,7 +6,7 @@
 
 namespace gyre {
 
-enum class OutputKind { picture, numbered, movie };
+enum class OutputKind { picture, numbered, movie, video };  // movie: a GIF; video: an MP4 or WebM
 
 struct FramePath {
   OutputKind kind = OutputKind::picture;
@@ -17,8 +17,8 @@ struct FramePath {
   std::string at(std::uint64_t frame) const;
 };
 
-// A path that ends in .gif is a movie; one that ends in .png is a picture, or many if it has a %d or %04d. Returns why it is
-// none of these; empty if it is one.
+// A path that ends in .gif is a movie, in .mp4 or .webm a video; one that ends in .png is a picture, or many if it has a %d or %04d. - is a
+// picture on standard output. Returns why it is none of these; empty if it is one.
 std::string parse_frame_path(const std::string& text, FramePath& out);
 
 }  // namespace gyre

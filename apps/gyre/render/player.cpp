@@ -174,13 +174,13 @@ std::unique_ptr<Player> open_recording(const std::string& path, const std::strin
 bool Player::advance_to(double seconds) {
   // The length of a recording's first step is only known when it is done.
   while (time() + 0.5 * last_step_ < seconds) {
-    if (!step()) return false;
+    if (!step() || (watcher_ != nullptr && !watcher_(user_))) return false;
   }
   return true;
 }
 
-std::unique_ptr<Player> open_player(const std::string& path, const std::string& look, const ImportOptions& import, int threads,
-                                    std::string& error) {
+std::unique_ptr<Player> open_player(const std::string& path, const std::string& look,
+                                    const ImportOptions& import, int threads, std::string& error) {
   // A recording may be far larger than a scene; the scene reader keeps its own limit.
   SceneLimits limits;
   limits.file_bytes = std::size_t(1) << 32;

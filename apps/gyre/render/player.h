@@ -37,15 +37,22 @@ class Player {
 
   // Steps until `seconds` is reached, at most half a step before or after it; false if the end came first.
   bool advance_to(double seconds);
+  // Called after each step; false stops advance_to().
+  void watch(bool (*watcher)(void* user), void* user) {
+    watcher_ = watcher;
+    user_ = user;
+  }
 
  protected:
+  bool (*watcher_)(void* user) = nullptr;
+  void* user_ = nullptr;
   std::string problem_, note_;
   double last_step_ = 0;  // s
 };
 
 // Opens a scene file or a recording; `look` names a scene file that says how a recording looks (may be empty). Null and an
 // error if that fails.
-std::unique_ptr<Player> open_player(const std::string& path, const std::string& look, const ImportOptions& import, int threads,
-                                    std::string& error);
+std::unique_ptr<Player> open_player(const std::string& path, const std::string& look,
+                                    const ImportOptions& import, int threads, std::string& error);
 
 }  // namespace gyre

@@ -138,7 +138,25 @@ bool Rendering::fits_in_memory() const {
 // The first look at everything.
 bool Rendering::prepare() {
   if (plan_.count != kUntilTheEnd && !fits_in_memory()) return false;
+  // Everything is simulated once before the first frame is drawn, which may take long.
+  const double end = plan_.count == kUntilTheEnd ? 0 : plan_.start + double(plan_.count - 1) * plan_.interval;
+  Progress progress(!options_.quiet && end > 0, 1000, "thousandths, before the drawing");
+  struct Watch {
+    Progress& progress;
+    const Player& player;
+    double end;  // s; 0: not known
+  } watch{progress, *player_, end};
+  player_->watch(
+      [](void* user) {
+        const Watch& w = *static_cast<Watch*>(user);
+        if (w.end > 0) w.progress.show(std::uint64_t(1000 * min(w.player.time() / w.end, 1.0)));
+        return !interrupted();
+      },
+      &watch);
   const Survey survey(*player_, plan_);
+  player_->watch(nullptr, nullptr);
+  progress.clear();
+  if (interrupted()) return false;
   problem_ = player_->problem();
   if (!fits_in_memory()) return false;  // how long a recording is, is only known now
   camera_ = survey.camera(wish_of(options_), width_, height_);
@@ -201,19 +219,24 @@ int Rendering::run() {
   }
   if (!find_follow()) return kExitUsage;
   plan_ = plan_frames(options_, player_->is_recording());
-  const bool usual_movie = options_.out.kind == OutputKind::movie;
+  const bool usual_movie = options_.out.kind == OutputKind::movie || options_.out.kind == OutputKind::video;
   renderer_ = Renderer::create(width_, height_, options_.samples.value_or(usual_movie ? 16 : 48), error);
   if (!renderer_) return stop(error);
   const std::string noted = player_->note();
-  if (!prepare()) return kExitUsage;
+  if (!prepare()) {
+    if (!interrupted()) return kExitUsage;
+    say("interrupted before the first frame");
+    return kExitInterrupted;
+  }
   if (player_->note() != noted) say(options_.source + ": " + player_->note());
   if (!player_->rewind(error)) return stop(options_.source + ": " + error);
   if (!output_.open()) return stop(output_.message());
   const int ended = draw_frames();
   if (ended != kExitInvalid && !options_.quiet) {
-    std::printf("%s: %llu %s of %d x %d, %.1f kB\n", options_.out.at(0).c_str(),
-                static_cast<unsigned long long>(output_.frames()), output_.frames() == 1 ? "frame" : "frames",
-                width_, height_, double(output_.bytes()) / 1000.0);
+    std::fprintf(
+        options_.out.before == kStandardOutput ? stderr : stdout, "%s: %llu %s of %d x %d, %.1f kB\n",
+        options_.out.at(0).c_str(), static_cast<unsigned long long>(output_.frames()),
+        output_.frames() == 1 ? "frame" : "frames", width_, height_, double(output_.bytes()) / 1000.0);
   }
   return ended;
 }

@@ -2,6 +2,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "import_options.h"
+#include "option_checks.h"
 #include "render/render.h"
 
 #include <CLI/CLI.hpp>
@@ -11,16 +12,6 @@
 
 namespace gyre {
 namespace {
-
-CLI::Validator number_between(double low, double high, const std::string& expected) {
-  return CLI::Validator(
-      [=](std::string& text) {
-        double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
-        return "found " + text + ", expected " + expected;
-      },
-      "", "");
-}
 
 // Reads "640x400". Returns what is wrong; empty if nothing is.
 std::string parse_size(const std::string& text, RenderOptions& options) {
@@ -77,15 +68,15 @@ void add_camera_options(CLI::App& command, RenderOptions& options) {
              [&options](const std::string& text) { return parse_numbers(text, 2, options.direction); });
   command.add_option("--fov", options.field_of_view, "Field of view from bottom to top, in degrees (34)")
       ->type_name("DEGREES")
-      ->check(number_between(1, 170, "a number from 1 to 170"));
+      ->check(number_between(1, false, 170, "a number from 1 to 170"));
   command.add_option("--zoom", options.zoom, "Above 1: nearer, below 1: farther away")
       ->type_name("FACTOR")
-      ->check(number_between(0.01, 100, "a number from 0.01 to 100"));
+      ->check(number_between(0.01, false, 100, "a number from 0.01 to 100"));
   command.add_option("--follow", options.follow, "The camera moves with this body")->type_name("NAME");
 }
 
 void add_time_options(CLI::App& command, RenderOptions& options) {
-  const CLI::Validator time = number_between(0, 1e9, "a number from 0 to 1e9");
+  const CLI::Validator time = number_between(0, false, 1e9, "a number from 0 to 1e9");
   command.add_option("--at", options.at, "The moment of a single picture, in s (0)")
       ->type_name("S")
       ->check(time);
@@ -103,17 +94,17 @@ void add_time_options(CLI::App& command, RenderOptions& options) {
                              ->excludes(to);
   command.add_option("--frames", options.frames, "How many frames, instead of a time")
       ->type_name("N")
-      ->check(number_between(1, 1e7, "an integer from 1 to 1e7"))
+      ->check(number_between(1, false, 1e7, "an integer from 1 to 1e7"))
       ->excludes(to)
       ->excludes(seconds);
   command.add_option("--fps", options.frame_rate, "Frames in a second of the movie (20)")
       ->type_name("N")
-      ->check(number_between(0.01, 1000, "a number from 0.01 to 1000"));
+      ->check(number_between(0.01, false, 1000, "a number from 0.01 to 1000"));
   command
       .add_option("--speed", options.speed,
                   "Seconds of the scene in a second of the movie: 0.1 is slow motion (1)")
       ->type_name("FACTOR")
-      ->check(number_between(1e-6, 1e6, "a number from 1e-6 to 1e6"));
+      ->check(number_between(1e-6, false, 1e6, "a number from 1e-6 to 1e6"));
 }
 
 // What one option alone cannot know. Returns what is wrong; empty if nothing is.
@@ -122,7 +113,7 @@ std::string check_together(const RenderOptions& options) {
       options.from || options.to || options.seconds || options.frames || options.frame_rate;
   if (options.out.kind == OutputKind::picture && movie_option) {
     return "--out " + options.out.at(0) +
-           " is one picture, whose moment is --at; for more frames it is a .gif, or has a " +
+           " is one picture, whose moment is --at; for more frames it is a .gif, .mp4 or .webm, or has a " +
            "number: frames/%04d.png";
   }
   if (options.out.kind != OutputKind::picture && options.at)
@@ -146,10 +137,10 @@ std::string check_together(const RenderOptions& options) {
 void add_render(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("render", "Draw pictures or a movie of a scene or a recording");
   const auto options = std::make_shared<RenderOptions>();
-  command->add_option("SCENE|RECORDING", options->source, "The scene (*.gyre.json), robot, glTF file or recording (*.gyrec)")
+  command->add_option("SCENE|RECORDING", options->source, "The scene (*.gyre.json), robot, glTF file or recording (*.gyrec); - for standard input")
       ->required()
       ->type_name("");
-  add_parsed(*command, "--out", "FILE", "picture.png, movie.gif, or frames/%04d.png for many pictures",
+  add_parsed(*command, "--out", "FILE", "picture.png, movie.gif, movie.mp4 or movie.webm (by ffmpeg), frames/%04d.png for many pictures, or - for a PNG on standard output",
              [options](const std::string& text) { return parse_frame_path(text, options->out); });
   command->get_option("--out")->required();
   add_parsed(*command, "--size", "WIDTHxHEIGHT", "Of the picture, in pixels (960x600; a GIF: 480x300)",
@@ -162,12 +153,8 @@ void add_render(CLI::App& app, int& exit_code) {
       ->add_option("--samples", options->samples,
                    "Samples a pixel: more are smoother and take longer (48; a GIF: 16)")
       ->type_name("N")
-      ->check(number_between(1, 1024, "an integer from 1 to 1024"));
-  command
-      ->add_option("--threads", options->threads,
-                   "Worker threads of the simulation, 0 for all; never changes a picture")
-      ->type_name("N")
-      ->check(number_between(0, 1024, "an integer from 0 to 1024"));
+      ->check(number_between(1, false, 1024, "an integer from 1 to 1024"));
+  add_threads_option(*command, options->threads, "Worker threads of the simulation, 0 for all; never changes a picture");
   add_import_options(*command, options->import);
   command->add_flag("--quiet", options->quiet, "Print no summary and show no progress");
   command->callback([options, &exit_code] {

@@ -181,6 +181,11 @@ void fields(C& c, T& v) {
   auto& [linear, angular] = v;
   all(c, linear, angular);
 }
+template <class C, Is<MassDef> T>
+void fields(C& c, T& v) {
+  auto& [mass, center, inertia] = v;
+  all(c, mass, center, inertia);
+}
 template <class C, Is<BodyDef> T>
 void fields(C& c, T& v) {
   auto& [type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep,
@@ -389,7 +394,8 @@ void fields(C& c, T& v) {
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
                  SetAwake, SetField, SetSleepSpeed, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft,
-                 SetEmitters>
+                 SetEmitters, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetBodyUserData,
+                 SetShapeUserData>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
@@ -401,7 +407,7 @@ void fields(C& c, T& v) {
 }
 template <class C, class T>
 requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis, AttachSoft,
-                 SetVertices>
+                 SetVertices, SetShape, SetBreakLoad, SetPairIgnored>
 void fields(C& c, T& v) {
   auto& [first, second, third] = v;
   all(c, first, second, third);
@@ -472,6 +478,7 @@ void for_each_shape(const Command& command, FunctionRef<void(const AnyShape&)> f
     for (const ShapeDef& shape : body->shapes) fn(shape.geometry);
   }
   if (const auto* shape = std::get_if<AddShape>(&command)) fn(shape->def.geometry);
+  if (const auto* set = std::get_if<SetShape>(&command); set != nullptr && set->geometry) fn(*set->geometry);
 }
 
 }  // namespace gyre

@@ -99,7 +99,18 @@ std::vector<Command> all_commands() {
           RemoveFluid{FluidId{2, 1, kWorld}},
           SetEmitters{FluidId{2, 1, kWorld}, {{.position = {1, 2, 3}, .radius = 0.5f}}},
           SetSleepShare{0.25f},
-          SetSleepSpeed{body, 0.125f}};
+          SetSleepSpeed{body, 0.125f},
+          SetMass{body, {.mass = 2.0f, .center_of_mass = Vec3{1, 2, 3}, .inertia = Sym3{1, 2, 3, 4, 5, 6}}},
+          SetDensity{shape, 3.5f},
+          SetLockedAxes{body, {{true, false, true}, {false, true, false}}},
+          SetContinuous{body, true},
+          SetCanSleep{body, false},
+          SetSensor{shape, true},
+          SetShape{shape, Capsule{0.25f, 1}, Transform{{1, 2, 3}, {0, 1, 0, 0}}},
+          SetBodyUserData{body, 1234567890123},
+          SetShapeUserData{shape, 1234567890124},
+          SetBreakLoad{joint, 1.5f, 2.5f},
+          SetPairIgnored{body, BodyId{4, 6, kWorld}, true}};
 }
 
 // Fields of certain kinds of joints are restored as well.

@@ -22,7 +22,8 @@ bool can_record(const RecordOptions& options) {
 // True if the command may change the look of existing bodies.
 bool changes_models(const Command& command) {
   return std::holds_alternative<AddShape>(command) || std::holds_alternative<RemoveShape>(command) ||
-         std::holds_alternative<SetType>(command) || std::holds_alternative<SetMaterial>(command);
+         std::holds_alternative<SetType>(command) || std::holds_alternative<SetMaterial>(command) ||
+         std::holds_alternative<SetSensor>(command) || std::holds_alternative<SetShape>(command);
 }
 
 }  // namespace

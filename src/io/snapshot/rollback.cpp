@@ -6,6 +6,19 @@
 
 namespace gyre {
 
+Result<World> clone(const World& world) {
+  const WorldState& from = state_of(world);
+  if (from.stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
+  std::unique_ptr<WorldState> state = make_world_state(world.def());
+  // The same number, so that ids of one name the same objects in the other.
+  state->number = from.number;
+  state->rigid.world_number = from.number;
+  StateCopy copy;
+  copy.save(from);
+  copy.restore(*state);
+  return WorldAccess::make(std::move(state));
+}
+
 struct Rollback::Ring {
   struct Slot {
     bool used = false;

@@ -272,6 +272,19 @@ Error read_columns(ByteReader& in, const GeometryTable& geometry, StateColumns& 
   return {};
 }
 
+// Bytes of the caller behind a snapshot: a magic word, their number, their hash, and they themselves.
+constexpr char kUserMagic[] = "GYREUSER";
+
+bool read_user_bytes(ByteReader& in, std::span<const std::byte>& bytes) {
+  const std::span<const std::byte> magic = in.get_bytes(sizeof kUserMagic - 1);
+  if (in.failed() || std::memcmp(magic.data(), kUserMagic, magic.size()) != 0) return false;
+  const auto count = in.get<std::uint64_t>();
+  const auto hash = in.get<std::uint64_t>();
+  if (in.failed() || count != in.left()) return false;
+  bytes = in.get_bytes(count);
+  return !in.failed() && hash_bytes(bytes.data(), bytes.size()) == hash;
+}
+
 Error read_header(ByteReader& in, std::span<const std::byte>& body) {
   const std::span<const std::byte> magic = in.get_bytes(sizeof kSnapshotMagic - 1);
   if (in.failed() || std::memcmp(magic.data(), kSnapshotMagic, magic.size()) != 0)
@@ -285,8 +298,10 @@ Error read_header(ByteReader& in, std::span<const std::byte>& body) {
     return make_error(ErrorCode::unsupported, "snapshot: it is of format %u; this version reads format %u",
                       version, kSnapshotVersion);
   }
-  if (length != in.left()) return bad_snapshot("it is not as long as it says");
+  if (length > in.left()) return bad_snapshot("it is not as long as it says");
   body = in.get_bytes(length);
+  std::span<const std::byte> user_bytes;
+  if (in.left() > 0 && !read_user_bytes(in, user_bytes)) return bad_snapshot("it is not as long as it says");
   if (hash_bytes(body.data(), body.size()) != checksum)
     return bad_snapshot("it is damaged: the checksum differs");
   return {};
@@ -340,9 +355,12 @@ std::uint64_t state_layout() {
   const StateColumns columns;
   for_each_column(columns, [&]<class Column>(const char* name, const Column&) {
     // Soft matter and fluids have their own layouts, which readers compare: recordings without any stay readable when those change.
-    // So do sleep speeds, which are younger than the first recordings.
+    // So do sleep speeds and ignored pairs, which are younger than the first recordings.
     if constexpr (std::is_same_v<Column, SoftStore> || std::is_same_v<Column, FluidStore>) return;
-    if constexpr (std::is_same_v<Column, Array<SleepSettings>> || std::is_same_v<Column, Array<BodySleepSpeed>>) return;
+    if constexpr (std::is_same_v<Column, Array<SleepSettings>> || std::is_same_v<Column, Array<BodySleepSpeed>> ||
+                  std::is_same_v<Column, Array<IgnoredPair>>) {
+      return;
+    }
     hash = mix_bits(hash + ColumnLayout<Column>::get().hash);
     hash = mix_bits(hash + hash_text(name));
   });
@@ -361,6 +379,29 @@ std::vector<std::byte> save_snapshot(const World& world) {
   GeometryTable geometry;
   write_snapshot(out, state_of(world), geometry);
   return out.take();
+}
+
+std::vector<std::byte> save_snapshot_with(const World& world, std::span<const std::byte> user_bytes) {
+  ByteWriter out;
+  GeometryTable geometry;
+  write_snapshot(out, state_of(world), geometry);
+  out.put_bytes(std::as_bytes(std::span<const char>(kUserMagic, sizeof kUserMagic - 1)));
+  out.put(std::uint64_t(user_bytes.size()));
+  out.put(hash_bytes(user_bytes.data(), user_bytes.size()));
+  out.put_bytes(user_bytes);
+  return out.take();
+}
+
+std::vector<std::byte> snapshot_user_bytes(std::span<const std::byte> snapshot) {
+  std::span<const std::byte> found;
+  if (snapshot.size() < kSnapshotHeaderBytes) return {};
+  ByteReader in(snapshot.subspan(kBodyLengthOffset));
+  const auto length = in.get<std::uint64_t>();
+  const std::span<const std::byte> rest = snapshot.subspan(kSnapshotHeaderBytes);
+  if (length >= rest.size()) return {};
+  ByteReader behind(rest.subspan(std::size_t(length)));
+  if (!read_user_bytes(behind, found)) return {};
+  return {found.begin(), found.end()};
 }
 
 Result<World> load_snapshot(std::span<const std::byte> bytes, const WorldDef& def) {

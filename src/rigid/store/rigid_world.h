@@ -27,7 +27,7 @@ struct JointStore {
   Array<JointDetail> details;    // by slot, shorter than the records: most joints have none
   Array<PathPoint> path_points;  // of all paths, one after the other
   FlatMap<std::uint32_t>
-      blocked;  // body pair key -> number of joints that disable the collision of the two; derived
+      blocked;  // body pair key -> number of joints and ignored pairs that disable the collision of the two; derived
 };
 
 // Data of the joint beyond its record; null if there is none.
@@ -66,6 +66,11 @@ inline float reference_gravity(const RigidSettings& settings) {
 
 // The world's sleep speed, as a share of sqrt(gravity * bounding radius), the natural speed of a body.
 constexpr float kSleepSpeedShare = 0.015f;
+// Two bodies that ignore each other, by the user's wish.
+struct IgnoredPair {
+  std::uint32_t a = 0, b = 0;  // a < b
+};
+
 struct SleepSettings {
   float share = kSleepSpeedShare;
 };
@@ -125,6 +130,8 @@ struct RigidWorld {
   Array<std::uint8_t>
       inactive_contacts;  // by contact: not 0 if it does not act (rigid/time/toi_stepping.h); empty unless the step is adaptive
   std::uint16_t world_number = 0;  // part of the ids in events
+  // Part of the state, like the columns at the beginning.
+  Array<IgnoredPair> ignored_pairs;  // sorted by (a, b)
 };
 
 inline MotionSettings motion_settings(const RigidWorld& w) {
