@@ -107,8 +107,8 @@ def vertex_of(columns, column, row):
 
 
 def curtain_through_ring():
-    """A kinematic hook below a ring pulls a curtain through it by its middle."""
-    cells, high, radius, bars, wire = 32, 1.6, 0.13, 16, 0.02
+    """A hook on a driven slider pulls a curtain through a ring by its middle."""
+    cells, high, radius, bars, wire = 28, 1.6, 0.13, 16, 0.02
     middle = radius + wire
     ring = {"name": "ring", "type": "static", "position": [0, high, 0], "color": "#cfa349", "shapes": [
         {"type": "capsule", "radius": wire, "half_height": middle * math.tan(math.pi / bars),
@@ -119,25 +119,26 @@ def curtain_through_ring():
     post = {"name": "post", "type": "static", "position": [-0.65, high / 2, 0], "color": "#8d99a8", "shapes": [
         {"type": "cylinder", "radius": 0.03, "half_height": high / 2},
         {"type": "capsule", "radius": 0.02, "half_height": 0.24, "position": [0.25, high / 2, 0], "orientation": about([0, 0, 1], math.pi / 2)}]}
-    hook = {"name": "hook", "type": "kinematic", "position": [0, high + 0.03, 0], "linear_velocity": [0, -0.14, 0], "color": "#4d5560",
-            "shapes": [{"type": "sphere", "radius": 0.03}]}
+    hook = {"name": "hook", "position": [0, high + 0.03, 0], "mass": 1, "color": "#4d5560", "shapes": [{"type": "sphere", "radius": 0.03}]}
+    slider = {"type": "slider", "a": "world", "b": "hook", "anchor": [0, high, 0], "axis": [0, 1, 0], "limits": [-1.4, 0],
+              "motor": {"target_velocity": -0.2, "max_force": 200}}
     half = cells // 2
     held = [{"vertex": vertex_of(cells, half + i, half + j), "body": "hook"} for i, j in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))]
     curtain = {"name": "curtain", "grid": {"size": [1.4, 1.4], "cells": [cells, cells]}, "position": [0, high + 0.065, 0], "links": "springs",
                "area_density": 0.2, "stretch_stiffness": 2000, "shear_stiffness": 20, "bend_stiffness": 5e-6, "damping": 0.005,
                "thickness": 0.006, "static_friction": 0.2, "color": "#7d6fa8", "pinned_to": held}
-    return scene("a curtain pulled through a ring", [1.7, 2.5, 3.2], [0, 1.2, 0], [GROUND, ring, post, hook], cloths=[curtain])
+    return scene("a curtain pulled through a ring", [1.5, 2.2, 2.9], [0, 0.95, 0], [GROUND, ring, post, hook], joints=[slider], cloths=[curtain])
 
 
 def cloth_on_spikes():
     places = [(0, 0)] + [(0.48 * math.cos(a), 0.48 * math.sin(a)) for a in (math.pi / 4 + math.pi / 2 * k for k in range(4))]
-    spikes = [{"name": f"spike {k + 1}", "type": "static", "position": [x, 0, z], "color": "#8d99a8", "shapes": [
+    spikes = [{"name": f"spike {k + 1}", "type": "kinematic", "position": [x, 0, z], "color": "#8d99a8", "shapes": [
         {"type": "cone", "radius": 0.16, "half_height": 0.45, "position": [0, 0.45, 0]},
         {"type": "sphere", "radius": 0.05, "position": [0, 0.84, 0]}]} for k, (x, z) in enumerate(places)]
-    cloth = {"name": "cloth", "grid": {"size": [1.7, 1.7], "cells": [36, 36]}, "position": [0.02, 1.3, 0.03], "links": "springs",
+    cloth = {"name": "cloth", "grid": {"size": [1.7, 1.7], "cells": [30, 30]}, "position": [0.02, 1.3, 0.03], "links": "springs",
              "area_density": 0.2, "stretch_stiffness": 2000, "shear_stiffness": 60, "bend_stiffness": 2e-5, "damping": 0.01,
              "thickness": 0.012, "color": "#5b86a8"}
-    return scene("a cloth falls on five spikes", [2.0, 2.3, 3.2], [0, 0.5, 0], [GROUND, *spikes], cloths=[cloth])
+    return scene("a cloth falls on five spikes", [1.7, 1.9, 2.7], [0, 0.5, 0], [GROUND, *spikes], cloths=[cloth])
 
 
 def twisted_towel():
@@ -153,7 +154,7 @@ def twisted_towel():
     towel = {"name": "towel", "grid": {"size": [width, length], "cells": [columns, rows]}, "position": [0, high - length / 2, 0],
              "orientation": about([1, 0, 0], math.pi / 2), "links": "springs", "area_density": 0.4, "stretch_stiffness": 4000,
              "shear_stiffness": 40, "bend_stiffness": 1e-4, "damping": 0.01, "thickness": 0.01, "color": "#cf9a62", "pinned_to": edges}
-    return scene("a towel is wrung out", [1.3, 1.9, 3.6], [0, 1.35, 0], [GROUND, *bars], cloths=[towel])
+    return scene("a towel is wrung out", [1.2, 1.8, 3.0], [0, 1.4, 0], [GROUND, *bars], cloths=[towel])
 
 
 def sheets_on_cylinder():
@@ -164,7 +165,7 @@ def sheets_on_cylinder():
     cloths = [{"name": f"sheet {k + 1}", "grid": {"size": [1, 1], "cells": [cells, cells]}, "position": [0.02 * (-1) ** k, 1.1 + 0.08 * k, 0],
                "orientation": about([0, 1, 0], 0.3 * k), "links": "springs", "area_density": 0.3, "stretch_stiffness": 1000,
                "shear_stiffness": 40, "bend_stiffness": 5e-5, "damping": 0.01, "thickness": 0.016, "color": colors[k]} for k in range(sheets)]
-    return scene("ten sheets fall over a cylinder", [2.0, 2.2, 3.4], [0, 0.8, 0], [GROUND, cylinder], cloths=cloths)
+    return scene("ten sheets fall over a cylinder", [1.8, 1.7, 2.7], [0, 0.75, 0], [GROUND, cylinder], cloths=cloths)
 
 
 def bag_of_balls():
@@ -173,16 +174,16 @@ def bag_of_balls():
     clips, corners = [], []
     for k, (x, z) in enumerate(((-1, -1), (1, -1), (-1, 1), (1, 1))):
         clips.append({"name": f"clip {k + 1}", "type": "kinematic", "position": [half * x, 0.05, half * z], "color": "#4d5560",
-                      "linear_velocity": [-0.045 * x, 0.16, -0.045 * z], "shapes": [{"type": "sphere", "radius": 0.03}]})
+                      "linear_velocity": [-0.045 * x, 0.2, -0.045 * z], "shapes": [{"type": "sphere", "radius": 0.03}]})
         corners.append({"vertex": vertex_of(cells, cells * (x > 0), cells * (z > 0)), "body": f"clip {k + 1}"})
     colors = ("#d9604a", "#cfa349", "#5fae8b", "#5b8fb9", "#7d6fa8")
-    balls = [{"name": f"ball {k + 1}", "position": [0.19 * (k % 3 - 1) + 0.02 * (k % 2), 0.14 + 0.2 * (k // 9), 0.19 * (k // 3 % 3 - 1)],
-              "color": colors[k % 5], "shapes": [{"type": "sphere", "radius": 0.085, "density": 300, "rolling_friction": 0.004}]}
+    balls = [{"name": f"ball {k + 1}", "position": [0.175 * (k % 3 - 1), 0.145 + 0.175 * (k // 9), 0.175 * (k // 3 % 3 - 1)],
+              "color": colors[k % 5], "shapes": [{"type": "sphere", "radius": 0.085, "density": 300, "rolling_friction": 0.01}]}
              for k in range(20)]
     cloth = {"name": "bag", "grid": {"size": [2 * half, 2 * half], "cells": [cells, cells]}, "position": [0, 0.05, 0], "links": "springs",
              "area_density": 0.3, "stretch_stiffness": 4000, "shear_stiffness": 80, "bend_stiffness": 5e-5, "damping": 0.01,
              "thickness": 0.012, "color": "#cbb994", "pinned_to": corners}
-    return scene("a cloth lifts twenty balls", [2.4, 2.2, 3.8], [0, 0.7, 0], [GROUND, *clips, *balls], cloths=[cloth])
+    return scene("a cloth lifts twenty balls", [2.0, 1.9, 3.2], [0, 0.7, 0], [GROUND, *clips, *balls], cloths=[cloth])
 
 
 def rope_bridge_with_car():
@@ -233,15 +234,15 @@ def crane():
     size = (0.4, 0.2, 0.2)
     for row in range(9):
         for place in range(6):
-            x = reach + (place - 2.5) * size[0] + 0.25 * size[0] * (-1) ** row
+            x = reach + (place - 2.5) * size[0] + 0.15 * size[0] * (-1) ** row
             bodies.append({"name": f"brick {6 * row + place + 1}", "position": [x, size[1] * (row + 0.5), -0.35], "color": BRICKS[(place + 2 * row) % 4],
                            "shapes": [{"type": "box", "half_extents": [0.98 * size[0] / 2, size[1] / 2, size[2] / 2], "density": 1800,
                                        "static_friction": 0.7, "dynamic_friction": 0.6}]})
     joints = [{"type": "hinge", "name": "slewing ring", "a": "tower", "b": "jib", "anchor": [0, high + 0.1, 0], "axis": [0, 1, 0],
-               "motor": {"target_velocity": 0.08, "max_force": 4000}}]
+               "motor": {"target_velocity": 0.08, "max_force": 200000}}]
     # The rope ends at the surface of the ball: its inner vertices would be pushed out of the ball.
     end = [ball[0], ball[1] + 0.3 * math.cos(swing), ball[2] - 0.3 * math.sin(swing)]
-    rope = {"name": "rope", "points": [[reach, high, 0], end], "segments": 40, "radius": 0.025, "linear_density": 1.2, "links": "rods",
+    rope = {"name": "rope", "points": [[reach, high, 0], end], "segments": 40, "radius": 0.025, "linear_density": 1.2, "links": "springs", "stretch_stiffness": 3e6, "damping": 0.02,
             "color": "#454c57", "attach": [{"end": 0, "body": "jib"}, {"end": 1, "body": "wrecking ball"}]}
     return scene("a crane with a wrecking ball", [7.5, 4.2, 7.5], [1.4, 2.0, 0.2], bodies, joints=joints, ropes=[rope])
 
