@@ -79,20 +79,20 @@ def flag_in_fan_wind():
 def fire_and_wind_on_a_flag():
     """A fan bends the flame of a burner towards a flag."""
     columns, rows = 14, 10
-    pole = {"name": "pole", "type": "static", "position": [0.5, 0.8, 0], "color": STEEL,
+    pole = {"name": "pole", "type": "static", "position": [0.3, 0.8, 0], "color": STEEL,
             "shapes": [{"type": "cylinder", "radius": 0.03, "half_height": 0.8}]}
-    burner = {"name": "burner", "type": "static", "position": [-0.1, 0.1, 0], "color": "#4d5560",
+    burner = {"name": "burner", "type": "static", "position": [-0.05, 0.1, 0], "color": "#4d5560",
               "shapes": [{"type": "cylinder", "radius": 0.12, "half_height": 0.1}]}
     edge = [{"vertex": row * (columns + 1), "body": "pole"} for row in range(rows + 1)]
-    cloth = {"name": "flag", "grid": {"size": [0.8, 0.6], "cells": [columns, rows]}, "position": [0.94, 1.2, 0],
+    cloth = {"name": "flag", "grid": {"size": [0.8, 0.6], "cells": [columns, rows]}, "position": [0.74, 1.2, 0],
              "orientation": {"axis": [1, 0, 0], "angle": math.pi / 2}, "links": "springs", "area_density": 0.04,
              "stretch_stiffness": 400, "shear_stiffness": 10, "bend_stiffness": 2e-6, "damping": 0.002, "color": "#5b86a8", "pinned_to": edge}
     gas = {"name": "air", "bounds": [[-1.2, 0, -0.9], [1.8, 1.8, 0.9]], "cells": [40, 24, 24], "vorticity": 0.15, "color": "#6b6660",
            "boundary": {"y": ["closed", "open"]},
-           "combustion": {"ignition_temperature": 550, "burn_rate": 4, "heat_release": 4.6e7, "smoke_yield": 4},
-           "emitters": [{"position": [-0.1, 0.28, 0], "radius": 0.1, "density": 0, "temperature": 700, "fuel": 0.02}],
-           "probes": [{"name": "flame", "position": [0.1, 0.6, 0]}, {"name": "at the flag", "position": [0.9, 1.2, 0]}]}
-    return scene("fire and wind on a flag", [2.4, 1.7, 3.9], [0.35, 0.85, 0], [GROUND, fan([-0.7, 0.75, 0], 14), burner, pole],
+           "combustion": {"ignition_temperature": 550, "burn_rate": 6, "heat_release": 4.6e7, "smoke_yield": 2},
+           "emitters": [{"position": [-0.05, 0.3, 0], "radius": 0.13, "density": 0, "temperature": 900, "fuel": 0.03}],
+           "probes": [{"name": "flame", "position": [0.1, 0.6, 0]}, {"name": "at the flag", "position": [0.7, 1.2, 0]}]}
+    return scene("fire and wind on a flag", [1.9, 1.5, 3.2], [0.2, 0.85, 0], [GROUND, fan([-0.5, 0.9, 0], 20), burner, pole],
                  cloths=[cloth], gases=[gas])
 
 
