@@ -133,13 +133,34 @@ typedef struct GyreChannel {
   float damping_ratio;
 } GyreChannel;
 
-/* `worlds` copies of a world as it is; threads 0: as many as the machine has. */
+typedef uint8_t GyreDraw;
+enum {
+  GYRE_DRAW_POSITION = 0,         /* m, added to that of the start, world */
+  GYRE_DRAW_LINEAR_VELOCITY = 1,  /* m/s, added */
+  GYRE_DRAW_ANGULAR_VELOCITY = 2, /* rad/s, added */
+  GYRE_DRAW_GRAVITY = 3,          /* m/s^2, added to that of the world; no body */
+  GYRE_DRAW_GRAVITY_SCALE = 4,    /* a factor in x */
+  GYRE_DRAW_FRICTION = 5,         /* a factor in x, for all shapes of the body */
+  GYRE_DRAW_RESTITUTION = 6       /* 0 to 1 in x, of all shapes of the body */
+};
+/* A parameter that each world draws anew when it begins: evenly between low and high, component by component. */
+typedef struct GyreBatchDraw {
+  uint8_t what;    /* GyreDraw */
+  GyreBodyId body; /* of the world that the batch was made of */
+  GyreVec3 low, high;
+} GyreBatchDraw;
+
+/* `worlds` copies of a world as it is; threads 0: as many as the machine has. The copies share cooked geometry. */
 GYRE_C_API GyreBatch* gyre_batch_create(const GyreWorld* world, int32_t worlds, int32_t threads) GYRE_C_NOEXCEPT;
 GYRE_C_API void gyre_batch_destroy(GyreBatch* batch) GYRE_C_NOEXCEPT;
 /* The readings and actions of every row. Refuses channels of bodies and joints that the world has not. */
 GYRE_C_API bool gyre_batch_set_observations(GyreBatch* batch, const GyreChannel* channels, size_t count) GYRE_C_NOEXCEPT;
 GYRE_C_API bool gyre_batch_set_actions(GyreBatch* batch, const GyreChannel* channels, size_t count) GYRE_C_NOEXCEPT;
+/* The parameters that worlds draw, at most 64, and resets every world. A draw is a function of seed, world, number of the reset and place in
+   the list. */
+GYRE_C_API bool gyre_batch_set_draws(GyreBatch* batch, const GyreBatchDraw* draws, size_t count, uint64_t seed) GYRE_C_NOEXCEPT;
 GYRE_C_API size_t gyre_batch_size(const GyreBatch* batch) GYRE_C_NOEXCEPT;
+GYRE_C_API size_t gyre_batch_body_count(const GyreBatch* batch) GYRE_C_NOEXCEPT; /* bodies of the world that the batch was made of */
 GYRE_C_API size_t gyre_batch_observation_width(const GyreBatch* batch) GYRE_C_NOEXCEPT; /* numbers a row */
 GYRE_C_API size_t gyre_batch_action_width(const GyreBatch* batch) GYRE_C_NOEXCEPT;
 /* Applies a row of actions to each world (NULL: none), steps it `steps` times by `seconds`, and reads a row of observations (NULL: none).
@@ -148,6 +169,14 @@ GYRE_C_API bool gyre_batch_step(GyreBatch* batch, const float* actions, float* o
 /* Sets the worlds whose byte is not 0 back to the start; NULL: all. */
 GYRE_C_API bool gyre_batch_reset(GyreBatch* batch, const uint8_t* which) GYRE_C_NOEXCEPT;
 GYRE_C_API void gyre_batch_observe(GyreBatch* batch, float* observations) GYRE_C_NOEXCEPT;
+/* All bodies that the first world had, in the order of gyre_world_bodies, world after world; a NULL column is left out. Bodies that a world
+   has no more are zero. */
+GYRE_C_API bool gyre_batch_columns(const GyreBatch* batch, GyrePose* poses, GyreVec3* linear_velocities,
+                                   GyreVec3* angular_velocities) GYRE_C_NOEXCEPT;
+/* The hash of each world: that of a world that was stepped alone. */
+GYRE_C_API void gyre_batch_hashes(const GyreBatch* batch, uint64_t* out) GYRE_C_NOEXCEPT;
+/* The values of a draw in the present run of a world. */
+GYRE_C_API GyreVec3 gyre_batch_drawn(const GyreBatch* batch, size_t index, size_t draw) GYRE_C_NOEXCEPT;
 /* One of the worlds, to be read and changed between two steps; it belongs to the batch. Its ids are those of the first world but for the
    number of the world, which gyre_batch_body and gyre_batch_joint put in. */
 GYRE_C_API GyreWorld* gyre_batch_world(GyreBatch* batch, size_t index) GYRE_C_NOEXCEPT;

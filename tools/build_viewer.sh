@@ -3,6 +3,7 @@
 #
 #   tools/build_viewer.sh [simd|threads|plain]...   with these builds of the engine made anew; without any, with those that are
 #                                                   there, or simd if there are none. "all" makes all three.
+#                                                   The script with the live scenes of the course is made along (web/course/dist).
 #   tools/build_viewer.sh recordings                without the engine, into web/viewer/dist-recordings: a page that plays
 #                                                   recordings which `gyre view` decodes. It needs Node.js and npm, no emscripten.
 set -euo pipefail
@@ -26,3 +27,7 @@ if [ ! -e $viewer/node_modules/.package-lock.json ] || [ $viewer/package-lock.js
   (cd $viewer && npm ci --no-audit --no-fund --loglevel=error) >&2
 fi
 (cd $viewer && npm run --silent $what) >&2
+# The live scenes of the course are made of the viewer, too.
+if [ $what = build ]; then
+  (cd $viewer && node_modules/.bin/tsc --noEmit -p ../course && node_modules/.bin/vite build --logLevel error -c vite.course.config.ts) >&2
+fi

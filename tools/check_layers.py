@@ -27,6 +27,7 @@ LAYERS = {
     "world": ["dynamics"],
     "io": ["world"],
     "debug": ["world"],
+    "batch": ["io"],
 }
 # The rooms of each layer that has any, and which rooms of the same layer each includes; "" is the layer's own folder.
 ROOMS = {
@@ -109,7 +110,7 @@ TESTS = re.compile(r"_test(_\w+)?\.(h|cpp)$")
 # Files, tests among them, that may lie in one folder: more than these nobody reads as a list.
 ROOM_LIMIT = 40
 VALUE_HEADERS = {"ids", "math", "result", "geometry", "bounds", "decomposition", "defs", "events", "fields", "joints", "fluid", "memory", "soft", "stepping"}
-SEES_WHOLE_API = {"world", "io", "debug"}
+SEES_WHOLE_API = {"world", "io", "debug", "batch"}
 
 # Folders outside src/: the project's own folders that they may include besides include/gyre.
 OUTER = {

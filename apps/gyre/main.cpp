@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
   gyre::add_view(app, exit_code);
   gyre::add_bench(app, exit_code);
   gyre::add_validate(app, exit_code);
+  gyre::add_sweep(app, exit_code);
   gyre::add_schema(app, exit_code);
 
   try {

@@ -14,7 +14,7 @@ Names and comments are those of the C++ interface. SI units, y up, quaternions a
 
 from ._api import *
 from ._api import __all__ as _api_names
-from ._batch import Action, Batch, Channel, Reading, Space, VectorEnv
+from ._batch import Action, Batch, Channel, Draw, Drawn, Reading, Space, VectorEnv
 from ._library import library as _library
 from ._runtime import GyreError, Id
 from ._render import render
@@ -22,5 +22,5 @@ from ._scenes import Scene, load_scene, read_scene, scene_names
 from . import _world as _  # gives World and others their constructors
 
 __version__ = _library.gyre_version().decode()
-__all__ = [*_api_names, "Action", "Batch", "Channel", "GyreError", "Id", "Reading", "Scene", "Space", "VectorEnv", "load_scene", "read_scene", "render",
+__all__ = [*_api_names, "Action", "Batch", "Channel", "Draw", "Drawn", "GyreError", "Id", "Reading", "Scene", "Space", "VectorEnv", "load_scene", "read_scene", "render",
            "scene_names"]

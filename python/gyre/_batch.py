@@ -5,13 +5,17 @@ import dataclasses
 
 import numpy as np
 
-from ._api import BodyId, JointAxis, JointId, World
+from ._api import BodyId, JointAxis, JointId, Pose, World
 from ._runtime import COUNT, POINTER, Handle, IdBits, call, done
 
 
 class _Channel(ctypes.Structure):
     _fields_ = [("what", ctypes.c_uint8), ("components", ctypes.c_uint8), ("axis", ctypes.c_uint8), ("body", IdBits), ("joint", IdBits),
                 ("max_force", ctypes.c_float), ("frequency", ctypes.c_float), ("damping_ratio", ctypes.c_float)]
+
+
+class _Draw(ctypes.Structure):
+    _fields_ = [("what", ctypes.c_uint8), ("body", IdBits), ("low", ctypes.c_float * 3), ("high", ctypes.c_float * 3)]
 
 
 def _bits(identity):
@@ -34,6 +38,63 @@ class Channel:
     def raw(self):
         return _Channel(self.what, self.components, self.axis, _bits(self.body), _bits(self.joint), self.max_force, self.frequency,
                         self.damping_ratio)
+
+
+@dataclasses.dataclass(frozen=True)
+class Drawn:
+    """One parameter that every world draws when it begins; made by Draw."""
+
+    what: int
+    body: int
+    low: tuple
+    high: tuple
+
+    def raw(self):
+        return _Draw(self.what, _bits(self.body), self.low, self.high)
+
+
+def _vector(value):
+    x, y, z = value
+    return float(x), float(y), float(z)
+
+
+class Draw:
+    """What each world draws when it begins, evenly between two values. Ids are those of the world that the batch is made of."""
+
+    @staticmethod
+    def position(body, low, high):
+        """m, added to that of the start: three numbers each"""
+        return Drawn(0, body, _vector(low), _vector(high))
+
+    @staticmethod
+    def linear_velocity(body, low, high):
+        """m/s, added: three numbers each"""
+        return Drawn(1, body, _vector(low), _vector(high))
+
+    @staticmethod
+    def angular_velocity(body, low, high):
+        """rad/s, added: three numbers each"""
+        return Drawn(2, body, _vector(low), _vector(high))
+
+    @staticmethod
+    def gravity(low, high):
+        """m/s^2, added to that of the world: three numbers each"""
+        return Drawn(3, 0, _vector(low), _vector(high))
+
+    @staticmethod
+    def gravity_scale(body, low, high):
+        """a factor"""
+        return Drawn(4, body, (low, 0, 0), (high, 0, 0))
+
+    @staticmethod
+    def friction(body, low, high):
+        """a factor for all shapes of the body"""
+        return Drawn(5, body, (low, 0, 0), (high, 0, 0))
+
+    @staticmethod
+    def restitution(body, low, high):
+        """0 to 1, of all shapes of the body"""
+        return Drawn(6, body, (low, 0, 0), (high, 0, 0))
 
 
 def _components(axes, known):
@@ -125,6 +186,10 @@ class Action:
         return Channel(5, body=body, components=_components(axes, "xyz"))
 
 
+class _Vec3(ctypes.Structure):
+    _fields_ = [("x", ctypes.c_float), ("y", ctypes.c_float), ("z", ctypes.c_float)]
+
+
 class Batch(Handle):
     """`worlds` copies of `world` as it is. Row i of every array belongs to world i.
 
@@ -134,10 +199,16 @@ class Batch(Handle):
     Results do not depend on `threads` (0: as many as the machine has): each world has the bits of one that is stepped alone.
     """
 
+    _draws = 0
     _destroy = call("gyre_batch_destroy", None, POINTER)
     _create = call("gyre_batch_create", POINTER, POINTER, ctypes.c_int32, ctypes.c_int32)
     _observations = call("gyre_batch_set_observations", ctypes.c_bool, POINTER, POINTER, COUNT)
     _actions = call("gyre_batch_set_actions", ctypes.c_bool, POINTER, POINTER, COUNT)
+    _set_draws = call("gyre_batch_set_draws", ctypes.c_bool, POINTER, POINTER, COUNT, ctypes.c_uint64)
+    _body_count = call("gyre_batch_body_count", COUNT, POINTER)
+    _columns = call("gyre_batch_columns", ctypes.c_bool, POINTER, POINTER, POINTER, POINTER)
+    _hashes = call("gyre_batch_hashes", None, POINTER, POINTER)
+    _drawn = call("gyre_batch_drawn", _Vec3, POINTER, COUNT, COUNT)
     _observation_width = call("gyre_batch_observation_width", COUNT, POINTER)
     _action_width = call("gyre_batch_action_width", COUNT, POINTER)
     _step = call("gyre_batch_step", ctypes.c_bool, POINTER, POINTER, POINTER, ctypes.c_int32, ctypes.c_float)
@@ -147,13 +218,30 @@ class Batch(Handle):
     _body = call("gyre_batch_body", ctypes.c_uint64, POINTER, COUNT, ctypes.c_uint64)
     _joint = call("gyre_batch_joint", ctypes.c_uint64, POINTER, COUNT, ctypes.c_uint64)
 
-    def __init__(self, world, worlds, observations=(), actions=(), time_step=1 / 60, steps=1, threads=0):
+    def __init__(self, world, worlds, observations=(), actions=(), time_step=1 / 60, steps=1, threads=0, draws=(), seed=0):
         self.handle, self.owner = done(self._create(world.handle, worlds, threads)), None
         self.time_step, self.steps, self.num_envs = time_step, steps, worlds
         for function, channels in ((self._observations, observations), (self._actions, actions)):
             raw = (_Channel * len(channels))(*[channel.raw() for channel in channels])
             done(function(self.handle, raw, len(channels)))
         self.observation_width, self.action_width = self._observation_width(self.handle), self._action_width(self.handle)
+        self.body_count = self._body_count(self.handle)
+        self.set_draws(draws, seed)
+
+    def set_draws(self, draws, seed=0):
+        """The parameters that each world draws when it begins. Sets all worlds back to the start. Equal seeds draw equal numbers."""
+        if draws or self._draws:
+            done(self._set_draws(self.handle, (_Draw * len(draws))(*[draw.raw() for draw in draws]), len(draws), seed))
+        self._draws = len(draws)
+
+    def drawn(self):
+        """The numbers that each world has drawn: by world, draw and component."""
+        rows = np.empty((self.num_envs, self._draws, 3), np.float32)
+        for i in range(self.num_envs):
+            for k in range(self._draws):
+                value = self._drawn(self.handle, i, k)
+                rows[i, k] = value.x, value.y, value.z
+        return rows
 
     def __len__(self):
         return self.num_envs
@@ -190,6 +278,24 @@ class Batch(Handle):
         """The observations of the present state."""
         out = np.empty((self.num_envs, self.observation_width), np.float32)
         self._observe(self.handle, out.ctypes.data)
+        return out
+
+    def poses(self):
+        """All bodies of all worlds: positions (worlds, bodies, 3), m, and orientations (worlds, bodies, 4). Removed bodies are zero."""
+        rows = np.zeros((self.num_envs, self.body_count), Pose._rows_dtype())
+        done(self._columns(self.handle, rows.ctypes.data, None, None))
+        return rows["position"], rows["orientation"]
+
+    def velocities(self):
+        """All bodies of all worlds: linear (m/s) and angular (rad/s) velocities, (worlds, bodies, 3) each."""
+        linear, angular = np.zeros((2, self.num_envs, self.body_count, 3), np.float32)
+        done(self._columns(self.handle, None, linear.ctypes.data, angular.ctypes.data))
+        return linear, angular
+
+    def hashes(self):
+        """World.hash() of each world."""
+        out = np.empty(self.num_envs, np.uint64)
+        self._hashes(self.handle, out.ctypes.data)
         return out
 
     def world(self, index):

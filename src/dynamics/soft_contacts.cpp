@@ -1,5 +1,6 @@
 #include "dynamics/soft_contacts.h"
 
+#include "collision/broadphase/fat_box.h"
 #include "dynamics/soft_groups.h"
 #include "geometry/query/point_query.h"
 #include "math/rotation.h"
@@ -84,8 +85,12 @@ class ContactFinder {
       high = {max(high.x, at.x + reach), max(high.y, at.y + reach), max(high.z, at.z + reach)};
     }
     shapes_near.clear();
-    const Aabb box = grow({to_float(low), to_float(high)}, 1.0e-6f * float(max(length(low), length(high))));
-    w_.broadphase->query(w_.shapes.proxies, box, shapes_near);
+    // An explicit integrator that gains energy comes to places beyond the range of floats before the step finds out.
+    const bool is_in_range = length(low) < double(kUnboundedSide) && length(high) < double(kUnboundedSide);
+    if (is_in_range) {
+      const Aabb box = grow({to_float(low), to_float(high)}, 1.0e-6f * float(max(length(low), length(high))));
+      w_.broadphase->query(w_.shapes.proxies, box, shapes_near);
+    }
     candidates_ = arena_.make<Candidate>(shapes_near.size());
     std::size_t count = 0;
     const SoftSettings& settings = entry_.settings();

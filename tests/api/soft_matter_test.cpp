@@ -338,6 +338,25 @@ TEST(SoftMatter, ExplicitEulerExplodesAndTheOthersUpToTheirStep) {
   EXPECT_FALSE(grows(SoftIntegrator::implicit, 20.0));
 }
 
+TEST(SoftMatter, AnExplosionBeyondTheRangeOfFloatsIsReported) {
+  World world = *World::create();
+  world.add_body({.type = BodyType::fixed}, {.geometry = Plane{}});
+  world.add_body({.pose = {{1, 2, 0}}, .mass = 2.0f}, {.geometry = Sphere{0.1f}});
+  const BodyId load = world.add_body({.pose = {{0, 1.9, 0}}, .mass = 2.0f}, {.geometry = Sphere{0.1f}});
+  RopeDef def{.points = {{0, 3, 0}, {0, 2, 0}}, .segments = 10, .links = RopeLinks::springs,
+              .linear_density = 0.2f, .stretch_stiffness = 1.0e5f};
+  def.settings.integrator = SoftIntegrator::semi_implicit_euler;
+  const SoftId rope = world.add_rope(def);
+  world.pin(rope, 0), world.attach(rope, 10, load);
+  bool is_reported = false;
+  for (int i = 0; i < 30; ++i) {
+    world.step(1.0f / 60);
+    is_reported = is_reported || !world.problems().empty();
+  }
+  EXPECT_TRUE(is_reported);
+  EXPECT_TRUE(is_finite(world.pose(load)));
+}
+
 TEST(SoftMatter, BadDefinitionsAreRefusedWithTheReason) {
   World world = make_world();
   const auto refused = [&](auto&& call, const char* words) {

@@ -346,6 +346,24 @@ class Batches(unittest.TestCase):
             again = one.step(self.actions())
         self.assertTrue(np.array_equal(again, rows))
 
+    def test_columns_draws_and_hashes_of_all_worlds(self):
+        batch = self.make()
+        box = self.box
+        batch.set_draws([gyre.Draw.position(box, (-1, 0, -1), (1, 0, 1)), gyre.Draw.friction(box, 0.5, 1.5)], seed=7)
+        positions, orientations = batch.poses()
+        self.assertEqual((positions.shape, orientations.shape), ((6, batch.body_count, 3), (6, batch.body_count, 4)))
+        place = list(self.world.bodies().ids).index(box)
+        moved = positions[:, place] - self.world.pose(box).position
+        self.assertTrue(np.allclose(moved, batch.drawn()[:, 0]))
+        self.assertEqual(len(set(batch.hashes().tolist())), 6)
+        batch.step(self.actions())
+        self.assertGreater(np.abs(batch.velocities()[0]).max(), 0)
+        before = batch.hashes()
+        self.assertEqual(int(before[3]), batch.world(3).hash())
+        batch.set_draws([gyre.Draw.position(box, (-1, 0, -1), (1, 0, 1)), gyre.Draw.friction(box, 0.5, 1.5)], seed=7)
+        batch.step(self.actions())
+        self.assertTrue(np.array_equal(batch.hashes(), before))
+
     def test_refusals(self):
         batch = self.make()
         with self.assertRaisesRegex(ValueError, "expected \\(6, 2\\)"):

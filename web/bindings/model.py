@@ -12,7 +12,9 @@ import headers
 ROOT = Path(__file__).resolve().parents[2]
 HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "joints", "events", "soft", "fluid", "fields", "world", "replay", "debug", "track"]
 # Public headers that are not bound, and why.
-NOT_BOUND = {"gyre": "includes the others", "decomposition": "seconds of work on a mesh, done before a page is made; its hulls come as hulls",
+NOT_BOUND = {"gyre": "includes the others",
+             "replica": "one world over several processes; a page is one",
+             "batch": "a page steps a world a worker; C has it by hand in capi/batch.cpp", "decomposition": "seconds of work on a mesh, done before a page is made; its hulls come as hulls",
              "bounds": "measures meshes before they are cooked; a page does not choose volumes",
              "memory": "a page has one memory, and the browser hands it out"}
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 namespace gyre {
 
@@ -227,7 +228,9 @@ void StateCopy::save(const WorldState& state) {
 
 void StateCopy::restore(WorldState& state) const {
   RigidWorld& w = state.rigid;
-  Array<std::uint32_t> changed = std::move(w.shapes.changed);
+  // The memory of both lists stays with the world, so that repeated restores allocate nothing.
+  Array<std::uint32_t>& changed = state.changes_to_show;
+  std::swap(changed, w.shapes.changed);
   for_each_manifold(w.contacts, [](Manifold& manifold) { manifold = Manifold{}; });
   Unpacker unpacker{w.contacts, packed_.data(), changed};
   for_each_column(state, unpacker);
@@ -239,7 +242,7 @@ void StateCopy::restore(WorldState& state) const {
     // The broad phase has not seen the changed boxes of the present state, those of the saved one, and the
     // differences of the two.
     changed.append(changed_);
-    w.shapes.changed = std::move(changed);
+    std::swap(changed, w.shapes.changed);
     w.broadphase_stale = false;
   }
   w.events = others_.rigid.events;

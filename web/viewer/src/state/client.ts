@@ -1,5 +1,6 @@
 // The page's end of the line to the worker: a promise for every request.
 import type { AnswerMessage, RequestMessage, RequestName, Requests } from '../protocol';
+import { startWorker } from './start_worker';
 
 interface Waiting {
   resolve: (answer: never) => void;
@@ -13,7 +14,7 @@ export class Client {
   private broken: Error | null = null;
 
   constructor() {
-    this.worker = new Worker(new URL('../worker/worker.ts', import.meta.url), { type: 'module', name: 'gyre' });
+    this.worker = startWorker();
     this.worker.onmessage = (event: MessageEvent<AnswerMessage>) => this.receive(event.data);
     this.worker.onerror = (event) => {
       event.preventDefault();
