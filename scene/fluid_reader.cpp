@@ -173,10 +173,12 @@ void read_emitters(const Field& field, Def& def) {
     if (is_gas) {
       members.read("density", emitter.density, Range::between(0, kMaxDensity));
       members.read("temperature", emitter.temperature, kAboveZero);
+      members.read("fuel", emitter.fuel, Range::between(0, kMaxDensity));
     } else {
       members.refuse("density",
                      "only a gas has smoke; what a liquid's emitter fills has the density of the liquid");
       members.refuse("temperature", "only a gas has a temperature");
+      members.refuse("fuel", "only a gas burns");
     }
     if (const auto velocity = members.find_value("velocity")) emitter.velocity = velocity->vec3(kSpeed);
     members.read("start", emitter.start);
@@ -249,6 +251,19 @@ GasFields read_gas_state(const Field& field, const GasDef& def) {
   read_numbers(members, "density", count, "cell", 0.0f, out.density);
   read_numbers(members, "temperature", count, "cell", def.ambient_temperature, out.temperature);
   read_numbers(members, "pressure", count, "cell", 0.0f, out.pressure);
+  if (def.combustion) read_numbers(members, "fuel", count, "cell", 0.0f, out.fuel);
+  members.finish();
+  return out;
+}
+
+Combustion read_combustion(const Field& field) {
+  Members members(field, "combustion");
+  Combustion out;
+  members.read("ignition_temperature", out.ignition_temperature, kZeroOrMore);
+  members.read("burn_rate", out.burn_rate, kZeroOrMore);
+  members.read("heat_release", out.heat_release, kZeroOrMore);
+  members.read("heat_capacity", out.heat_capacity, kAboveZero);
+  members.read("smoke_yield", out.smoke_yield, kZeroOrMore);
   members.finish();
   return out;
 }
@@ -318,6 +333,8 @@ void read_gas(SceneReading& reading, const Field& field) {
   if (const auto advection = members.find("advection"))
     gas.def.advection = advection->choice<Advection>(
         {{"maccormack", Advection::maccormack}, {"semi_lagrangian", Advection::semi_lagrangian}});
+  if (const auto combustion = members.find_value("combustion"))
+    gas.def.combustion = read_combustion(*combustion);
   if (const auto state = members.find_value("state")) gas.def.fields = read_gas_state(*state, gas.def);
   members.finish();
   reading.scene.gases.push_back(std::move(gas));

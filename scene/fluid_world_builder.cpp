@@ -31,6 +31,13 @@ constexpr std::pair<std::string_view, const char*> kPlaces[] = {
     {"fields/density", "/state/density"},
     {"fields/temperature", "/state/temperature"},
     {"fields/pressure", "/state/pressure"},
+    {"fields/fuel", "/state/fuel"},
+    {"combustion", "/combustion"},
+    {"combustion/ignition_temperature", "/combustion/ignition_temperature"},
+    {"combustion/burn_rate", "/combustion/burn_rate"},
+    {"combustion/heat_release", "/combustion/heat_release"},
+    {"combustion/heat_capacity", "/combustion/heat_capacity"},
+    {"combustion/smoke_yield", "/combustion/smoke_yield"},
     {"particles", "/state"},
 };
 

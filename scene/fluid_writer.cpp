@@ -76,6 +76,7 @@ void write_emitters(JsonWriter& json, const std::vector<FluidEmitter>& emitters,
     if (is_gas) {
       json.field("density", emitter.density);
       json.field("temperature", emitter.temperature);
+      unless_default(json, "fuel", emitter.fuel, standard.fuel);
     }
     if_given(json, "velocity", emitter.velocity);
     unless_default(json, "start", emitter.start, standard.start);
@@ -125,6 +126,17 @@ void write_gas_state(JsonWriter& json, const GasFields& fields) {
   write_floats(json, "density", fields.density);
   write_floats(json, "temperature", fields.temperature);
   write_floats(json, "pressure", fields.pressure);
+  if (!fields.fuel.empty()) write_floats(json, "fuel", fields.fuel);
+  json.end_object();
+}
+
+void write_combustion(JsonWriter& json, const Combustion& combustion) {
+  json.key("combustion").begin_object(kLine);
+  json.field("ignition_temperature", combustion.ignition_temperature);
+  json.field("burn_rate", combustion.burn_rate);
+  json.field("heat_release", combustion.heat_release);
+  json.field("heat_capacity", combustion.heat_capacity);
+  json.field("smoke_yield", combustion.smoke_yield);
   json.end_object();
 }
 
@@ -142,6 +154,7 @@ void write_gas(JsonWriter& json, const SceneGas& gas) {
   json.field("vorticity", def.vorticity);
   unless_default(json, "ambient_temperature", def.ambient_temperature, standard.ambient_temperature);
   if (def.advection != standard.advection) json.field("advection", to_string(def.advection));
+  if (def.combustion) write_combustion(json, *def.combustion);
   if (def.fields) write_gas_state(json, *def.fields);
   json.end_object();
 }

@@ -117,6 +117,12 @@ TEST(SceneFluid, RefusesBadGases) {
        "an array of 32"},
       {gas_with(R"("state": {"velocity": {}, "density": [1]})"), at + "/state/density", "an array of 1",
        "an array of 24 numbers, one for each cell"},
+      {gas_with(R"("combustion": {"heat_capacity": 0})"), at + "/combustion/heat_capacity", "found 0",
+       "above 0"},
+      {gas_with(R"("combustion": {"smoke_yeild": 1})"), at + "/combustion/smoke_yeild", "unknown field",
+       "smoke_yield"},
+      {gas_with(R"("emitters": [{"position": [0, 0, 0], "fuel": -1}])"), at + "/emitters/0/fuel", "found -1",
+       "from 0"},
       {gas_with(R"("bouyancy": 1)"), at + "/bouyancy", "unknown field", "\"buoyancy\""},
       {gas_with(R"("cell_size": 1)"), at + "/cell_size", "unknown field in a gas", "cells"},
   };
@@ -222,17 +228,18 @@ std::string counted_numbers(int count) {
 // Every member of gases.
 const std::string kAllGases = kStart + R"("name": "all", "gases": [
       {"name": "a", "bounds": [[-1, 0, 0.1], [2, 1, 1]], "cells": [4, 3, 2], "density": 1.5, "viscosity": 0.25, "buoyancy": -0.5,
-       "vorticity": 0.3, "ambient_temperature": 300.5, "advection": "semi_lagrangian", "color": "#102030",
+       "vorticity": 0.3, "combustion": {"ignition_temperature": 400.5, "burn_rate": 2, "heat_release": 1e6, "heat_capacity": 900, "smoke_yield": 0.5},
+       "ambient_temperature": 300.5, "advection": "semi_lagrangian", "color": "#102030",
        "boundary": {"x": "periodic", "y": ["closed", "no_slip"], "z": null}, "walls": {"+y": {"velocity": [1, 0, 0.5]}, "-y": null},
        "initial_velocity": [0.1, 0.2, 0.3],
-       "emitters": [{"position": [0, 0.5, 0.5], "radius": 0.125, "density": 2, "temperature": 400, "velocity": [0, 1, 0], "start": 0.5, "end": 2},
+       "emitters": [{"position": [0, 0.5, 0.5], "radius": 0.125, "density": 2, "temperature": 400, "fuel": 0.25, "velocity": [0, 1, 0], "start": 0.5, "end": 2},
                     {"position": [2, 1, 1], "velocity": null}],
        "probes": [{"name": "p1", "position": [-1, 0, 0.1]}, {"name": "p, 2", "position": [0.123456789012345, 0.5, 0.5]}]},
       {"name": "b", "bounds": [[0, 0, 0], [1, 1, 1]], "cells": [8, 8, 1], "boundary": "no_slip",
        "initial_velocity": {"type": "taylor_green", "amplitude": 0.5, "wave_number": [6.25, 3.125, 0]}},
-      {"name": "c", "bounds": [[5, 0, 0], [6, 1, 1]], "cells": [2, 2, 2], "state": {"velocity": {"x": )" +
+      {"name": "c", "bounds": [[5, 0, 0], [6, 1, 1]], "cells": [2, 2, 2], "combustion": {}, "state": {"velocity": {"x": )" +
                               counted_numbers(12) + R"(}, "density": )" + counted_numbers(8) +
-                              R"(, "pressure": null}}]})";
+                              R"(, "pressure": null, "fuel": )" + counted_numbers(8) + "}}]}";
 
 TEST(SceneFluid, WritesTheGasesThatItRead) {
   const SceneResult<Scene> first = read_scene(kAllGases);
@@ -276,6 +283,11 @@ TEST(SceneFluid, WritesTheGasesThatItRead) {
   EXPECT_EQ(fields.density[7], 7.0f);
   EXPECT_EQ(fields.temperature, std::vector<float>(8, 293.15f));
   EXPECT_EQ(fields.pressure, std::vector<float>(8, 0.0f));
+  EXPECT_EQ(fields.fuel[7], 7.0f);
+  EXPECT_EQ(a.def.emitters[0].fuel, 0.25f);
+  EXPECT_EQ(a.def.combustion->ignition_temperature, 400.5f);
+  EXPECT_EQ(a.def.combustion->smoke_yield, 0.5f);
+  EXPECT_EQ(second->gases[2].def.combustion->heat_release, Combustion{}.heat_release);
 }
 
 // Every member of liquids.

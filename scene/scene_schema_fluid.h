@@ -76,6 +76,19 @@ inline constexpr char kSchemaOfGases[] = R"json(    "side": {
         "buoyancy": { "type": "number", "minimum": -1e6, "maximum": 1e6, "default": 1, "description": "the gas is accelerated by -buoyancy gravity (T - ambient) / ambient; 1: as an ideal gas is" },
         "vorticity": { "$ref": "#/$defs/factor", "default": 0, "description": "strength of the confinement of vortices" },
         "ambient_temperature": { "$ref": "#/$defs/amount", "default": 293.15, "description": "K" },
+        "combustion": {
+          "type": ["object", "null"],
+          "additionalProperties": false,
+          "default": null,
+          "description": "fuel that burns where the gas is hot, and heats it; null: nothing burns",
+          "properties": {
+            "ignition_temperature": { "$ref": "#/$defs/stiffness", "default": 600, "description": "K, from which fuel burns" },
+            "burn_rate": { "$ref": "#/$defs/stiffness", "default": 5, "description": "1/s: fuel that burns falls to 1/e in 1 / burn_rate" },
+            "heat_release": { "$ref": "#/$defs/stiffness", "default": 4.6e7, "description": "J/kg, of the fuel" },
+            "heat_capacity": { "$ref": "#/$defs/amount", "default": 1005, "description": "J/(kg K), of the gas" },
+            "smoke_yield": { "$ref": "#/$defs/stiffness", "default": 0, "description": "kg of smoke from a kg of fuel" }
+          }
+        },
         "advection": { "enum": ["maccormack", "semi_lagrangian"], "default": "maccormack", "description": "of second order, or of first order, which blurs" },
         "boundary": { "$ref": "#/$defs/boundary", "default": "open" },
         "walls": { "$ref": "#/$defs/walls" },
@@ -109,6 +122,7 @@ inline constexpr char kSchemaOfGases[] = R"json(    "side": {
               "radius": { "$ref": "#/$defs/amount", "default": 0.3, "description": "m" },
               "density": { "type": "number", "minimum": 0, "maximum": 1e20, "default": 1, "description": "kg/m^3, of smoke" },
               "temperature": { "$ref": "#/$defs/amount", "default": 300, "description": "K" },
+              "fuel": { "$ref": "#/$defs/stiffness", "default": 0, "description": "kg/m^3, of a gas with combustion" },
               "velocity": { "$ref": "#/$defs/vector_or_null", "default": null, "description": "m/s; null: it is left alone" },
               "start": { "type": "number", "default": 0, "description": "s" },
               "end": { "type": "number", "default": 1e9, "description": "s" }
@@ -130,7 +144,8 @@ inline constexpr char kSchemaOfGases[] = R"json(    "side": {
             },
             "density": { "$ref": "#/$defs/numbers", "description": "kg/m^3, of smoke" },
             "temperature": { "$ref": "#/$defs/numbers", "description": "K" },
-            "pressure": { "$ref": "#/$defs/numbers", "description": "m^2/s^2, over the density of the gas" }
+            "pressure": { "$ref": "#/$defs/numbers", "description": "m^2/s^2, over the density of the gas" },
+            "fuel": { "$ref": "#/$defs/numbers", "description": "kg/m^3, of a gas with combustion" }
           }
         }
       }

@@ -76,6 +76,26 @@ def flag_in_fan_wind():
                  cloths=[cloth], gases=[gas])
 
 
+def fire_and_wind_on_a_flag():
+    """A fan bends the flame of a burner towards a flag."""
+    columns, rows = 14, 10
+    pole = {"name": "pole", "type": "static", "position": [0.3, 0.8, 0], "color": STEEL,
+            "shapes": [{"type": "cylinder", "radius": 0.03, "half_height": 0.8}]}
+    burner = {"name": "burner", "type": "static", "position": [-0.05, 0.1, 0], "color": "#4d5560",
+              "shapes": [{"type": "cylinder", "radius": 0.12, "half_height": 0.1}]}
+    edge = [{"vertex": row * (columns + 1), "body": "pole"} for row in range(rows + 1)]
+    cloth = {"name": "flag", "grid": {"size": [0.8, 0.6], "cells": [columns, rows]}, "position": [0.74, 1.2, 0],
+             "orientation": {"axis": [1, 0, 0], "angle": math.pi / 2}, "links": "springs", "area_density": 0.04,
+             "stretch_stiffness": 400, "shear_stiffness": 10, "bend_stiffness": 2e-6, "damping": 0.002, "color": "#5b86a8", "pinned_to": edge}
+    gas = {"name": "air", "bounds": [[-1.2, 0, -0.9], [1.8, 1.8, 0.9]], "cells": [40, 24, 24], "vorticity": 0.15, "color": "#6b6660",
+           "boundary": {"y": ["closed", "open"]},
+           "combustion": {"ignition_temperature": 550, "burn_rate": 6, "heat_release": 4.6e7, "smoke_yield": 2},
+           "emitters": [{"position": [-0.05, 0.3, 0], "radius": 0.13, "density": 0, "temperature": 900, "fuel": 0.03}],
+           "probes": [{"name": "flame", "position": [0.1, 0.6, 0]}, {"name": "at the flag", "position": [0.7, 1.2, 0]}]}
+    return scene("fire and wind on a flag", [1.9, 1.5, 3.2], [0.2, 0.85, 0], [GROUND, fan([-0.5, 0.9, 0], 20), burner, pole],
+                 cloths=[cloth], gases=[gas])
+
+
 # The inflow is a column of emitters that hold the velocity; every other one has smoke. Re = U D / nu = 150.
 def vortex_street():
     long, high, speed, diameter = 4.0, 1.5, 1.0, 0.3
@@ -200,6 +220,41 @@ def scoop_wheel():
                  [GROUND, *basin((0, 0), (2, 0.8), 0.6), wheel], liquids=[water])
 
 
-GASES = [smoke_fan, candle, flag_in_fan_wind, vortex_street, lid_driven_cavity]
+def all_matter():
+    """Rigid bodies, a rope, a cloth, a solid, a liquid and a gas that burns, side by side."""
+    flag_at, columns, rows = (-2.2, 1.5, -0.3), 14, 8
+    pole = {"name": "pole", "type": "static", "position": [flag_at[0] - 0.54, 0.95, flag_at[2]], "color": STEEL,
+            "shapes": [{"type": "cylinder", "radius": 0.03, "half_height": 0.95}]}
+    flag = {"name": "flag", "grid": {"size": [1, 0.6], "cells": [columns, rows]}, "position": list(flag_at),
+            "orientation": {"axis": [1, 0, 0], "angle": math.pi / 2}, "area_density": 0.15, "stretch_stiffness": 2000, "shear_stiffness": 50,
+            "bend_stiffness": 2e-5, "damping": 0.002, "color": "#b9674c",
+            "pinned_to": [{"vertex": row * (columns + 1), "body": "pole"} for row in range(rows + 1)]}
+    wind = {"type": "wind", "velocity": [6, 0, 1.2], "turbulence": 0.25, "turbulence_length": 1, "bounds": [[-3, 0.8, -1.2], [-1.2, 2.2, 0.6]]}
+    jelly = {"name": "jelly", "box": {"half_extents": [0.3, 0.22, 0.3], "cells": [4, 3, 4]}, "position": [-0.95, 0.23, 0.35],
+             "young_modulus": 20000, "poisson_ratio": 0.4, "damping": 0.01, "color": "#5fae8b"}
+    ball = {"name": "ball", "position": [-0.93, 1.1, 0.35], "color": "#666b78", "shapes": [{"type": "sphere", "radius": 0.15, "density": 1500}]}
+    gallows = {"name": "gallows", "type": "static", "position": [0, 0, -0.9], "color": "#cfa349",
+               "shapes": [{"type": "box", "half_extents": [0.05, 1, 0.05], "position": [-0.55, 1, 0]},
+                          {"type": "box", "half_extents": [0.35, 0.05, 0.05], "position": [-0.25, 2, 0]}]}
+    weight = {"name": "weight", "position": [0.82, 1.62, -0.9], "color": "#4d5560", "shapes": [{"type": "sphere", "radius": 0.16, "density": 3000}]}
+    rope = {"name": "rope", "points": [[0, 1.95, -0.9], [0.67, 1.68, -0.9]], "segments": 20, "linear_density": 0.5, "color": "#cbb994",
+            "attach": [{"end": 0, "body": "gallows"}, {"end": 1, "body": "weight"}]}
+    bricks = [{"name": f"brick {4 * row + k + 1}", "position": [-0.15, 0.1 + 0.2 * row, -1.4 + 0.33 * k], "color": WOOD if (k + row) % 2 else "#b98250",
+               "shapes": [{"type": "box", "half_extents": [0.08, 0.1, 0.16], "density": 650}]} for row in range(7) for k in range(4)]
+    basin_walls = basin((0.5, 0), (1.7, 0.8), 0.5)
+    crates = [crate(f"crate {k + 1}", [0.85 + 0.3 * k, 0.75 + 0.1 * k, 0.4], 0.1, 400) for k in range(3)]
+    water = {"name": "water", "bounds": [[0.5, 0, 0], [1.7, 0.8, 0.8]], "cell_size": 0.08, "color": WATER, "fill": [{"box": [[0.5, 0, 0], [1.1, 0.6, 0.8]]}]}
+    burner = {"name": "burner", "type": "static", "position": [2.6, 0.08, 0.2], "color": "#4d5560",
+              "shapes": [{"type": "cylinder", "radius": 0.12, "half_height": 0.08}]}
+    air = {"name": "air", "bounds": [[2.1, 0, -0.3], [3.1, 1.8, 0.7]], "cells": [16, 28, 16], "vorticity": 0.2, "color": "#6b6660",
+           "boundary": {"y": ["closed", "open"]},
+           "combustion": {"ignition_temperature": 550, "burn_rate": 4, "heat_release": 4.6e7, "smoke_yield": 4},
+           "emitters": [{"position": [2.6, 0.24, 0.2], "radius": 0.1, "density": 0, "temperature": 700, "fuel": 0.02}]}
+    return scene("one of each kind of matter", [0.9, 2.9, 7.2], [0.25, 0.75, -0.2],
+                 [GROUND, pole, ball, gallows, weight, *bricks, *basin_walls, *crates, burner],
+                 ropes=[rope], cloths=[flag], soft_bodies=[jelly], gases=[air], liquids=[water], force_fields=[wind])
+
+
+GASES = [smoke_fan, candle, flag_in_fan_wind, fire_and_wind_on_a_flag, vortex_street, lid_driven_cavity]
 LIQUIDS = [dam_break, harbour, honey, communicating_vessels, five_densities, scoop_wheel]
-ALL = GASES + LIQUIDS
+ALL = GASES + LIQUIDS + [all_matter]

@@ -131,6 +131,8 @@ std::string summary_json(const SceneRunner& runner, const RunFigures& figures) {
   json.field("liquid_particles", std::int64_t(fluids.liquid_particles));
   json.field("liquid_volume", fluids.liquid_volume);
   json.field("smoke_mass", fluids.smoke_mass);
+  json.field("fuel_mass", fluids.fuel_mass);
+  json.field("heat_rate", fluids.heat_rate);
   json.field("pairs", counts.pairs);
   json.field("contacts", counts.contact_points);
   json.field("max_penetration", world.max_penetration());

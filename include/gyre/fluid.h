@@ -45,6 +45,17 @@ struct FluidEmitter {
   float temperature = 300.0f;       // K
   std::optional<Vec3> velocity{};   // m/s
   double start = 0.0, end = 1.0e9;  // s
+  float fuel = 0.0f;                // kg/m^3, in a gas with combustion
+};
+
+// Fuel that burns in a gas. The smoke of its emitters carries it; where the gas is at least as hot as it ignites at, a part of it burns in
+// every step, and its heat stays in the gas. Air enough is taken for granted, and the gas keeps its volume.
+struct Combustion {
+  float ignition_temperature = 600.0f;  // K
+  float burn_rate = 5.0f;               // 1/s: fuel that burns falls to 1/e in 1 / burn_rate
+  float heat_release = 4.6e7f;          // J/kg, of the fuel; that of propane
+  float heat_capacity = 1005.0f;        // J/(kg K), of the gas; that of air
+  float smoke_yield = 0.0f;             // kg of smoke from a kg of fuel
 };
 
 // Vortices in the x-y plane: u = a sin(kx x) cos(ky y), v = -a kx/ky cos(kx x) sin(ky y), from the lower corner of the box
@@ -61,6 +72,7 @@ struct GasFields {
   std::vector<float> density{};                  // kg/m^3, of smoke
   std::vector<float> temperature{};              // K
   std::vector<float> pressure{};                 // m^2/s^2, over the density of the gas
+  std::vector<float> fuel{};                     // kg/m^3, of a gas with combustion; empty: none
 };
 
 struct GasDef {
@@ -81,6 +93,7 @@ struct GasDef {
   std::vector<FluidEmitter> emitters{};
   std::optional<GasFields> fields{};  // instead of air at rest and of the initial velocity
   std::uint64_t user_data = 0;
+  std::optional<Combustion> combustion{};  // without: nothing burns
 };
 
 struct FluidRegion {
@@ -120,6 +133,7 @@ struct FluidProbe {
   float temperature = 0.0f;  // K
   float surface =
       0.0f;  // m: height of the highest surface of a liquid in the column of the point; NaN if there is none
+  float fuel = 0.0f;  // kg/m^3, of a gas with combustion
 };
 
 // The size and state of a fluid.
@@ -137,6 +151,8 @@ struct FluidInfo {
   float divergence = 0.0f;      // 1/s: largest net outflow of a cell over its volume after the last step
   float residual = 0.0f;        // of the last solve, over its right side
   std::uint64_t user_data = 0;
+  double fuel_mass = 0.0;       // kg, of a gas with combustion
+  double heat_rate = 0.0;       // W, of its combustion in the last step
 };
 
 // The load of all fluids on a body: the force and torque of their pressure, lift included, that act through the present step.
@@ -152,7 +168,7 @@ struct FluidSurfaceSize {
 };
 
 // A field of cell centres.
-enum class FluidField : std::uint8_t { smoke, temperature, pressure, speed };
+enum class FluidField : std::uint8_t { smoke, temperature, pressure, speed, fuel };
 const char* to_string(FluidField field);
 
 }  // namespace gyre

@@ -118,13 +118,15 @@ bool is_finite_fluid(const FluidEntry& entry, TaskSystem& tasks) {
   if (entry.is_liquid())
     return all(entry.liquid.position) && all(entry.liquid.motion) && all(entry.liquid.affine);
   return all(entry.gas.velocity) && is_finite_field(entry.gas.density, tasks) &&
-         is_finite_field(entry.gas.temperature, tasks) && is_finite_field(entry.gas.pressure, tasks);
+         is_finite_field(entry.gas.temperature, tasks) && is_finite_field(entry.gas.pressure, tasks) &&
+         is_finite_field(entry.gas.fuel, tasks);
 }
 
 // A fluid that is no longer finite goes on at rest: a gas as air, a liquid with those particles whose places are finite.
 void still(FluidEntry& entry) {
   if (!entry.is_liquid()) {
     entry.gas = make_gas_grid(entry.gas.box, entry.gas.ambient_temperature);
+    if (entry.burns()) entry.gas.fuel.resize(std::size_t(entry.gas.shape.size), 0.0f);
     return;
   }
   LiquidGrid calm = make_liquid_grid(entry.liquid.box);
@@ -224,12 +226,16 @@ void step_gas_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const G
   settings.vorticity = def.vorticity, settings.viscosity = def.viscosity;
   settings.advection = def.advection;
   settings.gravity = w.settings.gravity;
+  settings.combustion = def.combustion;
+  settings.emitter_fuel = entry.emitter_fuel.view();
   list_bodies(w, def.density, own);
   add_lift_to_bodies(w, entry, settings, seconds, own);
   const GasReport report = step_gas(entry.gas, own.solids.solids, own.bodies.view(), entry.emitters.view(),
                                     settings, time, seconds, own.gas, kernels, tasks, own.impulses.view());
   own.report.substeps = report.substeps, own.report.iterations = report.iterations;
   own.report.divergence = report.divergence, own.report.residual = report.residual;
+  if (def.combustion)
+    own.report.heat_rate = double(def.combustion->heat_release) * report.burned / double(seconds);
   if (own.solids.solids.present())
     add_lift(entry.gas, own.solids.solids, settings, seconds, own.impulses.view());
 }

@@ -18,6 +18,7 @@ struct FluidReport {
   int iterations = 0;       // of the pressure
   float divergence = 0.0f;  // 1/s
   float residual = 0.0f;    // 1
+  double heat_rate = 0.0;   // W, of combustion
   bool failed = false;      // the fluid stopped being finite and was stilled
   bool full = false;        // sources gave nothing, since there are as many particles as may be
 };

@@ -63,9 +63,7 @@ CommandResult execute(WorldState& s, const RemoveFluid& c) {
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const SetEmitters& c) {
-  FluidEntry& entry = s.fluids.entries[c.fluid.index];
-  entry.emitters.clear();
-  for (const FluidEmitter& emitter : c.emitters) entry.emitters.push_back(make_emitter(emitter));
+  set_emitters(s.fluids.entries[c.fluid.index], c.emitters);
   return {true, {}, {}, {}};
 }
 
@@ -86,10 +84,9 @@ Error check_fluid_columns(const RigidWorld& w, const FluidStore& fluids) {
       if (!is_finite(push.force) || !is_finite(push.torque))
         return bad("the force of a fluid that is not finite");
     }
-    Array<FluidEmitter> emitters;
-    for (const GasEmitter& emitter : entry.emitters) emitters.push_back(emitter_def(emitter));
+    const std::vector<FluidEmitter> emitters = emitter_defs(entry);
     const Error e = std::visit(
-        [&](const auto& def) { return check_emitters(emitters.view(), def.lower, def.upper); }, *entry.def);
+        [&](const auto& def) { return check_emitters(emitters, def.lower, def.upper); }, *entry.def);
     if (e) return bad("an emitter out of range");
   }
   return {};

@@ -46,6 +46,8 @@ float value_of(const FluidEntry& entry, FluidField field, int c) {
     case FluidField::speed:
       return is_liquid ? cell_speed(entry.liquid.velocity, entry.liquid.shape, c)
                        : cell_speed(entry.gas.velocity, entry.gas.shape, c);
+    case FluidField::fuel:
+      return entry.burns() ? entry.gas.fuel[at] : 0.0f;
   }
   return 0.0f;
 }
@@ -149,10 +151,12 @@ FluidInfo World::fluid_info(FluidId fluid) const {
   } else {
     info.kinetic_energy = gas_kinetic_energy(entry.gas, solids, entry.gas_def().density, reading.tasks);
     info.smoke_mass = smoke_mass(entry.gas, solids, reading.tasks);
+    if (entry.burns()) info.fuel_mass = field_mass(entry.gas, entry.gas.fuel, solids, reading.tasks);
   }
   if (scratch == nullptr) return info;
   info.substeps = scratch->report.substeps, info.iterations = scratch->report.iterations;
   info.divergence = scratch->report.divergence, info.residual = scratch->report.residual;
+  info.heat_rate = scratch->report.heat_rate;
   return info;
 }
 
@@ -171,7 +175,7 @@ FluidProbe World::probe(FluidId fluid, DVec3 point) const {
   }
   const GasProbe probe = probe_gas(entry.gas, point, entry.gas_def().density, state_->rigid.settings.gravity);
   out.velocity = probe.velocity, out.pressure = probe.pressure;
-  out.density = probe.density, out.temperature = probe.temperature;
+  out.density = probe.density, out.temperature = probe.temperature, out.fuel = probe.fuel;
   return out;
 }
 
@@ -206,8 +210,7 @@ GasDef World::gas_def(FluidId fluid) const {
   if (!exists(fluid) || state_->fluids.entries[fluid.index].kind() != FluidKind::gas) return {};
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
   GasDef def = entry.gas_def();
-  def.emitters.clear();
-  for (const GasEmitter& emitter : entry.emitters) def.emitters.push_back(emitter_def(emitter));
+  def.emitters = emitter_defs(entry);
   def.fields = copy_fields(entry.gas);
   return def;
 }
@@ -243,8 +246,7 @@ LiquidDef World::liquid_def(FluidId fluid) const {
   if (!exists(fluid) || !state_->fluids.entries[fluid.index].is_liquid()) return {};
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
   LiquidDef def = entry.liquid_def();
-  def.emitters.clear();
-  for (const GasEmitter& emitter : entry.emitters) def.emitters.push_back(emitter_def(emitter));
+  def.emitters = emitter_defs(entry);
   // Particles may be anywhere in the whole cells of the box.
   const GasBox& box = entry.liquid.box;
   const double size = double(def.cell_size);
@@ -297,6 +299,8 @@ const char* to_string(FluidField field) {
       return "pressure";
     case FluidField::speed:
       return "speed";
+    case FluidField::fuel:
+      return "fuel";
   }
   return "unknown";
 }

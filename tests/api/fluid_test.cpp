@@ -44,6 +44,12 @@ GasDef smoky_room() {
   def.emitters = {{.position = {0.1, 0.3, 0}, .radius = 0.3f, .temperature = 400.0f}};
   return def;
 }
+GasDef burning_room() {
+  GasDef def = smoky_room();
+  def.combustion = Combustion{.ignition_temperature = 390.0f, .smoke_yield = 2.0f};
+  def.emitters[0].fuel = 0.004f;
+  return def;
+}
 
 // Warm smoke, a turning paddle, a ball that falls through and a cloth: something of everything.
 World busy_world(int threads, int width) {
@@ -83,6 +89,44 @@ TEST(Gas, SmokeInAClosedRoomStays) {
   step(world, 120);
   EXPECT_GT(before, 0.0);
   EXPECT_NEAR(world.fluid_info(room).smoke_mass, before, 0.005 * before);
+}
+
+// A flame is the same for threads, in a snapshot and as a definition; without combustion fuel means nothing.
+TEST(Gas, AFlameIsStateLikeTheRest) {
+  const auto burning = [](int threads, int width) {
+    World world = make_world({0, -9.81f, 0}, threads, width);
+    add_body(world, BodyType::dynamic, {0.4, 1.5, 0}, Sphere{0.2f}, 5.0f);
+    world.add_gas(burning_room());
+    step(world, 20);
+    return world;
+  };
+  World world = burning(1, 0);
+  FluidId room;
+  world.fluids({&room, 1});
+  EXPECT_EQ(burning(2, 1).hash(), world.hash());
+  const FluidProbe flame = world.probe(room, {0.1, 0.5, 0});
+  EXPECT_GT(flame.temperature, 405.0f);  // hotter than the emitter
+  EXPECT_GT(flame.fuel, 0.0f);
+  EXPECT_GT(world.fluid_info(room).heat_rate, 0.0);
+  const GasDef now = world.gas_def(room);
+  ASSERT_TRUE(now.combustion && now.fields);
+  EXPECT_EQ(now.emitters[0].fuel, 0.004f);
+  EXPECT_EQ(now.fields->fuel.size(), 8000u);
+  Result<World> loaded = load_snapshot(save_snapshot(world));
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->hash(), world.hash());
+  step(world, 10), step(*loaded, 10);
+  EXPECT_EQ(loaded->hash(), world.hash());
+  World other = make_world();
+  const FluidId copy = other.add_gas(now);
+  ASSERT_TRUE(copy);
+  EXPECT_EQ(other.probe(copy, {0.1, 0.5, 0}).fuel, flame.fuel);
+  GasDef cold = burning_room();
+  cold.combustion.reset();
+  World plain = make_world(), without = make_world();
+  plain.add_gas(smoky_room()), without.add_gas(cold);
+  step(plain, 5), step(without, 5);
+  EXPECT_EQ(plain.hash(), without.hash());
 }
 
 // A piston that fills a channel moves all of the gas in it as fast as itself, whatever the cells.
@@ -246,6 +290,12 @@ TEST(Gas, WhatIsOutOfRangeIsRefusedInWords) {
   def = {};
   def.fields = GasFields{};
   refused(def, "fields.velocity_x");
+  def = {};
+  def.emitters = {{.position = {0, 1, 0}, .fuel = -1.0f}};
+  refused(def, "emitters[0].fuel");
+  def = {};
+  def.combustion = Combustion{.heat_capacity = 0.0f};
+  refused(def, "combustion.heat_capacity");
   EXPECT_FALSE(world.set_emitters({}, {}));
   EXPECT_EQ(world.fluids({}), 0u);
 }

@@ -226,6 +226,80 @@ TEST(Gas, KeepsItsSmoke) {
                            5e-3, 1e-4));
 }
 
+// In gas at rest the heat that is released is what the gas gains and what the burned fuel held; fuel falls as exp(-k t), and cold fuel stays.
+TEST(Gas, BurnsItsFuelToItsHeat) {
+  World world = make_world({.gravity = {}});
+  GasDef def;
+  def.lower = {}, def.upper = {1, 1, 1}, def.cells = {8, 8, 8};
+  def.sides.fill(FluidBoundary::closed);
+  def.combustion = Combustion{.ignition_temperature = 500.0f, .burn_rate = 3.0f, .smoke_yield = 0.25f};
+  GasFields fields;
+  fields.velocity_x.assign(9 * 64, 0.0f), fields.velocity_y.assign(9 * 64, 0.0f),
+      fields.velocity_z.assign(9 * 64, 0.0f);
+  fields.density.assign(512, 0.0f), fields.pressure.assign(512, 0.0f);
+  double hot = 0.0, cold = 0.0;
+  for (int i = 0; i < 512; ++i) {
+    const bool burns = i % 3 != 0;
+    fields.temperature.push_back(burns ? 700.0f : 300.0f);
+    fields.fuel.push_back(0.001f * float(1 + i % 7));
+    (burns ? hot : cold) += double(fields.fuel.back()) / 512.0;
+  }
+  def.fields = fields;
+  const FluidId gas = world.add_gas(def);
+  const auto heat = [&] {
+    std::vector<float> cells(512);
+    world.fluid_field(gas, FluidField::temperature, cells);
+    double sum = 0.0;
+    for (const float one : cells)
+      sum += double(one) * double(def.density) * double(def.combustion->heat_capacity) / 512.0;
+    return sum;
+  };
+  const double before = heat();
+  double released = 0.0;
+  for (int i = 0; i < 30; ++i) {
+    world.step(kStep);
+    released += world.fluid_info(gas).heat_rate * double(kStep);
+  }
+  const double left = world.fluid_info(gas).fuel_mass, burned = hot + cold - left;
+  EXPECT_TRUE(relative_row("F-11 heat of combustion over that of the burned fuel",
+                           released / (4.6e7 * burned), 1.0, 1e-5, 1e-6));
+  EXPECT_TRUE(relative_row("F-11 heat that the gas gained over that released", (heat() - before) / released,
+                           1.0, 1e-5, 1e-6));
+  EXPECT_TRUE(
+      relative_row("F-11 hot fuel after half a second", left - cold, hot * std::exp(-1.5), 1e-5, 1e-6));
+  EXPECT_TRUE(relative_row("F-11 smoke from the burned fuel", world.fluid_info(gas).smoke_mass, 0.25 * burned,
+                           1e-5, 1e-6));
+}
+
+// A flame that stirs the gas in a closed box: what burned is what the box has lost of its fuel.
+TEST(Gas, KeepsItsFuelUntilItBurns) {
+  World world = make_world();
+  GasDef def;
+  def.cells = {16, 16, 16};
+  def.sides.fill(FluidBoundary::closed);
+  def.combustion = Combustion{};
+  def.emitters = {{.position = {0, 0.4, 0},
+                   .radius = 0.3f,
+                   .density = 0.0f,
+                   .temperature = 700.0f,
+                   .end = 0.01,
+                   .fuel = 0.02f}};
+  const FluidId gas = world.add_gas(def);
+  world.step(kStep);
+  const double before = world.fluid_info(gas).fuel_mass;
+  EXPECT_GT(before, 0.0);
+  double released = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    world.step(kStep);
+    released += world.fluid_info(gas).heat_rate * double(kStep);
+  }
+  const FluidInfo info = world.fluid_info(gas);
+  EXPECT_LT(info.fuel_mass, 0.5 * before);
+  EXPECT_GT(world.probe(gas, {0, 1.2, 0}).velocity.y, 0.2f);
+  EXPECT_TRUE(relative_row("F-12 heat of a flame over that of the fuel the box lost",
+                           released / (4.6e7 * (before - info.fuel_mass)), 1.0, 1e-3, 1e-5));
+}
+
 TEST(Gas, IsFreeOfDivergenceBesideAFan) {
   World world = make_world();
   const BodyId fan = world.add_body(

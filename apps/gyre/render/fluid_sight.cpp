@@ -15,15 +15,18 @@ struct VoxelScales {
   float heat = 0.0f;     // K above it
 };
 
-// Nothing in a gas is thicker or hotter than what it began with and what its emitters give.
+// Nothing in a gas is thicker or hotter than what it began with and what its emitters give, but for what burns.
 VoxelScales scales_of(const GasDef& gas) {
   constexpr float kRounding = 1e-3f;  // K
   VoxelScales out;
   out.ambient = gas.ambient_temperature;
   float hottest = out.ambient;
   for (const FluidEmitter& emitter : gas.emitters) {
-    out.smoke = max(out.smoke, emitter.density);
-    hottest = max(hottest, emitter.temperature);
+    const float fuel = gas.combustion ? emitter.fuel : 0.0f;
+    const Combustion burning = gas.combustion.value_or(Combustion{});
+    out.smoke = max(out.smoke, emitter.density + burning.smoke_yield * fuel);
+    hottest = max(hottest, emitter.temperature +
+                               burning.heat_release * fuel / (gas.density * burning.heat_capacity));
   }
   if (gas.fields) {
     for (const float density : gas.fields->density) out.smoke = max(out.smoke, density);

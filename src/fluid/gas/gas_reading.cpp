@@ -31,12 +31,16 @@ double gas_kinetic_energy(const GasGrid& grid, const GasSolids& solids, float de
 }
 
 double smoke_mass(const GasGrid& grid, const GasSolids& solids, TaskSystem& tasks) {
+  return field_mass(grid, grid.density, solids, tasks);
+}
+
+double field_mass(const GasGrid& grid, const Array<float>& field, const GasSolids& solids, TaskSystem& tasks) {
   const GridShape& shape = grid.shape;
   const std::uint8_t* const solid = solids.present() ? solids.solid.data() : nullptr;
   const double sum = sum_rows(shape, tasks, [&](int c, int, int) {
     double part = 0.0;
     for (int i = c; i < c + shape.cells[0]; ++i) {
-      if (solid == nullptr || solid[i] == 0) part += double(grid.density[i]);
+      if (solid == nullptr || solid[i] == 0) part += double(field[std::size_t(i)]);
     }
     return part;
   });
@@ -58,6 +62,7 @@ GasProbe probe_gas(const GasGrid& grid, DVec3 point, float density, Vec3 gravity
   probe.density = sample_field(box, grid.shape, grid.density.data(), -1, local);
   probe.temperature = sample_field(box, grid.shape, grid.temperature.data(), -1, local);
   probe.pressure = density * sample_field(box, grid.shape, grid.pressure.data(), -1, local);
+  if (!grid.fuel.empty()) probe.fuel = sample_field(box, grid.shape, grid.fuel.data(), -1, local);
   if (!box.any_open()) {
     const float from_middle[3] = {local.x - 0.5f * float(box.cells[0]) * box.cell.x,
                                   local.y - 0.5f * float(box.cells[1]) * box.cell.y,

@@ -2,6 +2,7 @@
 #include "fluid/gas/gas_step.h"
 
 #include "fluid/gas/gas_reading.h"
+#include "fluid/solver/combustion.h"
 #include "fluid/solver/pressure_pockets.h"
 #include "fluid/solver/transport.h"
 #include "fluid/solver/viscosity.h"
@@ -52,14 +53,14 @@ void fill_solid_cells(const GasPass& pass, float* field, float otherwise) {
   });
 }
 
-// Transport between grid values does not keep the sum of the smoke exactly. In a closed box without solids it is set right, in proportion.
-void conserve_smoke(const GasPass& pass, double mass) {
-  const double now = smoke_mass(pass.grid, pass.solids, pass.tasks);
+// Transport between grid values does not keep the sum of smoke or fuel exactly. In a closed box without solids it is set right, in proportion.
+void conserve_mass(const GasPass& pass, Array<float>& field, double mass) {
+  const double now = field_mass(pass.grid, field, pass.solids, pass.tasks);
   if (!(now > 0.0) || !(mass > 0.0)) return;
   const float scale = float(mass / now);
   if (scale == 1.0f) return;
   each_row(pass, -1, [&](int c, int, int) {
-    for (int i = c; i < c + pass.shape().cells[0]; ++i) pass.grid.density[i] *= scale;
+    for (int i = c; i < c + pass.shape().cells[0]; ++i) field[i] *= scale;
   });
 }
 
@@ -90,24 +91,36 @@ void fill_periodic_ghosts(const GasPass& pass) {
     clear_outside(pass.shape(), -1, *field);
   for (Array<float>* field : {&pass.grid.density, &pass.grid.temperature, &pass.grid.pressure})
     wrap_ghosts(pass.shape(), periodic, field->data());
+  if (!pass.grid.fuel.empty()) {
+    clear_outside(pass.shape(), -1, pass.grid.fuel);
+    wrap_ghosts(pass.shape(), periodic, pass.grid.fuel.data());
+  }
   for (Array<float>& field : pass.grid.velocity) wrap_ghosts(pass.shape(), periodic, field.data());
 }
 
 void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, const GasSettings& settings,
                  double time, GasReport& report) {
-  apply_emitters(pass, emitters, time);
-  const bool conserves_smoke = !pass.box().any_open() && !pass.solids.present();
-  const double mass = conserves_smoke ? smoke_mass(pass.grid, pass.solids, pass.tasks) : 0.0;
+  GasGrid& grid = pass.grid;
+  apply_emitters(pass, emitters, settings.emitter_fuel, time);
+  const bool conserves = !pass.box().any_open() && !pass.solids.present();
+  const bool burns = settings.combustion.has_value();
+  const double smoke = conserves ? smoke_mass(grid, pass.solids, pass.tasks) : 0.0;
+  const double fuel = conserves && burns ? field_mass(grid, grid.fuel, pass.solids, pass.tasks) : 0.0;
   trace_paths(pass);
   if (settings.viscosity > 0.0f) save_velocity(pass);
   add_pressure(pass, 0.5f, true);
   transport_fields(pass, settings.advection);
-  if (conserves_smoke) conserve_smoke(pass, mass);
-  apply_emitters(pass, emitters, time);
+  if (conserves) conserve_mass(pass, grid.density, smoke);
+  if (conserves && burns) conserve_mass(pass, grid.fuel, fuel);
+  apply_emitters(pass, emitters, settings.emitter_fuel, time);
   set_walls(pass);
   add_pressure(pass, 0.5f, false);
-  fill_solid_cells(pass, pass.grid.density.data(), 0.0f);
-  fill_solid_cells(pass, pass.grid.temperature.data(), pass.grid.ambient_temperature);
+  if (burns) {
+    report.burned += burn_fuel(pass, *settings.combustion, settings.density);
+    fill_solid_cells(pass, grid.fuel.data(), 0.0f);
+  }
+  fill_solid_cells(pass, grid.density.data(), 0.0f);
+  fill_solid_cells(pass, grid.temperature.data(), grid.ambient_temperature);
   add_buoyancy(pass, settings.gravity, settings.buoyancy);
   if (settings.vorticity != 0.0f) add_confinement(pass, settings.vorticity);
   if (settings.viscosity > 0.0f) add_viscosity(pass, settings.viscosity / settings.density);

@@ -21,6 +21,8 @@ struct GasSettings {
   float max_cells = 4.0f;  // of displacement in a sub-step
   int max_substeps = 32;
   ProjectionSettings projection{};
+  std::optional<Combustion> combustion{};  // then the grid has fuel
+  std::span<const float> emitter_fuel{};   // kg/m^3, one for each emitter, with combustion
 };
 
 struct GasReport {
@@ -28,6 +30,7 @@ struct GasReport {
   int iterations = 0;       // of all sub-steps
   float divergence = 0.0f;  // 1/s: largest net outflow of a cell over its volume after the last projection
   float residual = 0.0f;    // 1: of the last solve, over its right side
+  double burned = 0.0;      // kg, of fuel in this step
 };
 
 // `bodies`: by label; those that are free to move do so within the pressure equation, the others as told. `impulses`: one for each label of

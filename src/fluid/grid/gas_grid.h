@@ -43,6 +43,7 @@ struct GasGrid {
   Array<float> density;      // kg/m^3, of smoke
   Array<float> temperature;  // K
   Array<float> pressure;     // m^2/s^2: over the density of the gas, without what rests on gravity
+  Array<float> fuel;         // kg/m^3; empty: nothing burns
   float ambient_temperature = 293.15f;
 };
 

@@ -55,8 +55,10 @@ void for_ball(const GasPass& pass, const Ball& ball, int faces, Fn&& fn) {
 
 }  // namespace
 
-void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, double time) {
-  for (const GasEmitter& emitter : emitters) {
+void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, std::span<const float> fuel,
+                    double time) {
+  for (std::size_t n = 0; n < emitters.size(); ++n) {
+    const GasEmitter& emitter = emitters[n];
     if (!(time >= emitter.start && time < emitter.end)) continue;
     const Ball ball = ball_of(pass, emitter);
     const std::uint8_t* const solid = pass.solids.present() ? pass.solids.solid.data() : nullptr;
@@ -64,6 +66,7 @@ void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, d
       if (solid != nullptr && solid[c] != 0) return;
       pass.grid.density[c] = emitter.density;
       pass.grid.temperature[c] = emitter.temperature;
+      if (n < fuel.size()) pass.grid.fuel[c] = fuel[n];
     });
     if (!emitter.has_velocity) continue;
     for (int axis = 0; axis < 3; ++axis) {

@@ -18,8 +18,9 @@ struct GasEmitter {
   double start = 0.0, end = 1.0e9;  // s
 };
 
-// The cells whose centres lie in the ball, and the one in which its centre lies.
-void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, double time);
+// The cells whose centres lie in the ball, and the one in which its centre lies. `fuel`: of each emitter, if the gas has fuel, else empty.
+void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, std::span<const float> fuel,
+                    double time);
 
 // Velocity += step (g_periodic - buoyancy g (T - ambient) / ambient). Along axes that are not periodic the weight of the gas itself rests on
 // pressure, within walls as beyond open sides, and is left out of both.

@@ -146,6 +146,7 @@ void transport_fields(const GasPass& pass, Advection advection) {
   }
   transport(pass, advection, -1, &none, pass.grid.density.data());
   transport(pass, advection, -1, &ambient, pass.grid.temperature.data());
+  if (!pass.grid.fuel.empty()) transport(pass, advection, -1, &none, pass.grid.fuel.data());
 }
 
 float max_displacement(const GasPass& pass) {

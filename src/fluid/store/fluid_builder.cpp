@@ -84,7 +84,22 @@ Error check_fields(const GasDef& def) {
   const std::size_t cells = count_places(def.cells, -1);
   if (const Error e = check_field("density", fields.density, cells)) return e;
   if (const Error e = check_field("temperature", fields.temperature, cells)) return e;
-  return check_field("pressure", fields.pressure, cells);
+  if (const Error e = check_field("pressure", fields.pressure, cells)) return e;
+  return fields.fuel.empty() ? Error{} : check_field("fuel", fields.fuel, cells);
+}
+
+Error check_combustion(const Combustion& combustion) {
+  const auto check = [](const char* name, float value, double low, const char* bound) {
+    const Error e = check_range(name, double(value), low, bound);
+    return e ? refuse("combustion.%s", e.message) : e;
+  };
+  constexpr double kMinPositive = 1.0e-30;
+  if (const Error e = check("ignition_temperature", combustion.ignition_temperature, 0.0, "at least 0"))
+    return e;
+  if (const Error e = check("burn_rate", combustion.burn_rate, 0.0, "at least 0")) return e;
+  if (const Error e = check("heat_release", combustion.heat_release, 0.0, "at least 0")) return e;
+  if (const Error e = check("heat_capacity", combustion.heat_capacity, kMinPositive, "above 0")) return e;
+  return check("smoke_yield", combustion.smoke_yield, 0.0, "at least 0");
 }
 
 void paste(const GridShape& shape, int faces, const std::vector<float>& from, Array<float>& to) {
@@ -176,6 +191,7 @@ void build(const GasDef& def, FluidEntry& entry) {
   const GasBox box = box_of(def, def.cells, edges);
   entry.gas = make_gas_grid(box, def.ambient_temperature);
   const GridShape& shape = entry.gas.shape;
+  if (def.combustion) entry.gas.fuel.resize(std::size_t(shape.size), 0.0f);
   if (def.fields) {
     paste(shape, 0, def.fields->velocity_x, entry.gas.velocity[0]);
     paste(shape, 1, def.fields->velocity_y, entry.gas.velocity[1]);
@@ -183,6 +199,7 @@ void build(const GasDef& def, FluidEntry& entry) {
     paste(shape, -1, def.fields->density, entry.gas.density);
     paste(shape, -1, def.fields->temperature, entry.gas.temperature);
     paste(shape, -1, def.fields->pressure, entry.gas.pressure);
+    if (def.combustion && !def.fields->fuel.empty()) paste(shape, -1, def.fields->fuel, entry.gas.fuel);
   } else if (def.vortices) {
     set_vortices(*def.vortices, entry.gas);
   } else {
@@ -197,6 +214,7 @@ void build(const GasDef& def, FluidEntry& entry) {
   const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
   for (Array<float>* const field : {&entry.gas.density, &entry.gas.temperature, &entry.gas.pressure})
     wrap_ghosts(shape, periodic, field->data());
+  if (def.combustion) wrap_ghosts(shape, periodic, entry.gas.fuel.data());
   for (Array<float>& field : entry.gas.velocity) wrap_ghosts(shape, periodic, field.data());
 }
 
@@ -211,6 +229,24 @@ bool is_good_column(const GasBox& box, int axis, const Array<float>& column) {
   for (const float at : column)
     if (!(at >= 0.0f && at <= float(box.cells[axis]) * edge)) return false;
   return true;
+}
+
+GasEmitter make_emitter(const FluidEmitter& emitter) {
+  GasEmitter out;
+  out.position = emitter.position, out.radius = emitter.radius;
+  out.density = emitter.density, out.temperature = emitter.temperature;
+  out.has_velocity = emitter.velocity.has_value();
+  if (emitter.velocity) out.velocity = *emitter.velocity;
+  out.start = emitter.start, out.end = emitter.end;
+  return out;
+}
+FluidEmitter emitter_def(const GasEmitter& emitter) {
+  FluidEmitter out;
+  out.position = emitter.position, out.radius = emitter.radius;
+  out.density = emitter.density, out.temperature = emitter.temperature;
+  if (emitter.has_velocity) out.velocity = emitter.velocity;
+  out.start = emitter.start, out.end = emitter.end;
+  return out;
 }
 
 }  // namespace
@@ -229,6 +265,8 @@ Error check_emitters(std::span<const FluidEmitter> emitters, DVec3 lower, DVec3 
     if (!(one.temperature > 0.0f) || !std::isfinite(one.temperature))
       return refuse("emitters[%d].temperature is %g; it must be finite and above 0", int(n),
                     double(one.temperature));
+    if (!(one.fuel >= 0.0f) || !std::isfinite(one.fuel))
+      return refuse("emitters[%d].fuel is %g; it must be finite and at least 0", int(n), double(one.fuel));
     if (one.velocity && !is_finite(*one.velocity))
       return refuse("emitters[%d].velocity is not finite", int(n));
     if (!std::isfinite(one.start) || !std::isfinite(one.end))
@@ -264,6 +302,8 @@ Error check_fluid(const GasDef& def) {
   }
   if (const Error e = check_sides(def.sides, def.wall_velocities)) return e;
   if (const Error e = check_emitters(def.emitters, def.lower, def.upper)) return e;
+  if (def.combustion)
+    if (const Error e = check_combustion(*def.combustion)) return e;
   return def.fields ? check_fields(def) : Error{};
 }
 
@@ -303,21 +343,20 @@ std::int64_t count_cells(const FluidDef& def) {
   return std::int64_t(cells[0]) * std::int64_t(cells[1]) * std::int64_t(cells[2]);
 }
 
-GasEmitter make_emitter(const FluidEmitter& emitter) {
-  GasEmitter out;
-  out.position = emitter.position, out.radius = emitter.radius;
-  out.density = emitter.density, out.temperature = emitter.temperature;
-  out.has_velocity = emitter.velocity.has_value();
-  if (emitter.velocity) out.velocity = *emitter.velocity;
-  out.start = emitter.start, out.end = emitter.end;
-  return out;
+void set_emitters(FluidEntry& entry, std::span<const FluidEmitter> emitters) {
+  entry.emitters.clear(), entry.emitter_fuel.clear();
+  for (const FluidEmitter& emitter : emitters) {
+    entry.emitters.push_back(make_emitter(emitter));
+    if (entry.burns()) entry.emitter_fuel.push_back(emitter.fuel);
+  }
 }
-FluidEmitter emitter_def(const GasEmitter& emitter) {
-  FluidEmitter out;
-  out.position = emitter.position, out.radius = emitter.radius;
-  out.density = emitter.density, out.temperature = emitter.temperature;
-  if (emitter.has_velocity) out.velocity = emitter.velocity;
-  out.start = emitter.start, out.end = emitter.end;
+
+std::vector<FluidEmitter> emitter_defs(const FluidEntry& entry) {
+  std::vector<FluidEmitter> out;
+  for (std::size_t n = 0; n < entry.emitters.size(); ++n) {
+    out.push_back(emitter_def(entry.emitters[n]));
+    if (n < entry.emitter_fuel.size()) out.back().fuel = entry.emitter_fuel[n];
+  }
   return out;
 }
 
@@ -327,7 +366,7 @@ FluidEntry build_fluid(std::shared_ptr<const FluidDef> def) {
   std::visit(
       [&](const auto& one) {
         build(one, entry);
-        for (const FluidEmitter& emitter : one.emitters) entry.emitters.push_back(make_emitter(emitter));
+        set_emitters(entry, one.emitters);
       },
       *entry.def);
   return entry;
@@ -359,6 +398,8 @@ bool fits_definition(const FluidEntry& entry) {
   if (!entry.is_liquid()) {
     const GasGrid& gas = entry.gas;
     bool good = gas.density.size() == size && gas.temperature.size() == size && gas.pressure.size() == size;
+    good = good && gas.fuel.size() == (entry.burns() ? size : 0);
+    good = good && entry.emitter_fuel.size() == (entry.burns() ? entry.emitters.size() : 0);
     for (const Array<float>& faces : gas.velocity) good = good && faces.size() == size;
     return good;
   }
@@ -395,6 +436,7 @@ GasFields copy_fields(const GasGrid& grid) {
   out.density = cut_out(grid.shape, -1, grid.density);
   out.temperature = cut_out(grid.shape, -1, grid.temperature);
   out.pressure = cut_out(grid.shape, -1, grid.pressure);
+  if (!grid.fuel.empty()) out.fuel = cut_out(grid.shape, -1, grid.fuel);
   return out;
 }
 

@@ -26,8 +26,8 @@ FluidEntry build_fluid(std::shared_ptr<const FluidDef> def);
 bool fill_liquid(FluidEntry& entry, const GasSolids& solids);
 // True if the arrays of an entry that was read from a file can be those of its definition.
 bool fits_definition(const FluidEntry& entry);
-GasEmitter make_emitter(const FluidEmitter& emitter);
-FluidEmitter emitter_def(const GasEmitter& emitter);
+void set_emitters(FluidEntry& entry, std::span<const FluidEmitter> emitters);
+std::vector<FluidEmitter> emitter_defs(const FluidEntry& entry);
 
 // The fields of a gas, the particles of a liquid, as a definition holds them.
 GasFields copy_fields(const GasGrid& grid);

@@ -28,10 +28,12 @@ struct FluidEntry {
   GasGrid gas;                          // of a gas, else empty
   LiquidGrid liquid;                    // of a liquid, else empty
   Array<GasEmitter> emitters;
+  Array<float> emitter_fuel;  // kg/m^3, one for each emitter of a gas with combustion, else empty
   Array<FluidPush> pushes;  // ascending by body
 
   FluidKind kind() const { return FluidKind(def->index()); }
   bool is_liquid() const { return kind() == FluidKind::liquid; }
+  bool burns() const { return !is_liquid() && gas_def().combustion.has_value(); }
   const GasDef& gas_def() const { return std::get<GasDef>(*def); }
   const LiquidDef& liquid_def() const { return std::get<LiquidDef>(*def); }
   const GasBox& box() const { return is_liquid() ? liquid.box : gas.box; }
@@ -67,6 +69,7 @@ void for_each_fluid_array(Entry& entry, Visitor&& visit) {
   visit(entry.liquid.surface), visit(entry.liquid.pressure);
   visit(entry.emitters);
   visit(entry.pushes);
+  if (entry.burns()) visit(entry.gas.fuel), visit(entry.emitter_fuel);
 }
 
 }  // namespace gyre

@@ -328,8 +328,23 @@ requires(Is<T, std::array<FluidBoundary, 6>> || Is<T, std::array<Vec3, 6>>) void
 }
 template <class C, Is<FluidEmitter> T>
 void fields(C& c, T& v) {
-  auto& [position, radius, density, temperature, velocity, start, end] = v;
-  all(c, position, radius, density, temperature, velocity, start, end);
+  auto& [position, radius, density, temperature, velocity, start, end, fuel] = v;
+  all(c, position, radius, density, temperature);
+  // A byte tells which follow: 1 a velocity, 2 fuel, which came later.
+  auto parts = std::uint8_t((velocity ? 1 : 0) | (fuel != 0.0f ? 2 : 0));
+  c.number(parts);
+  if constexpr (!std::is_const_v<T>) {
+    if (parts > 3) c.fail();
+    if ((parts & 1) != 0) velocity.emplace();
+  }
+  if ((parts & 1) != 0) all(c, *velocity);
+  all(c, start, end);
+  if ((parts & 2) != 0) all(c, fuel);
+}
+template <class C, Is<Combustion> T>
+void fields(C& c, T& v) {
+  auto& [ignition_temperature, burn_rate, heat_release, heat_capacity, smoke_yield] = v;
+  all(c, ignition_temperature, burn_rate, heat_release, heat_capacity, smoke_yield);
 }
 template <class C, Is<TaylorGreen> T>
 void fields(C& c, T& v) {
@@ -338,15 +353,26 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<GasFields> T>
 void fields(C& c, T& v) {
-  auto& [x, y, z, density, temperature, pressure] = v;
+  auto& [x, y, z, density, temperature, pressure, fuel] = v;
   all(c, x, y, z, density, temperature, pressure);
 }
 template <class C, Is<GasDef> T>
 void fields(C& c, T& v) {
   auto& [lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
-         initial, vortices, emitters, state, user_data] = v;
+         initial, vortices, emitters, state, user_data, combustion] = v;
   all(c, lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
       initial, vortices, emitters, state, user_data);
+}
+// Combustion came later: the definition of a gas without it has the bytes that it always had.
+constexpr std::uint8_t kBurns = 0x80;
+bool burns(const FluidDef& def) {
+  const auto* const gas = std::get_if<GasDef>(&def);
+  return gas != nullptr && gas->combustion.has_value();
+}
+template <class C, class T>
+void combustion_fields(C& c, T& gas) {
+  all(c, *gas.combustion);
+  if (gas.fields) all(c, gas.fields->fuel);
 }
 template <class C, Is<FluidRegion> T>
 void fields(C& c, T& v) {
@@ -365,16 +391,24 @@ void fields(C& c, T& v) {
 }
 // The kind, then the definition.
 void fields(FieldWriter& c, const std::shared_ptr<const FluidDef>& def) {
-  c.number(std::uint8_t(def->index()));
+  c.number(std::uint8_t(def->index() | (burns(*def) ? kBurns : 0)));
   std::visit([&](const auto& one) { fields(c, one); }, *def);
+  if (burns(*def)) combustion_fields(c, std::get<GasDef>(*def));
 }
 void fields(FieldReader& c, std::shared_ptr<const FluidDef>& def) {
   std::uint8_t kind = 0;
   c.number(kind);
+  const bool has_combustion = kind == kBurns;
+  if (has_combustion) kind = 0;
   FluidDef read;
   if (kind == 1) read.emplace<LiquidDef>();
   if (kind >= std::variant_size_v<FluidDef>) c.fail();
   std::visit([&](auto& one) { fields(c, one); }, read);
+  if (has_combustion) {
+    GasDef& gas = std::get<GasDef>(read);
+    gas.combustion.emplace();
+    combustion_fields(c, gas);
+  }
   def = std::make_shared<const FluidDef>(std::move(read));
 }
 

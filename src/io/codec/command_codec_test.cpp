@@ -74,11 +74,15 @@ std::vector<Command> all_commands() {
           Step{0.25f},
           SetCombineRules{CombineRule::minimum, CombineRule::product},
           SetSurfaceRule{{4, {.static_friction = 0.1f, .id = 4}, {1, 2, 3}, {0, 1, 0}}},
-          AddField{{.kind = FieldKind::vortex, .bounds = FieldBounds{{1, 2, 3}, {4, 5, 6}}, .strength = 7, .axis = {0, 0, 1}}},
+          AddField{{.kind = FieldKind::vortex,
+                    .bounds = FieldBounds{{1, 2, 3}, {4, 5, 6}},
+                    .strength = 7,
+                    .axis = {0, 0, 1}}},
           SetField{{1, 1, 1}, {.kind = FieldKind::buoyancy, .density = 900, .offset = 2}},
           RemoveField{{1, 1, 1}},
           Explode{{.center = {1, 2, 3}, .pressure = 4, .occlusion = false}},
-          SetJointAxis{joint, JointAxis::angular_y, {.motion = AxisMotion::limited, .limits = {1, 2}, .friction = 3}},
+          SetJointAxis{
+              joint, JointAxis::angular_y, {.motion = AxisMotion::limited, .limits = {1, 2}, .friction = 3}},
           SetDrive{joint, {.position = {1, 2, 3}, .frequency = 4, .max_torque = 5}},
           SetJointEnabled{joint, false},
           SetMotion{IntegratorKind::rk4, SpringKind::explicit_force, TimeStepping::adaptive, 0.5f, 7},
@@ -97,7 +101,9 @@ std::vector<Command> all_commands() {
               .emitters = {{.position = {0.5, 0.5, 0.5}, .velocity = Vec3{1, 2, 3}}},
               .particles = LiquidParticles{.positions = {{0.5, 0.5, 0.5}}, .velocities = {{1, 2, 3}}}})},
           RemoveFluid{FluidId{2, 1, kWorld}},
-          SetEmitters{FluidId{2, 1, kWorld}, {{.position = {1, 2, 3}, .radius = 0.5f}}},
+          SetEmitters{FluidId{2, 1, kWorld},
+                      {{.position = {1, 2, 3}, .radius = 0.5f, .fuel = 0.25f},
+                       {.velocity = Vec3{3, 2, 1}, .fuel = 2.0f}}},
           SetSleepShare{0.25f},
           SetSleepSpeed{body, 0.125f},
           SetMass{body, {.mass = 2.0f, .center_of_mass = Vec3{1, 2, 3}, .inertia = Sym3{1, 2, 3, 4, 5, 6}}},
@@ -121,9 +127,11 @@ TEST(CommandCodec, JointsOfEveryKindComeBack) {
     if (def.kind > JointKind::distance) {
       def.axis_b = Vec3{0, 0, 1}, def.swing_y = 0.3f, def.swing_z = 0.2f, def.ratio = 4.0f;
       def.ground_a = {1, 2, 3}, def.ground_b = {4, 5, 6};
-      def.linear_y = {.motion = AxisMotion::free, .stiffness = 7.0f}, def.angular_z = {.motor = {.target_position = 2.0f}};
+      def.linear_y = {.motion = AxisMotion::free, .stiffness = 7.0f},
+      def.angular_z = {.motor = {.target_position = 2.0f}};
       def.drive = {.orientation = {0, 0, 1, 0}, .linear_velocity = {1, 0, 0}, .max_force = 8.0f};
-      def.path = {{1, 2, 3}, {4, 5, 6}}, def.path_closed = true, def.path_orientation = PathOrientation::following;
+      def.path = {{1, 2, 3}, {4, 5, 6}}, def.path_closed = true,
+      def.path_orientation = PathOrientation::following;
     }
     const std::vector<std::byte> bytes = bytes_of(AddJoint{def});
     ByteReader in(bytes);
@@ -136,6 +144,24 @@ TEST(CommandCodec, JointsOfEveryKindComeBack) {
     EXPECT_EQ(read.linear_y.stiffness, def.linear_y.stiffness);
     EXPECT_EQ(read.drive.max_force, def.drive.max_force);
   }
+}
+
+// A gas that burns has members which came later than those of other gases.
+TEST(CommandCodec, AGasThatBurnsComesBack) {
+  const AddFluid add{std::make_shared<const FluidDef>(
+      GasDef{.emitters = {{.position = {0.5, 0.5, 0.5}, .velocity = Vec3{1, 2, 3}}, {.fuel = 0.5f}},
+             .fields = GasFields{.density = {1, 2}, .fuel = {3, 4}},
+             .combustion = Combustion{600.5f, 1, 2, 3, 4}})};
+  const std::vector<std::byte> bytes = bytes_of(add);
+  ByteReader in(bytes);
+  const Command back = read_command(in, {}, kWorld);
+  EXPECT_TRUE(in.finished());
+  EXPECT_EQ(bytes_of(back), bytes);
+  const GasDef& read = std::get<GasDef>(*std::get<AddFluid>(back).def);
+  EXPECT_EQ(read.combustion->smoke_yield, 4.0f);
+  EXPECT_EQ(read.fields->fuel, (std::vector<float>{3, 4}));
+  EXPECT_EQ(read.emitters[1].fuel, 0.5f);
+  EXPECT_EQ(read.emitters[0].velocity->z, 3.0f);
 }
 
 TEST(CommandCodec, EveryCommandComesBack) {

@@ -112,14 +112,14 @@ export class FluidReader {
   }
 }
 
-// Nothing in a gas is thicker or hotter than what it began with and what its emitters give.
+// Nothing in a gas is thicker or hotter than what it began with and what its emitters give, but for what burns.
 function scalesOf(world: World, id: FluidId): Scales {
-  const { ambientTemperature: ambient, emitters, fields } = world.gasDef(id);
+  const { ambientTemperature: ambient, density: gas, emitters, fields, combustion } = world.gasDef(id);
   let smoke = 0;
   let hottest = ambient;
-  for (const { density, temperature } of emitters) {
-    smoke = Math.max(smoke, density);
-    hottest = Math.max(hottest, temperature);
+  for (const { density, temperature, fuel } of emitters) {
+    smoke = Math.max(smoke, density + (combustion ? combustion.smokeYield * fuel : 0));
+    hottest = Math.max(hottest, temperature + (combustion ? (combustion.heatRelease * fuel) / (gas * combustion.heatCapacity) : 0));
   }
   for (const density of fields?.density ?? []) smoke = Math.max(smoke, density);
   for (const temperature of fields?.temperature ?? []) hottest = Math.max(hottest, temperature);
