@@ -1,5 +1,6 @@
 # Each header must compile alone. One that a source of its name includes before all else does so there; for each other one a source
-# is generated that includes it and nothing else.
+# is generated that includes it and nothing else. Headers that users see are part of every build; those of src/ are built by
+# `./test --long` alone (target header_check_src).
 option(GYRE_CHECK_HEADERS "Compile each header alone" ON)
 if(NOT GYRE_CHECK_HEADERS OR GYRE_SANITIZE OR GYRE_COVERAGE)
   return()
@@ -7,7 +8,8 @@ endif()
 
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/include/gyre/*.h ${PROJECT_SOURCE_DIR}/src/*.h ${PROJECT_SOURCE_DIR}/scene/*.h ${PROJECT_SOURCE_DIR}/kit/*.h)
-set(sources)
+set(seen)
+set(inner)
 foreach(header IN LISTS headers)
   file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${header})
   string(REGEX REPLACE "\\.h$" ".cpp" own_source ${header})
@@ -21,11 +23,20 @@ foreach(header IN LISTS headers)
   string(MAKE_C_IDENTIFIER ${name} plain)
   set(source ${PROJECT_BINARY_DIR}/header_check/${plain}.cpp)
   file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n")
-  list(APPEND sources ${source})
+  if(name MATCHES "^src/")
+    list(APPEND inner ${source})
+  else()
+    list(APPEND seen ${source})
+  endif()
 endforeach()
 
-add_library(header_check OBJECT ${sources})
-gyre_target_defaults(header_check)
-target_compile_options(header_check PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang>:-O0>)
-target_include_directories(header_check PRIVATE ${PROJECT_SOURCE_DIR}/src)
-target_link_libraries(header_check PRIVATE gyre::gyre gyre_scene)
+function(gyre_header_check name)
+  add_library(${name} OBJECT ${ARGN})
+  gyre_target_defaults(${name})
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang>:-O0>)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${name} PRIVATE gyre::gyre gyre_scene)
+endfunction()
+
+gyre_header_check(header_check ${seen})
+gyre_header_check(header_check_src EXCLUDE_FROM_ALL ${inner})

@@ -14,7 +14,7 @@
 
 #include <cstring>
 
-namespace gyre {
+namespace gyre::export_test {
 namespace {
 
 Scene scene_file(const std::string& name) {
@@ -328,4 +328,4 @@ TEST(ExportVtk, FilesHoldTheStateOfEveryKind) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::export_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace gyre {
+namespace gyre::formats_test {
 namespace {
 
 Scene open_example(const std::string& name, const ImportOptions& options = {}) {
@@ -497,4 +497,4 @@ TEST(Mjcf, ModelsMoveAsInMujoco) {
 #endif
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::formats_test

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <map>
 
-namespace gyre {
+namespace gyre::decomposition_split_test {
 namespace {
 
 // A beam with an L as its section: 1 by 1 by 0.5 with a notch of 0.7 by 0.7.
@@ -179,4 +179,4 @@ TEST(DecompositionFolder, KeepsFilesByKey) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::decomposition_split_test

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace gyre {
+namespace gyre::mesh_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -268,4 +268,4 @@ TEST_F(SceneFolder, FilesAboveTheLimitAreNotRead) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::mesh_file_test

@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-namespace gyre {
+namespace gyre::number_text_test {
 namespace {
 
 template <class T>
@@ -107,4 +107,4 @@ TEST(JsonWriter, QuotesAndLayout) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::number_text_test

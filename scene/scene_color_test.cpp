@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace gyre {
+namespace gyre::scene_color_test {
 namespace {
 
 const std::string kColored = R"({"gyre_scene": 1,
@@ -86,4 +86,4 @@ TEST(SceneColor, WrongOnesAreRefusedInWords) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::scene_color_test

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::scene_fluid_test {
 namespace {
 
 const std::string kStart = R"({"gyre_scene": 1, "bodies": [{"name": "hull"}], )";
@@ -495,4 +495,4 @@ TEST(SceneFluid, ALidDrivesTheGasInABox) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::scene_fluid_test

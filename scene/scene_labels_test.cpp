@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::scene_labels_test {
 namespace {
 
 struct MemorySink final : ByteSink {
@@ -73,4 +73,4 @@ TEST(SceneLabels, TheViewOfANoteIsThatOfTheScene) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::scene_labels_test

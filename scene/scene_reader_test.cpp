@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::scene_reader_test {
 namespace {
 
 struct BadScene {
@@ -377,4 +377,4 @@ TEST(SceneReader, StopsAtItsLimits) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::scene_reader_test

@@ -8,7 +8,7 @@
 #include <clocale>
 #include <string>
 
-namespace gyre {
+namespace gyre::scene_robustness_test {
 namespace {
 
 const std::string kSmall = R"({
@@ -110,4 +110,4 @@ TEST(SceneRobustness, HugeAndTinyNumbers) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::scene_robustness_test

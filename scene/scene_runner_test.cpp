@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::scene_runner_test {
 namespace {
 
 SceneRunner run(const std::string& text, int steps = 0, int threads = 1) {
@@ -291,4 +291,4 @@ TEST(SceneRunner, BodiesThatWereRemovedAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::scene_runner_test

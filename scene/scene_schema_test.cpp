@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::scene_schema_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -230,4 +230,4 @@ TEST(SceneSchema, BothTakeTheContractsGasAndLiquid) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::scene_schema_test

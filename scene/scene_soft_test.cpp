@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::scene_soft_test {
 namespace {
 
 const std::string kMeshes =
@@ -471,4 +471,4 @@ TEST(SceneSoft, ExplicitEulerExplodesInTheSceneOfIntegrators) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::scene_soft_test

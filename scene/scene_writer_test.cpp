@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <variant>
 
-namespace gyre {
+namespace gyre::scene_writer_test {
 namespace {
 
 const std::string kEverything = R"({
@@ -217,4 +217,4 @@ TEST(SceneWriter, MeshesCanStandInTheScene) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::scene_writer_test

@@ -129,10 +129,22 @@ def check_names(path, lines, stripped):
     return problems
 
 
+def check_test_namespaces():
+    """Tests are compiled several files at once: gjk_test.cpp is in gyre::gjk_test. Returns how many files are elsewhere."""
+    problems = 0
+    for top in ("src", "scene", "formats", "kit", "bench", "apps", "tests"):
+        for path in sorted((ROOT / top).rglob("*_test.cpp")):
+            text = path.read_text(encoding="utf-8", errors="replace")
+            if not re.search(rf"^namespace gyre(::\w+)*::{path.stem} {{$", text, re.M):
+                print(f"{path.relative_to(ROOT)}: no namespace gyre::{path.stem}, so its helpers may clash with other tests'")
+                problems += 1
+    return problems
+
+
 def main():
     code_words = [(re.compile(pattern), why) for pattern, why in CODE_WORDS]
     any_words = [(re.compile(pattern), why) for pattern, why in ANY_WORDS]
-    problems = 0
+    problems = check_test_namespaces()
     count = 0
     for top in ("include", "src", "kit"):
         for path in sorted((ROOT / top).rglob("*")):

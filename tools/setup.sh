@@ -4,6 +4,8 @@
 #   want_packages package...   the same, but returns false instead of exiting
 #   configure preset           makes build/<preset> ready, doing nothing when it is
 #   build preset [target...]   builds it on all cores
+#
+# With gyre_unity set, every preset compiles folder by folder (docs/decisions/unity.md).
 
 gyre_cores=$(nproc 2>/dev/null || getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 
@@ -71,7 +73,7 @@ configure() {
   # Ninja itself notices changed CMake files, but neither changed presets nor new libraries.
   if [ ! -e "$folder/build.ninja" ] || [ CMakePresets.json -nt "$folder/build.ninja" ] || [ "${gyre_installed-}" = yes ]; then
     say "Configuring $folder"
-    cmake --preset "$1" >"build/configure-$1.log" 2>&1 || {
+    cmake --preset "$1" ${gyre_unity:+-DCMAKE_UNITY_BUILD=ON} >"build/configure-$1.log" 2>&1 || {
       cat "build/configure-$1.log" >&2
       return 1
     }

@@ -8,7 +8,7 @@
 #include "bench/scenes/builders.h"
 #include "bench/scenes/gyre_engine.h"
 
-namespace gyre::bench {
+namespace gyre::bench::judge_test {
 namespace {
 
 std::vector<BodyState> at_start(const Scene& scene) {
@@ -107,4 +107,4 @@ TEST(GyreEngine, KeepsATowerWhereItStands) {
 }
 
 }  // namespace
-}  // namespace gyre::bench
+}  // namespace gyre::bench::judge_test

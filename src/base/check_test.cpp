@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string>
 
-namespace gyre {
+namespace gyre::check_test {
 namespace {
 
 std::string told;
@@ -71,4 +71,4 @@ TEST(Validate, KeepsTheStatementOnlyIfEnabled) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::check_test

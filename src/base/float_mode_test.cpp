@@ -9,7 +9,7 @@
 #include <xmmintrin.h>
 #endif
 
-namespace gyre {
+namespace gyre::float_mode_test {
 namespace {
 
 float third() {
@@ -68,4 +68,4 @@ TEST(FloatMode, KeepsDenormalsInAHostThatFlushesThem) {
 #endif
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::float_mode_test

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace gyre {
+namespace gyre::function_ref_test {
 namespace {
 
 int twice(int x) { return 2 * x; }
@@ -51,4 +51,4 @@ TEST(FunctionRef, DropsResultsNobodyWants) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::function_ref_test

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-namespace gyre {
+namespace gyre::hash_test {
 namespace {
 
 static_assert(hash_text("abc") == 0x44bc2cf5ad770999u, "works at compile time");
@@ -85,4 +85,4 @@ TEST(Hash, MixIsOneToOneAndSpreads) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::hash_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::processor_test {
 namespace {
 
 bool is_a_width(int lanes) { return lanes == 1 || lanes == 4 || lanes == 8 || lanes == 16; }
@@ -37,4 +37,4 @@ TEST(Processor, LimitsTheRequestedLanes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::processor_test

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-namespace gyre {
+namespace gyre::result_test {
 namespace {
 
 TEST(Result, ErrorFormatsItsWords) {
@@ -62,4 +62,4 @@ TEST(ResultDeathTest, TheValueOfAnErrorSaysWhyAndStops) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::result_test

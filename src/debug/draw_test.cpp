@@ -4,7 +4,7 @@
 
 #include <gyre/debug.h>
 
-namespace gyre::laws {
+namespace gyre::laws::draw_test {
 namespace {
 
 struct Scene {
@@ -230,4 +230,4 @@ TEST(Wireframe, DrawsEachEdgeOnce) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::draw_test

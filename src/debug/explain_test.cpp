@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace gyre::laws {
+namespace gyre::laws::explain_test {
 namespace {
 
 BodyId add_box(World& world, DVec3 at, BodyDef def = {}) {
@@ -161,4 +161,4 @@ TEST(Explain, CutsWhatIsTooLong) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::explain_test

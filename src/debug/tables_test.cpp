@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-namespace gyre::laws {
+namespace gyre::laws::tables_test {
 namespace {
 
 DVec3 place(const std::vector<float>& from, std::size_t i, DVec3 origin = {}) {
@@ -401,4 +401,4 @@ TEST(Tables, OfAnEmptyWorldAreEmpty) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::tables_test

@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace gyre::laws {
+namespace gyre::laws::times_test {
 namespace {
 
 World make_heap() {
@@ -108,4 +108,4 @@ TEST(Times, CanBeSwitchedWhileItRuns) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::times_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace gyre {
+namespace gyre::fused_stages_test {
 namespace {
 
 // Chains of three bodies; the last body is joined to the world.
@@ -97,4 +97,4 @@ TEST(RunLayout, OfNothingAreNone) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::fused_stages_test

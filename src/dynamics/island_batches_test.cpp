@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace gyre {
+namespace gyre::island_batches_test {
 namespace {
 
 class ChainsInBatches : public ::testing::Test {
@@ -113,4 +113,4 @@ TEST_F(ChainsInBatches, AreOneWhereOneIslandIsLargeAndLittleElseIs) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::island_batches_test

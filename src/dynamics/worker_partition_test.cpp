@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace gyre {
+namespace gyre::worker_partition_test {
 namespace {
 
 constexpr std::uint32_t kNone = ColoringPair::kNone;
@@ -68,4 +68,4 @@ TEST(PartitionOfBodies, BoundsAreWholeBlocks) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::worker_partition_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace gyre {
+namespace gyre::block_ldlt_test {
 namespace {
 
 class Random {
@@ -275,4 +275,4 @@ TEST(BlockLdlt, DropsRedundantRows) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::block_ldlt_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace gyre {
+namespace gyre::block_lu_test {
 namespace {
 
 class Random {
@@ -95,4 +95,4 @@ TEST(BlockLu, SaysThatAMatrixIsSingular) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::block_lu_test

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace gyre {
+namespace gyre::dense_test {
 namespace {
 
 struct Random : testing_random::Mixed {
@@ -241,4 +241,4 @@ TEST(Dense, NegativeOrNotANumberPivotsAreDropped) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::dense_test

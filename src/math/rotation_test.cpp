@@ -12,7 +12,7 @@
 
 #include "math/trig.h"
 
-namespace gyre {
+namespace gyre::rotation_test {
 namespace {
 
 struct Random : testing_random::Mixed {
@@ -312,4 +312,4 @@ TEST(Rotation, ModelMatrixIsThePoseAsSeenFromTheOrigin) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::rotation_test

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <limits>
 
-namespace gyre {
+namespace gyre::trig_test {
 namespace {
 
 constexpr float kInfinityF = std::numeric_limits<float>::infinity();
@@ -275,4 +275,4 @@ TEST(Trig, TheSameBitsEverywhere) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::trig_test

@@ -13,7 +13,7 @@
 
 #include "math/wide_test_kernels.h"
 
-namespace gyre {
+namespace gyre::wide_test {
 namespace {
 
 struct Random : testing_random::Mixed {
@@ -182,4 +182,4 @@ TEST(Wide, LanesLoadsMasks) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::wide_test

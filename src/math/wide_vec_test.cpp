@@ -15,7 +15,7 @@
 #include "math/rotation.h"
 #include "math/wide_angle.h"
 
-namespace gyre {
+namespace gyre::wide_vec_test {
 namespace {
 
 struct Random : testing_random::Mixed {
@@ -251,4 +251,4 @@ TEST(WideVec, AllBitsSurviveTheRoundTrip) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::wide_vec_test

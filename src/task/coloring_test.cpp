@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace gyre {
+namespace gyre::coloring_test {
 namespace {
 
 using Pairs = std::vector<ColoringPair>;
@@ -205,4 +205,4 @@ TEST(Coloring, ValidateFindsDamage) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::coloring_test

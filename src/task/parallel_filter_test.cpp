@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace gyre {
+namespace gyre::parallel_filter_test {
 namespace {
 
 TEST(Choose, SameListForAnyWorkers) {
@@ -36,4 +36,4 @@ TEST(Choose, NoneAndAll) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::parallel_filter_test

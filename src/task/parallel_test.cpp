@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace gyre {
+namespace gyre::parallel_test {
 namespace {
 
 using Blocks = std::vector<std::pair<int, int>>;
@@ -139,4 +139,4 @@ TEST(Parallel, WarmLoopsDoNotAllocate) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::parallel_test

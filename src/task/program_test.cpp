@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-namespace gyre {
+namespace gyre::program_test {
 namespace {
 
 // Each stage computes values from neighbours' values of the stage before. Any block too early, too late, twice or never
@@ -284,4 +284,4 @@ TEST(Program, ManyShortProgramsWithMoreWorkersThanCores) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::program_test

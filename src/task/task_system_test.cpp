@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-namespace gyre {
+namespace gyre::task_system_test {
 namespace {
 
 TEST(TaskSystem, OneWorkerIsTheCaller) {
@@ -191,4 +191,4 @@ TEST(TaskSystem, BusyWorkersTakeJobsThatComeAfterPauses) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::task_system_test

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <string>
 
-namespace gyre {
+namespace gyre::validate_state_test {
 namespace {
 
 // Validates a world after each stage of its steps, and keeps the first fault.
@@ -263,4 +263,4 @@ TEST(ValidateState, FindsGroupsThatAreNotConnected) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::validate_state_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::active_constraints_test {
 namespace {
 
 ActiveConstraints& constraints_of(World& world) { return state_of(world).rigid.active_constraints; }
@@ -190,4 +190,4 @@ TEST(ActiveConstraints, VisitingAllChangesNothingWhereWallsStopSleepers) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::active_constraints_test

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::batch_test {
 namespace {
 
 struct Heap {
@@ -214,4 +214,4 @@ TEST(Replica, RefusesWhatItCannotFollow) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::batch_test

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::changes_test {
 namespace {
 
 const ShapeDef kGround{.geometry = Plane{}};
@@ -359,4 +359,4 @@ TEST(Problems, AreHeardAtOnceAndHaveASeverity) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::changes_test

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace gyre {
+namespace gyre::columns_test {
 namespace {
 
 // A box of each sort, and a gap where one was removed.
@@ -125,4 +125,4 @@ TEST(Columns, MayBeReadByManyThreadsAtOnce) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::columns_test

@@ -1,7 +1,7 @@
 // Events, filters, materials in pairs, sensors, sleep and what wakes, readings of contacts, energy and momentum.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::events_test {
 namespace {
 
 TEST(Events, RemovingABodyEndsItsContacts) {
@@ -438,4 +438,4 @@ TEST(Readings, EnergyAndMomentumOfFreeBodies) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::events_test

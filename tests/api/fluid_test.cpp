@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gyre {
+namespace gyre::fluid_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -395,4 +395,4 @@ TEST(Gas, CarriesABalloonUpAndLeavesItAtTheCeiling) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::fluid_test

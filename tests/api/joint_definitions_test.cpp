@@ -12,7 +12,7 @@
 #include <limits>
 #include <string>
 
-namespace gyre {
+namespace gyre::joint_definitions_test {
 namespace {
 
 // ------------------------------------------------------------------------------------------------- all kinds, in order
@@ -511,4 +511,4 @@ TEST(JointDefinitions, ARackNeedsItsDirectionAndAGearItsRatio) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::joint_definitions_test

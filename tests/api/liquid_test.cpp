@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace gyre {
+namespace gyre::liquid_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -256,4 +256,4 @@ TEST(Liquid, GetsTheMomentumThatItsDragTakesFromACloth) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::liquid_test

@@ -53,7 +53,7 @@ void operator delete(void* p, std::size_t) noexcept { give(p, kPlain); }
 void operator delete(void* p, std::align_val_t align) noexcept { give(p, std::size_t(align)); }
 void operator delete(void* p, std::size_t, std::align_val_t align) noexcept { give(p, std::size_t(align)); }
 
-namespace gyre::laws {
+namespace gyre::laws::memory_test {
 namespace {
 
 // By the engine's door and by operator new.
@@ -408,4 +408,4 @@ TEST(LongChurn, MemoryStaysBounded) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::memory_test

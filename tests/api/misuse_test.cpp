@@ -7,7 +7,7 @@
 #include <memory>
 #include <type_traits>
 
-namespace gyre::laws {
+namespace gyre::laws::misuse_test {
 namespace {
 
 // Users have no way into the state of a world.
@@ -266,4 +266,4 @@ TEST(Order, AddAndRemoveBeforeTheFirstStepAndWhileAsleep) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::misuse_test

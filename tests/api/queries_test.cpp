@@ -6,7 +6,7 @@
 #include <cstring>
 #include <thread>
 
-namespace gyre::laws {
+namespace gyre::laws::queries_test {
 namespace {
 
 bool only_this(void* user, ShapeId shape, BodyId) { return *static_cast<ShapeId*>(user) == shape; }
@@ -409,4 +409,4 @@ TEST(Queries, OfPointsAndTouchingShapes) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::queries_test

@@ -10,7 +10,7 @@
 #include <functional>
 #include <type_traits>
 
-namespace gyre::laws {
+namespace gyre::laws::query_matrix_test {
 namespace {
 
 constexpr std::size_t kRoom = 3;  // answers kept of each question, fewer than some have
@@ -417,4 +417,4 @@ TEST(QueryBatches, SayWhyTheyCannotBeAsked) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::query_matrix_test

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::resting_structures_test {
 namespace {
 
 // The loaded contacts that a direct solver carries, and the others.
@@ -75,4 +75,4 @@ TEST(RestingStructures, AHeapOfManyBodiesIsNotSolvedDirectly) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::resting_structures_test

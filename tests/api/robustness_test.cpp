@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-namespace gyre::laws {
+namespace gyre::laws::robustness_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -302,4 +302,4 @@ TEST(Refusals, NameObjectFieldValueAndRange) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::robustness_test

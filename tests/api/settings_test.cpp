@@ -6,7 +6,7 @@
 
 #include <gyre/debug.h>
 
-namespace gyre::laws {
+namespace gyre::laws::settings_test {
 namespace {
 
 void expect_equal(const WorldDef& a, const WorldDef& b) {
@@ -241,4 +241,4 @@ TEST(Settings, ASnapshotGoesOnUnderAnotherDef) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::settings_test

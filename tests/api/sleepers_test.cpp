@@ -3,7 +3,7 @@
 
 #include <random>
 
-namespace gyre::laws {
+namespace gyre::laws::sleepers_test {
 namespace {
 
 enum How { added, teleported, filter_opened, shape_added, how_count };
@@ -284,4 +284,4 @@ TEST(Sensor, ListsWhoIsInside) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::sleepers_test

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace gyre::laws {
+namespace gyre::laws::slow_motion_test {
 namespace {
 
 constexpr double kLong = 5.0;  // s
@@ -254,4 +254,4 @@ TEST(SleepSpeed, OutOfRangeIsRefused) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::slow_motion_test

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::soft_matter_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -383,4 +383,4 @@ TEST(SoftMatter, BadDefinitionsAreRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::soft_matter_test

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::soft_queries_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -352,4 +352,4 @@ TEST(SoftEvents, ATetrahedronThatTurnsInsideOutIsReportedOnce) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::soft_queries_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::soft_surface_test {
 namespace {
 
 SolidDef ball_def(int resolution) {
@@ -100,4 +100,4 @@ TEST(SoftSurface, IsRefusedWithAReason) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::soft_surface_test

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::soft_surfaces_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -150,4 +150,4 @@ TEST(SoftSurfaces, SelfCollisionCanBeSwitchedOff) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::soft_surfaces_test

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::cli_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -543,4 +543,4 @@ TEST_F(CommandLine, BenchPrintsTimesBesideQuality) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::cli_test

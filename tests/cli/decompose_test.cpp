@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::decompose_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -203,4 +203,4 @@ TEST_F(Decompose, WrongUsageIsStatusTwoAndAMissingFileThree) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::decompose_test

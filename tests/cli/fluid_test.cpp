@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::fluid_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -213,4 +213,4 @@ TEST_F(FluidCommandLine, ABadGasIsStatusThreeAndNothingIsWritten) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::fluid_test

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::import_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,4 +104,4 @@ TEST_F(Import, MeshesAreReadFromTheFoldersThatWereNamedAndFromNoOther) {
 #endif
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::import_test

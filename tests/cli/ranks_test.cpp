@@ -11,7 +11,7 @@
 #include <map>
 #include <string>
 
-namespace gyre {
+namespace gyre::ranks_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,4 +188,4 @@ TEST_F(Ranks, ADeadRankEndsTheRunAndTheCheckpointGoesOnWithOtherRanks) {
 #endif
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::ranks_test

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::soft_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -197,4 +197,4 @@ TEST_F(SoftCommandLine, AnExplosionPastAllNumbersIsStatusFour) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::soft_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ TEST_F(Sweep, TheNumberOfRanksChangesNoLine) {
 #endif
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::sweep_test

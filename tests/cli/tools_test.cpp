@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::tools_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -296,4 +296,4 @@ TEST_F(Tools, CompletionAndManualNameEveryCommandAndOption) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::tools_test

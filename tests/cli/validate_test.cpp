@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace gyre {
+namespace gyre::validate_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST_F(Validate, ALawThatIsNotThereIsWrongUsage) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::validate_test

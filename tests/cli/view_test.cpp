@@ -14,7 +14,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-namespace gyre {
+namespace gyre::view_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -472,4 +472,4 @@ TEST_F(View, WithoutAViewerThePageSaysHowToBuildIt) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::view_test

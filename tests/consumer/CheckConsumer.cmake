@@ -1,5 +1,5 @@
 # Builds and runs the consumer in this folder. Run with cmake -P and
-#   -DWAY=install | find_package | add_subdirectory | fetch_content | pkg_config
+#   -DWAY=install | find_package | fetch_content | pkg_config
 #   -DGYRE_SOURCE=, -DGYRE_BUILD=, -DWORK= (a scratch folder), -DCXX=, -DGENERATOR=, -DLAUNCHER=, -DWERROR=
 
 set(prefix ${WORK}/prefix)

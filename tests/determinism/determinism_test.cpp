@@ -15,7 +15,7 @@
 #include <map>
 #include <string>
 
-namespace gyre {
+namespace gyre::determinism_test {
 namespace {
 
 using scenes::kHashEvery;
@@ -251,4 +251,4 @@ TEST(WorkerCount, MayChangeMidRun) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::determinism_test

@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace gyre {
+namespace gyre::motion_settings_test {
 namespace {
 
 constexpr int kSteps = 40, kMiddle = 21;
@@ -118,4 +118,4 @@ INSTANTIATE_TEST_SUITE_P(All, MotionSettings,
                          testing::Range(0, 2 * kIntegratorKindCount * kTimeSteppingCount));
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::motion_settings_test

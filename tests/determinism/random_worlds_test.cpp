@@ -13,7 +13,7 @@
 #include <cfenv>
 #include <string>
 
-namespace gyre {
+namespace gyre::random_worlds_test {
 namespace {
 
 using scenes::Random;
@@ -349,4 +349,4 @@ TEST_P(LongRandomWorlds, AreTheSameInEveryWay) {
 INSTANTIATE_TEST_SUITE_P(LongNumbers, LongRandomWorlds, testing::Range(100, 500, 10));
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::random_worlds_test

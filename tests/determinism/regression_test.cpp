@@ -7,7 +7,7 @@
 
 #include <cfenv>
 
-namespace gyre {
+namespace gyre::regression_test {
 namespace {
 
 using scenes::add_fixed;
@@ -182,4 +182,4 @@ TEST(HostRounding, DoesNotShow) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::regression_test

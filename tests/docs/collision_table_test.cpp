@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::collision_table_test {
 namespace {
 
 struct Named {
@@ -190,4 +190,4 @@ TEST(CollisionTable, IsWhatTheCodeDoes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::collision_table_test

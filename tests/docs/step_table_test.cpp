@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::step_table_test {
 namespace {
 
 std::string source_path(const std::string& path) { return std::string(GYRE_SOURCE_DIR) + "/" + path; }
@@ -102,4 +102,4 @@ TEST(Documents, HaveNoDeadLinks) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::step_table_test

@@ -10,7 +10,7 @@
 #include <functional>
 #include <vector>
 
-namespace gyre::kit {
+namespace gyre::kit::character_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -584,4 +584,4 @@ TEST(CharacterBody, JumpsFromWhereItStandsOnly) {
 }
 
 }  // namespace
-}  // namespace gyre::kit
+}  // namespace gyre::kit::character_test

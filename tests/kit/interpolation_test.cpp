@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace gyre::kit {
+namespace gyre::kit::interpolation_test {
 namespace {
 
 TEST(FixedTimestep, StepsFollowTheClock) {
@@ -52,4 +52,4 @@ TEST(Interpolation, LiesBetweenTheLastTwoSteps) {
 }
 
 }  // namespace
-}  // namespace gyre::kit
+}  // namespace gyre::kit::interpolation_test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre::kit {
+namespace gyre::kit::ragdoll_drives_test {
 namespace {
 
 using namespace ragdoll_test;
@@ -230,4 +230,4 @@ TEST(Ragdoll, BonesAreDrivenEachInItsOwnWay) {
 }
 
 }  // namespace
-}  // namespace gyre::kit
+}  // namespace gyre::kit::ragdoll_drives_test

@@ -1,7 +1,7 @@
 // A heap of ragdolls among other bodies: how its bodies are moved (dynamics/fused_stages) shows in no bit.
 #include "ragdoll_scenes.h"
 
-namespace gyre::kit {
+namespace gyre::kit::ragdoll_heap_test {
 namespace {
 
 using namespace ragdoll_test;
@@ -99,4 +99,4 @@ std::vector<float> on_a_swing(bool slack, int threads, int width) {
 TEST(RagdollHeap, HangsOnWhatMovesByItselfAlike) { expect_the_same(on_a_swing); }
 
 }  // namespace
-}  // namespace gyre::kit
+}  // namespace gyre::kit::ragdoll_heap_test

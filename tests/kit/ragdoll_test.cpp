@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre::kit {
+namespace gyre::kit::ragdoll_test {
 namespace {
 
 using namespace ragdoll_test;
@@ -416,4 +416,4 @@ TEST(Ragdoll, FallsAsleep) {
 }
 
 }  // namespace
-}  // namespace gyre::kit
+}  // namespace gyre::kit::ragdoll_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre::kit {
+namespace gyre::kit::ragdolls_on_stairs_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -173,4 +173,4 @@ TEST(RagdollsOnStairs, TheSceneIsWhatTheExampleWrites) {
 }
 
 }  // namespace
-}  // namespace gyre::kit
+}  // namespace gyre::kit::ragdolls_on_stairs_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-namespace gyre::kit {
+namespace gyre::kit::skeleton_map_test {
 namespace {
 
 float random_in(std::mt19937& random, float low, float high) {
@@ -211,4 +211,4 @@ TEST(SkeletonMap, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace gyre::kit
+}  // namespace gyre::kit::skeleton_map_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace gyre::kit {
+namespace gyre::kit::vehicle_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -479,4 +479,4 @@ TEST(Vehicle, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace gyre::kit
+}  // namespace gyre::kit::vehicle_test

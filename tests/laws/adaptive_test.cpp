@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace gyre::laws {
+namespace gyre::laws::adaptive_test {
 namespace {
 
 World adaptive(IntegratorKind integrator = IntegratorKind::semi_implicit_euler,
@@ -379,4 +379,4 @@ TEST(ErrorControl, ABlowIsToldToBeLessExact) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::adaptive_test

@@ -1,7 +1,7 @@
 // Arms of hinges, and of joints that lanes do not have, which motors or limits hold: what they hold, how still, and what they cannot.
 #include "laws/assembly.h"
 
-namespace gyre::laws {
+namespace gyre::laws::arm_test {
 namespace {
 
 // An arm of six links of 1 m and 40 kg, level, that gravity pulls down.
@@ -175,4 +175,4 @@ TEST(Arm, IsTurnedAtTheSpeedOfItsMotor) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::arm_test

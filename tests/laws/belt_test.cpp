@@ -3,7 +3,7 @@
 
 #include <gyre/replay.h>
 
-namespace gyre::laws {
+namespace gyre::laws::belt_test {
 namespace {
 
 constexpr std::uint16_t kBelt = 7;
@@ -217,4 +217,4 @@ TEST(SurfaceRules, AreRefusedWhenTheyCannotBe) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::belt_test

@@ -2,7 +2,7 @@
 // stages the ground takes away what a joint seems to have given it, and this must not be made good by what swings on top.
 #include "laws/assembly.h"
 
-namespace gyre::laws {
+namespace gyre::laws::borne_linkages_test {
 namespace {
 
 // How far out the last body was at most in the last second of four, over the second before.
@@ -72,4 +72,4 @@ TEST(BorneLinkages, ASeesawTipsOverToItsHeavySide) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::borne_linkages_test

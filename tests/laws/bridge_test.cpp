@@ -1,7 +1,7 @@
 // Bridges of planks on hinges or pairs of balls: straight or slack, alone or under boxes.
 #include "laws/assembly.h"
 
-namespace gyre::laws {
+namespace gyre::laws::bridge_test {
 namespace {
 
 struct BridgeCase {
@@ -102,4 +102,4 @@ TEST(LongBridge, OfTwoHundredPlanksCarriesBoxesForAMinute) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::bridge_test

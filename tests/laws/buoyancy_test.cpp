@@ -4,7 +4,7 @@
 // 1e-4 for everything here; draughts are off by rounding alone, once drag has taken the motion away.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::buoyancy_test {
 namespace {
 
 constexpr double kWater = 1000.0;
@@ -245,4 +245,4 @@ TEST(Buoyancy, TheSameBodyInPartsOrAsAHullFloatsAlike) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::buoyancy_test

@@ -3,7 +3,7 @@
 // finite-time singularity", 2000 (the rate of a disc about to rest).
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::coin_test {
 namespace {
 
 struct Circle {
@@ -109,4 +109,4 @@ TEST(Coin, WhirlsFasterAsItSinks) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::coin_test

@@ -1,7 +1,7 @@
 // Fast bodies and thin ones, and sliding over meshes and over boxes laid flush: nothing passes through, nothing bumps.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::continuous_test {
 namespace {
 
 int through_wall(const AnyShape& bullet, float speed, float thickness, BodyType wall_type, bool continuous) {
@@ -450,4 +450,4 @@ TEST(SleepTest, OnTwoTrianglesEndsInSleep) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::continuous_test

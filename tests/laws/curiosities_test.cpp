@@ -2,7 +2,7 @@
 // Source: J. Jellett, "A Treatise on the Theory of Friction", 1872.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::curiosities_test {
 namespace {
 
 TEST(TippeTop, TurnsOverAndKeepsJellettsInvariant) {
@@ -63,4 +63,4 @@ TEST(Ellipsoid, SpinningOnASlopeDoesNotSpeedUp) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::curiosities_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace gyre::laws {
+namespace gyre::laws::far_and_long_test {
 namespace {
 
 struct Draw {
@@ -212,4 +212,4 @@ TEST(StepsOfAnyLength, AVeryShortOneDoesNotThrowBodies) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::far_and_long_test

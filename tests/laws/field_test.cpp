@@ -4,7 +4,7 @@
 #include <complex>
 #include <numeric>
 
-namespace gyre::laws {
+namespace gyre::laws::field_test {
 namespace {
 
 BodyId add_ball(World& world, float radius, float density, DVec3 place, Vec3 velocity = {}) {
@@ -325,4 +325,4 @@ TEST(Explosion, WallsHide) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::field_test

@@ -5,7 +5,7 @@
 // E. Torricelli, 1644; L. Rosenhead, "The Spread of Vorticity in the Wake Behind a Cylinder", 1930.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::fluid_test {
 namespace {
 
 constexpr double kG = kGravity;
@@ -452,4 +452,4 @@ TEST(Liquid, TipsABlockOnlyWhereItMust) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::fluid_test

@@ -2,7 +2,7 @@
 // Source: any textbook of mechanics; the discretisation error of semi-implicit Euler is derived beside its test.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::free_flight_test {
 namespace {
 
 TEST(FreeFall, IsTheExactParabolaOrThatOfTheIntegrator) {
@@ -199,4 +199,4 @@ TEST(Kinematic, MovesWhereItIsTold) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::free_flight_test

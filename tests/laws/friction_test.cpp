@@ -2,7 +2,7 @@
 // Source: Coulomb's law; the torque of a uniformly pressed square is the integral of the distance from its centre.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::friction_test {
 namespace {
 
 const float kFrictions[] = {0.1f, 0.25f, 0.5f, 0.8f, 1.0f};
@@ -200,4 +200,4 @@ TEST(Friction, DoesNotHeat) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::friction_test

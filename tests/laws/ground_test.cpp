@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-namespace gyre::laws {
+namespace gyre::laws::ground_test {
 namespace {
 
 // A patch of ground of so many cells, from a corner, two triangles each.
@@ -227,4 +227,4 @@ TEST(Ground, BoxesComeToRestOnRoughGround) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::ground_test

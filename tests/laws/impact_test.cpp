@@ -3,7 +3,7 @@
 #include "laws/kit.h"
 #include "random.h"
 
-namespace gyre::laws {
+namespace gyre::laws::impact_test {
 namespace {
 
 // Highest point of a ball of radius 0.1 after its first bounce from `height`, as seen between steps.
@@ -195,4 +195,4 @@ TEST(Bones, ThrownOnTheGroundGainNoEnergy) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::impact_test

@@ -4,7 +4,7 @@
 
 #include "../../apps/gyre/integrator_trials.h"
 
-namespace gyre::laws {
+namespace gyre::laws::integrators_test {
 namespace {
 
 World trial_world(IntegratorKind kind, Vec3 gravity, int substeps) {
@@ -255,4 +255,4 @@ TEST(ErrorControl, KeepsItsToleranceWhateverTheIntegrator) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::integrators_test

@@ -2,7 +2,7 @@
 // And what must improve: the error with the step.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::invariance_test {
 namespace {
 
 // How a scene is placed; the same scene in every frame must show the same motion in that frame.
@@ -247,4 +247,4 @@ TEST(Reversal, OfAFrictionlessElasticGasReturns) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::invariance_test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace gyre {
+namespace gyre::joint_changes_test {
 namespace {
 
 using laws::definition_of;
@@ -207,4 +207,4 @@ TEST(JointChanges, StaysClosedWhereASweepStopsABody) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::joint_changes_test

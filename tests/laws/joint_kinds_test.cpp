@@ -2,7 +2,7 @@
 #include "laws/any_joint.h"
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::joint_kinds_test {
 namespace {
 
 // --------------------------------------------------------------------------------------------------------------- cones
@@ -425,4 +425,4 @@ TEST(PoseMotor, TurnsNoHarderThanItMay) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::joint_kinds_test

@@ -3,7 +3,7 @@
 #include "laws/any_joint.h"
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::joint_machines_test {
 namespace {
 
 // a rotor in two gimbals. A torque about the outer axis turns the inner one at torque / (I3 w).
@@ -324,4 +324,4 @@ TEST(Articulations, OfOtherKindsKeepEnergyAndMomentum) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::joint_machines_test

@@ -2,7 +2,7 @@
 // droop, ropes that give, motors that slam into limits, chains that go wild.
 #include "laws/assembly.h"
 
-namespace gyre::laws {
+namespace gyre::laws::joint_reports_test {
 namespace {
 
 // Row 38: a frame of sixty welded boxes is struck by a ball of 1 m at 100 m/s. Nothing explodes: no joint opens for good, and there is
@@ -292,4 +292,4 @@ TEST(Rope, SlipsOverADrumAsEulerAndEytelweinSay) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::joint_reports_test

@@ -4,7 +4,7 @@
 
 #include <gyre/replay.h>
 
-namespace gyre::laws {
+namespace gyre::laws::joint_states_test {
 namespace {
 
 TEST(EveryKindOfJoint, BreaksAboveItsForceAndSaysSo) {
@@ -205,4 +205,4 @@ TEST(EveryKindOfJoint, IsInSnapshotsAndRecordings) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::joint_states_test

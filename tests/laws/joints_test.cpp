@@ -3,7 +3,7 @@
 #include "laws/any_joint.h"
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::joints_test {
 namespace {
 
 // ---------------------------------------------------------------------------------------------------- frees and holds
@@ -366,4 +366,4 @@ TEST(EveryAxis, AddsSpringAndMotor) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::joints_test

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace gyre::laws {
+namespace gyre::laws::linkage_test {
 namespace {
 
 // ------------------------------------------------------------------------------------------------------------- chains
@@ -439,4 +439,4 @@ TEST(Hub, OfManySpokesHolds) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::linkage_test

@@ -1,7 +1,7 @@
 // What stands by leaning: card houses, towers of planks, arches of dry stones.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::masonry_test {
 namespace {
 
 // How far the farthest of the bodies is from where it was.
@@ -172,4 +172,4 @@ TEST(DryArch, StandsDownToMilankovitchsThickness) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::masonry_test

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string>
 
-namespace gyre::laws {
+namespace gyre::laws::mass_test {
 namespace {
 
 struct TestMesh {
@@ -201,4 +201,4 @@ TEST(MassRow, OfImpossibleTensorsIsRefusedWithTheAxis) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::mass_test

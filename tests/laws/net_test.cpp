@@ -1,7 +1,7 @@
 // Nets: loops of joints, few of them solved directly, many swept.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::net_test {
 namespace {
 
 enum class Tie : std::uint8_t { ball, rod };
@@ -157,4 +157,4 @@ TEST(Net, ThatFliesKeepsItsMomentaWhereItIsSlowed) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::net_test

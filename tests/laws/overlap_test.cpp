@@ -1,7 +1,7 @@
 // What was put into each other parts: by places, and by no more speed than springs may give.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::overlap_test {
 namespace {
 
 // The fastest that any of the bodies ever was, over a second; and how they lie then.
@@ -42,4 +42,4 @@ TEST(Overlap, IsTakenBackWithLittleSpeed) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::overlap_test

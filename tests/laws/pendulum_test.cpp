@@ -3,7 +3,7 @@
 #include "laws/any_joint.h"
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::pendulum_test {
 namespace {
 
 // The period of a pendulum of reduced length 1 m swinging to `angle` on either side.
@@ -175,4 +175,4 @@ TEST(FixedJoint, CarriesForceAndMomentOfACantilever) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::pendulum_test

@@ -3,7 +3,7 @@
 // D. Stewart, "Rigid-body dynamics with friction and impact", 2000.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::rattleback_test {
 namespace {
 
 // The underside of an ellipsoid of semi-axes 1, 0.15 (up), 0.2 as a hull whose corners lie close where it rocks.
@@ -120,4 +120,4 @@ TEST(PainleveRod, NeitherJamsNorGainsEnergy) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::rattleback_test

@@ -2,7 +2,7 @@
 // Sources: E. Routh, "Dynamics of a System of Rigid Bodies", part II (sphere on a turning plane); SimBenchmark ("666").
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::rolling_on_test {
 namespace {
 
 // The rate at which the velocity of a solid ball turns on a table that turns at `spin`, over three orbits.
@@ -116,4 +116,4 @@ TEST(SixSixSix, ElasticBallsKeepTheirEnergy) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::rolling_on_test

@@ -1,7 +1,7 @@
 // Rolling without and with slipping, on planes and meshes. Closed forms: a = g sin / (1 + k), k = I / (m R^2).
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::rolling_test {
 namespace {
 
 struct Roller {
@@ -164,4 +164,4 @@ TEST(Rolling, ResistanceStopsASphereWhereTheEnergyIsSpent) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::rolling_test

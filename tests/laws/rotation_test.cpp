@@ -2,7 +2,7 @@
 // Sources: L. Landau, E. Lifshitz, "Mechanics", sections 33-37; the reference integrator is RK4 in double with tiny steps.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::rotation_test {
 namespace {
 
 // Body-frame angular velocity after `seconds`, by Runge-Kutta 4 at 20 kHz.
@@ -189,4 +189,4 @@ TEST(HeavyTop, PrecessesAtTheSlowRootAndKeepsItsTilt) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::rotation_test

@@ -1,7 +1,7 @@
 // Heaps come to rest: planks, cylinders, cones and what bounces do not tremble for ever.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::settling_test {
 namespace {
 
 AnyShape plank_hull() {
@@ -109,4 +109,4 @@ TEST(Planks, ThatCrossLieStill) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::settling_test

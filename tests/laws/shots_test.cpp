@@ -3,7 +3,7 @@
 // through, and what glances off keeps its way along the wall.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::shots_test {
 namespace {
 
 // The same numbers everywhere. (D. Knuth, MMIX.)
@@ -428,4 +428,4 @@ TEST(FastBodies, DoNotPassAStack) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::shots_test

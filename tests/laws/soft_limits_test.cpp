@@ -11,7 +11,7 @@
 #include <cmath>
 #include <map>
 
-namespace gyre {
+namespace gyre::soft_limits_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -497,4 +497,4 @@ TEST(SoftTear, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::soft_limits_test

@@ -3,7 +3,7 @@
 // solved by shooting, for a cantilever under its own weight; S. Timoshenko, J. Goodier, "Theory of Elasticity" (bars).
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::soft_test {
 namespace {
 
 constexpr double kG = kGravity;
@@ -222,4 +222,4 @@ TEST(Solid, ABarRingsAndDies) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::soft_test

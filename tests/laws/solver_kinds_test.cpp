@@ -4,7 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 
-namespace gyre::laws {
+namespace gyre::laws::solver_kinds_test {
 namespace {
 
 struct Way {
@@ -405,4 +405,4 @@ TEST(Solvers, SettingsThatCannotBeAreRefused) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::solver_kinds_test

@@ -1,7 +1,7 @@
 // Springs: frequency, damping, sag, stiffness beyond the step, and the modes of two masses. Closed forms.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::spring_test {
 namespace {
 
 // A mass on a spring of rest length 2 m along x from the origin, pulled 0.5 m.
@@ -174,4 +174,4 @@ TEST(Rope, ActsOnlyWhenTaut) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::spring_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace gyre::laws {
+namespace gyre::laws::sprung_linkages_test {
 namespace {
 
 struct Tie {
@@ -161,4 +161,4 @@ TEST(SprungLinkages, SwingWithAllThatHangsOnThem) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::sprung_linkages_test

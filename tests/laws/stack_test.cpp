@@ -2,7 +2,7 @@
 // Sources: statics; the similarity of dominoes: C. McLachlan et al., "Falling dominoes", 1983.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::stack_test {
 namespace {
 
 std::vector<BodyId> tower(World& world, int n, float edge = 1.0f, DVec3 foot = {}) {
@@ -284,4 +284,4 @@ TEST(Overlap, OfAQuarterComesApartGently) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::stack_test

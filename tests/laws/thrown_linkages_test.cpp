@@ -8,7 +8,7 @@
 #include <cmath>
 #include <span>
 
-namespace gyre::laws {
+namespace gyre::laws::thrown_linkages_test {
 namespace {
 
 struct Throw {
@@ -336,4 +336,4 @@ TEST(ThrownLinkages, CloseAtRestWithALightLink) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::thrown_linkages_test

@@ -4,7 +4,7 @@
 // k = I / (m R^2); after "Dynamics of a System of Rigid Bodies" by E. Routh, part I (impulses).
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::valley_test {
 namespace {
 
 constexpr double kSolid = 0.4;
@@ -131,4 +131,4 @@ TEST(Valley, WhatABallRollsBesideDoesNotBrakeIt) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::valley_test

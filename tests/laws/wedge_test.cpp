@@ -4,7 +4,7 @@
 
 #include "random.h"
 
-namespace gyre::laws {
+namespace gyre::laws::wedge_test {
 namespace {
 
 // A prism along z: (x, y) corners.
@@ -91,4 +91,4 @@ TEST(Wedge, DiscsInAGrooveAreNotPressedByNothing) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::wedge_test

@@ -2,7 +2,7 @@
 // no row of a joint sees; all the same the joints must hold, and energy must not come from nowhere.
 #include "laws/assembly.h"
 
-namespace gyre::laws {
+namespace gyre::laws::whip_test {
 namespace {
 
 struct Whip {
@@ -56,4 +56,4 @@ TEST(Whip, OfAnArmHoldsTogether) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::whip_test

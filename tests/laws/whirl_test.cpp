@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace gyre::laws {
+namespace gyre::laws::whirl_test {
 namespace {
 
 constexpr std::array<const char*, 6> kKinds{"capsule", "box", "rounded box", "cylinder", "cone", "hull"};
@@ -82,4 +82,4 @@ TEST(Whirl, WhatFallsAndTumblesGainsNothing) { expect_no_gain(3.0f, 150.0f, 0.05
 TEST(Whirl, WhatTurnsByRadiansInAStepGainsNothing) { expect_no_gain(80.0f, 200.0f, 0.05); }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::whirl_test

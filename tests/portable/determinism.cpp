@@ -1,7 +1,8 @@
 // Prints the state's hash of every scene and of some random worlds every 50 steps, the hash of each scene's pose track, and
 // nothing else: whatever compiler, optimisation and processor this is built for, and whatever threads and SIMD width it is
-// given, the output must be determinism/golden.txt. With numbers, it prints those random worlds instead.
-// Usage: determinism [threads] [simd width] [first random world] [last random world]
+// given, the output must be determinism/golden.txt. With numbers, it prints those random worlds instead. With --steps, scenes
+// end sooner, for builds whose steps are slow.
+// Usage: determinism [--steps N] [threads] [simd width] [first random world] [last random world]
 #include "../determinism/random_world.h"
 #include "../determinism/scenes.h"
 
@@ -10,6 +11,7 @@
 #include <cinttypes>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 namespace {
 
@@ -31,22 +33,22 @@ struct HashSink final : ByteSink {
 };
 
 // The hash of a recording's bytes, by when it is whole.
-void print_track(const char* name, Recorder& recorder, const HashSink& sink) {
-  if (recorder.finish()) std::printf("%s_track %d %016" PRIx64 "\n", name, scenes::kSteps, sink.hash);
+void print_track(const char* name, Recorder& recorder, const HashSink& sink, int steps) {
+  if (recorder.finish()) std::printf("%s_track %d %016" PRIx64 "\n", name, steps, sink.hash);
 }
 
-bool print_scene(const scenes::Scene& scene, const WorldDef& def) {
+bool print_scene(const scenes::Scene& scene, const WorldDef& def, int steps) {
   Result<World> made = World::create(def);
   if (!made) return false;
   World world = *std::move(made);
   scene.build(world);
   HashSink sink;
   Recorder recorder(world, sink, {.commands = false});
-  for (int step = 0; step < scenes::kSteps; ++step) {
+  for (int step = 0; step < steps; ++step) {
     scenes::step_scene(scene, world, step);
     print_hash(scene.name, step + 1, world);
   }
-  print_track(scene.name, recorder, sink);
+  print_track(scene.name, recorder, sink, steps);
   return true;
 }
 
@@ -71,6 +73,12 @@ bool print_random_world(int number, const WorldDef& computed) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  int steps = scenes::kSteps;
+  if (argc > 2 && std::strcmp(argv[1], "--steps") == 0) {
+    steps = std::atoi(argv[2]);
+    argc -= 2;
+    argv += 2;
+  }
   const auto argument = [&](int place, int otherwise) {
     return argc > place ? std::atoi(argv[place]) : otherwise;
   };
@@ -79,7 +87,7 @@ int main(int argc, char** argv) {
   def.simd_width = argument(2, 0);
   if (argc <= 3) {
     for (const scenes::Scene& scene : scenes::kScenes) {
-      if (!print_scene(scene, def)) return 1;
+      if (!print_scene(scene, def, steps)) return 1;
     }
   }
   const int first = argument(3, 0);

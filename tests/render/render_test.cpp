@@ -20,7 +20,7 @@
 #include <png.h>
 #endif
 
-namespace gyre {
+namespace gyre::render_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -505,4 +505,4 @@ TEST_F(Render, EverySceneOfTheRepositoryIsAPicture) {
 #endif
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::render_test

@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-namespace gyre::laws {
+namespace gyre::laws::crowd_test {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -234,4 +234,4 @@ TEST(Scale, StacksFarAwaySleepInTheSameStep) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::crowd_test

@@ -2,7 +2,7 @@
 // threads and another width.
 #include "laws/kit.h"
 
-namespace gyre::laws {
+namespace gyre::laws::fields_test {
 namespace {
 
 class Dice {
@@ -99,4 +99,4 @@ TEST(FieldStress, NoBodyIsLostWhateverTheNumbers) {
 }
 
 }  // namespace
-}  // namespace gyre::laws
+}  // namespace gyre::laws::fields_test

@@ -133,6 +133,13 @@ class Tree(unittest.TestCase):
                 code_out, output = self.run_check("words")
                 self.assertEqual(code_out, 0, output)
 
+    def test_test_namespaces(self):
+        self.write("src/solver/row_test.cpp", "namespace gyre {\n}  // namespace gyre\n")
+        self.assert_fails("words", "row_test.cpp: no namespace gyre::row_test")
+        self.write("src/solver/row_test.cpp", "namespace gyre::row_test {\n}  // namespace gyre::row_test\n")
+        code_out, output = self.run_check("words")
+        self.assertEqual(code_out, 0, output)
+
     def test_size(self):
         self.write("src/solver/rows/row.cpp", "\n" * 601)
         self.assert_fails("size", "601 lines")

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::camera_test {
 namespace {
 
 struct Clip {
@@ -74,4 +74,4 @@ TEST(Camera, AShadowMapHoldsItsBox) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::camera_test

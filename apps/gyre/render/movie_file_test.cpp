@@ -14,7 +14,7 @@
 #include <cstring>
 #include <set>
 
-namespace gyre {
+namespace gyre::movie_file_test {
 namespace {
 
 Picture gradient(int width, int height, int blue) {
@@ -208,4 +208,4 @@ TEST(LightSamples, AreEvenlySpread) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::movie_file_test

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace gyre {
+namespace gyre::shape_mesh_test {
 namespace {
 
 double volume_of(const ShapeMesh& mesh) {
@@ -167,4 +167,4 @@ TEST(Tube, ASlackRopeHasItsLengthAndATautOneIsStraight) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::shape_mesh_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::smoke_test {
 namespace {
 
 float area_of(const std::vector<Vec3>& triangles) {
@@ -73,4 +73,4 @@ TEST(Smoke, ItsShadowLiesAwayFromTheSun) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::smoke_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::soft_mesh_test {
 namespace {
 
 // A sheet of n by n cells of 0.1 m, bent about z to the given radius; flat if that is 0. Its upper side is outside.
@@ -133,4 +133,4 @@ TEST(SoftMesh, ASolidKeepsItsSharpEdges) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::soft_mesh_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace gyre {
+namespace gyre::arena_test {
 namespace {
 
 TEST(Arena, ArraysAreAlignedAndApart) {
@@ -121,4 +121,4 @@ TEST(Arena, UnwrittenFloatsShowInDebugBuilds) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::arena_test

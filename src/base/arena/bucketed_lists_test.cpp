@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace gyre {
+namespace gyre::bucketed_lists_test {
 namespace {
 
 void fill(BucketedLists& lists, std::span<const std::uint32_t> list_of, std::span<std::uint32_t> room,
@@ -50,4 +50,4 @@ TEST(BucketedLists, MayBeNone) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::bucketed_lists_test

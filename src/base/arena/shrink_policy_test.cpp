@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::shrink_policy_test {
 namespace {
 
 constexpr int kSteps = 63;
@@ -37,4 +37,4 @@ TEST(ShrinkPolicy, TrimsAnArray) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::shrink_policy_test

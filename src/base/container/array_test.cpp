@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::array_test {
 namespace {
 
 std::size_t length(std::span<const int> items) { return items.size(); }
@@ -237,4 +237,4 @@ TEST(Array, IndexOutsideIsNoticed) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::array_test

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace gyre {
+namespace gyre::bitset_test {
 namespace {
 
 std::vector<std::size_t> list(const Bitset& bits) {
@@ -103,4 +103,4 @@ TEST(Bitset, BehavesLikeBools) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::bitset_test

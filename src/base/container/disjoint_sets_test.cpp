@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace gyre {
+namespace gyre::disjoint_sets_test {
 namespace {
 
 // By member: the lowest that hangs together with it.
@@ -67,4 +67,4 @@ TEST(DisjointSets, LeaveOutWhatIsNoMember) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::disjoint_sets_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace gyre {
+namespace gyre::flat_map_test {
 namespace {
 
 TEST(FlatMap, Empty) {
@@ -110,4 +110,4 @@ TEST(FlatMap, BehavesLikeMap) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::flat_map_test

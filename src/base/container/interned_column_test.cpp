@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace gyre {
+namespace gyre::interned_column_test {
 namespace {
 
 struct Record {
@@ -51,4 +51,4 @@ TEST(InternedColumn, EqualRecordsCostFourBytes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::interned_column_test

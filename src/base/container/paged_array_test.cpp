@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace gyre {
+namespace gyre::paged_array_test {
 namespace {
 
 struct Record {
@@ -56,4 +56,4 @@ TEST(PagedArray, GrowsWithoutMovingOrWaste) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::paged_array_test

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-namespace gyre {
+namespace gyre::slot_map_test {
 namespace {
 
 TEST(IdPool, LowestFreeSlotFirst) {
@@ -99,4 +99,4 @@ TEST(IdPool, RefusesDamagedState) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::slot_map_test

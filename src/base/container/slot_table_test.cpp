@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace gyre {
+namespace gyre::slot_table_test {
 namespace {
 
 TEST(SlotTable, AgreesWithAMap) {
@@ -54,4 +54,4 @@ TEST(SlotTable, ASlotCostsFewBytes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::slot_table_test

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace gyre {
+namespace gyre::small_array_test {
 namespace {
 
 TEST(SmallArray, AgreesWithAVector) {
@@ -55,4 +55,4 @@ TEST(SmallArray, AllocatesOnlyBeyondItsRoom) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::small_array_test

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::sort_test {
 namespace {
 
 using Keys = std::vector<std::uint64_t>;
@@ -106,4 +106,4 @@ TEST(Sort, MergeWithoutScratchForAFewItems) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::sort_test

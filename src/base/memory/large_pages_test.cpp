@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::large_pages_test {
 namespace {
 
 class LargePages : public testing::Test {
@@ -139,4 +139,4 @@ TEST_F(LargePages, TheSystemIsAskedForThem) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::large_pages_test

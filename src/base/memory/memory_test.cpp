@@ -11,7 +11,7 @@
 #include <cstring>
 #include <vector>
 
-namespace gyre {
+namespace gyre::memory_test {
 namespace {
 
 TEST(Memory, AlignedAndCounted) {
@@ -210,4 +210,4 @@ TEST(MemoryDeath, RunningOutEndsTheProgram) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::memory_test

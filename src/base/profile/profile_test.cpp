@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-namespace gyre {
+namespace gyre::profile_test {
 namespace {
 
 constexpr const char* kStages[] = {"collide", "solve"};
@@ -62,4 +62,4 @@ TEST(StageProfile, SwitchedOnInsideAZone) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::profile_test

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace gyre {
+namespace gyre::box_walk_test {
 namespace {
 
 using testing_random::Random;
@@ -101,4 +101,4 @@ TEST(BoxWalk, FindsAllOfFullNodes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::box_walk_test

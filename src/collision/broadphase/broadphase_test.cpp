@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::broadphase_test {
 namespace {
 
 using testing_random::Random;
@@ -485,4 +485,4 @@ TEST(BoxTree, PartitionPutsTheLowerOnesFirst) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::broadphase_test

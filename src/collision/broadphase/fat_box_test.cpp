@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace gyre {
+namespace gyre::fat_box_test {
 namespace {
 
 bool is_inside(const WorldBox& inner, const Aabb& box) {
@@ -108,4 +108,4 @@ TEST(FatBox, EndsWhereFloatsEnd) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::fat_box_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::collide_block_test {
 namespace {
 
 using testing_random::Random;
@@ -35,4 +35,4 @@ TEST(CollideBlock, MarksContactsWithStaticShapes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::collide_block_test

@@ -11,7 +11,7 @@
 
 #include <cstring>
 
-namespace gyre {
+namespace gyre::collide_test {
 namespace {
 
 using testing_random::Random;
@@ -576,4 +576,4 @@ TEST(Collide, SmallerSizeIgnoresMissingSizes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::collide_test

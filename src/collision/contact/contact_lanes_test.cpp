@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::contact_lanes_test {
 namespace {
 
 using testing_random::Random;
@@ -170,4 +170,4 @@ TEST(Closing, PairsThatMeetInAStepHavePointsBefore) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::contact_lanes_test

@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-namespace gyre {
+namespace gyre::contact_store_test {
 namespace {
 
 using testing_random::Random;
@@ -272,4 +272,4 @@ TEST(PairUpdate, RemovesAllContactsOfAShape) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::contact_store_test

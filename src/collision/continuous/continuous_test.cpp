@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace gyre {
+namespace gyre::continuous_test {
 namespace {
 
 using test::Random;
@@ -507,4 +507,4 @@ TEST(Continuous, FastIsRelativeToTheInnerRadius) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::continuous_test

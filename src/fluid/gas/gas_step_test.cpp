@@ -7,7 +7,7 @@
 
 #include <cstring>
 
-namespace gyre {
+namespace gyre::gas_step_test {
 namespace {
 
 using namespace gas_test;
@@ -381,4 +381,4 @@ TEST(GasBits, every_width_and_number_of_threads_gives_the_same_bits) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::gas_step_test

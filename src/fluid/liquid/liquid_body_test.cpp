@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::liquid_body_test {
 namespace {
 
 using namespace liquid_test;
@@ -172,4 +172,4 @@ TEST(LiquidBody, a_wall_one_cell_thick_that_moves_lets_nothing_through) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::liquid_body_test

@@ -7,7 +7,7 @@
 
 #include <cstring>
 
-namespace gyre {
+namespace gyre::liquid_step_test {
 namespace {
 
 using namespace liquid_test;
@@ -274,4 +274,4 @@ TEST(LiquidBits, numbers_that_are_none_are_taken_out) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::liquid_step_test

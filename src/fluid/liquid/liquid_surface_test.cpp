@@ -7,7 +7,7 @@
 
 #include <map>
 
-namespace gyre {
+namespace gyre::liquid_surface_test {
 namespace {
 
 using namespace liquid_test;
@@ -41,4 +41,4 @@ TEST(LiquidSurface, the_mesh_is_closed_and_holds_the_volume) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::liquid_surface_test

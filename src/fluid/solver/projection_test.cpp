@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::projection_test {
 namespace {
 
 using namespace gas_test;
@@ -153,4 +153,4 @@ TEST(GasSolid, a_ball_at_rest_in_gas_at_rest_changes_nothing) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::projection_test

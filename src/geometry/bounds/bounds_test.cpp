@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::bounds_test {
 namespace {
 
 using testing_random::Random;
@@ -456,4 +456,4 @@ TEST(Bounds, MoreDirectionsAreTighter) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::bounds_test

@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-namespace gyre {
+namespace gyre::decomposition_test {
 namespace {
 
 struct Random {
@@ -557,4 +557,4 @@ TEST(Decomposition, BadInputIsRefusedWithItsReason) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::decomposition_test

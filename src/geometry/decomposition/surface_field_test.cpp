@@ -8,7 +8,7 @@
 
 #include <random>
 
-namespace gyre {
+namespace gyre::surface_field_test {
 namespace {
 
 struct Plain {
@@ -132,4 +132,4 @@ TEST(SurfaceField, WindingCountsHowOftenAPointIsInside) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::surface_field_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::closest_test {
 namespace {
 
 using oracle::Random;
@@ -135,4 +135,4 @@ TEST(Closest, ParallelSegmentsTakeTheStretchNearestToTheStart) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::closest_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::gjk_proof_test {
 namespace {
 
 using namespace oracle;
@@ -133,4 +133,4 @@ TEST(Gjk, NearACylinderTheNormalKeepsItsSide) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::gjk_proof_test

@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace gyre {
+namespace gyre::gjk_test {
 namespace {
 
 using namespace oracle;
@@ -207,4 +207,4 @@ TEST(Gjk, ScalingByPowersOfTwoScalesEveryBit) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::gjk_test

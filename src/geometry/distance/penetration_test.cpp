@@ -8,7 +8,7 @@
 
 #include <string>
 
-namespace gyre {
+namespace gyre::penetration_test {
 namespace {
 
 using namespace oracle;
@@ -113,4 +113,4 @@ TEST(Penetration, DegenerateCoresStillHaveAWayOut) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::penetration_test

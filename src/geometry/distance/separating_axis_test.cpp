@@ -7,7 +7,7 @@
 
 #include <map>
 
-namespace gyre {
+namespace gyre::separating_axis_test {
 namespace {
 
 using namespace oracle;
@@ -180,4 +180,4 @@ TEST(Polytope, LowestAndHighestAlongEqualAPlainSearch) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::separating_axis_test

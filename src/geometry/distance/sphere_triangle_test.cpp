@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::sphere_triangle_test {
 namespace {
 
 // A right triangle in the plane y = 0, its front up.
@@ -105,4 +105,4 @@ TEST(SphereTriangle, IsWhatAMeshOfOneTriangleAnswers) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::sphere_triangle_test

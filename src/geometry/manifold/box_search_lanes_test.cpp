@@ -8,7 +8,7 @@
 
 #include <cstring>
 
-namespace gyre {
+namespace gyre::box_search_lanes_test {
 namespace {
 
 using testing_random::Random;
@@ -93,4 +93,4 @@ TEST(BoxSearchLanes, KnowsNothingOfWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::box_search_lanes_test

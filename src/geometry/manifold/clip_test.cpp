@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-namespace gyre {
+namespace gyre::clip_test {
 namespace {
 
 using namespace oracle;
@@ -270,4 +270,4 @@ TEST(ReducePoints, FewCoincidentAndCollinearPoints) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::clip_test

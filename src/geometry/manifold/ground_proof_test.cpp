@@ -25,7 +25,7 @@
 #include <sstream>
 #include <string>
 
-namespace gyre {
+namespace gyre::ground_proof_test {
 namespace {
 
 using namespace oracle;
@@ -475,4 +475,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, GroundProofOf, testing::ValuesIn(all_pairs()), n
 INSTANTIATE_TEST_SUITE_P(Kinds, LongGroundProofOf, testing::ValuesIn(all_pairs()), name_of);
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::ground_proof_test

@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-namespace gyre {
+namespace gyre::manifold_box_test {
 namespace {
 
 using namespace oracle;
@@ -236,4 +236,4 @@ TEST(ManifoldBox, DegenerateBoxes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::manifold_box_test

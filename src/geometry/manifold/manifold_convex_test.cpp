@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-namespace gyre {
+namespace gyre::manifold_convex_test {
 namespace {
 
 using namespace oracle;
@@ -427,4 +427,4 @@ TEST(ManifoldConvex, TheMethodTableIsSymmetric) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::manifold_convex_test

@@ -7,7 +7,7 @@
 
 #include <set>
 
-namespace gyre {
+namespace gyre::manifold_hull_test {
 namespace {
 
 using namespace oracle;
@@ -131,4 +131,4 @@ TEST(ManifoldHull, TheNormalIsContinuousThroughTouch) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::manifold_hull_test

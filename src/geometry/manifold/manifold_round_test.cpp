@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::manifold_round_test {
 namespace {
 
 using namespace oracle;
@@ -154,4 +154,4 @@ TEST(ManifoldRound, CapsulesEndToEndTouchInOnePoint) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::manifold_round_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::manifold_test {
 namespace {
 
 using namespace oracle;
@@ -108,4 +108,4 @@ TEST(CollideShapes, SwapsAndFlips) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::manifold_test

@@ -20,7 +20,7 @@
 #include <sstream>
 #include <string>
 
-namespace gyre {
+namespace gyre::pair_proof_test {
 namespace {
 
 using namespace oracle;
@@ -289,4 +289,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, PairProof, testing::ValuesIn(all_pairs()), name_
 INSTANTIATE_TEST_SUITE_P(Kinds, LongPairProof, testing::ValuesIn(all_pairs()), name_of);
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::pair_proof_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::cached_triangles_test {
 namespace {
 
 using namespace test;
@@ -95,4 +95,4 @@ TEST(CachedTriangles, ChangeNothingOfALook) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::cached_triangles_test

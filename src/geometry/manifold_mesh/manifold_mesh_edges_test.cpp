@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::manifold_mesh_edges_test {
 namespace {
 
 using namespace test;
@@ -554,4 +554,4 @@ TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::manifold_mesh_edges_test

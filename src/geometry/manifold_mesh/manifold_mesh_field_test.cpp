@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::manifold_mesh_field_test {
 namespace {
 
 using namespace test;
@@ -254,4 +254,4 @@ TEST(CollideRoughGround, NothingIsPushedDownOrFarther) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::manifold_mesh_field_test

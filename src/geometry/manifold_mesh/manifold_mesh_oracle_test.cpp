@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::manifold_mesh_oracle_test {
 namespace {
 
 using namespace test;
@@ -138,4 +138,4 @@ TEST(CollideMeshOracle, FollowingTheContactsLeadsOut) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::manifold_mesh_oracle_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::manifold_mesh_test {
 namespace {
 
 using namespace test;
@@ -272,4 +272,4 @@ TEST(CollideMesh, TheSameQuestionHasTheSameAnswer) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::manifold_mesh_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::mesh_apart_test {
 namespace {
 
 using namespace test;
@@ -68,4 +68,4 @@ TEST(MeshApart, WhatIsApartIsFoundApart) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::mesh_apart_test

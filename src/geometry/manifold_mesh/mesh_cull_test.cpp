@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::mesh_cull_test {
 namespace {
 
 using namespace test;
@@ -147,4 +147,4 @@ TEST(MeshCull, BoxesAreNearToAllKernels) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::mesh_cull_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::mesh_reject_test {
 namespace {
 
 using namespace test;
@@ -65,4 +65,4 @@ TEST(MeshBeside, WhatACapsuleLeavesOutHasNoAllowedDirection) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::mesh_reject_test

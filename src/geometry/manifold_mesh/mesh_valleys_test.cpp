@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::mesh_valleys_test {
 namespace {
 
 using namespace test;
@@ -124,4 +124,4 @@ TEST(MeshValleys, ContactsForetellWhatIsReached) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::mesh_valleys_test

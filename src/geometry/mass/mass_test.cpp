@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::mass_test {
 namespace {
 
 using Points = std::vector<Vec3>;
@@ -493,4 +493,4 @@ TEST(Mass, InertiaThatNoBodyHasIsRefusedWithItsAxis) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::mass_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace gyre {
+namespace gyre::submerged_test {
 namespace {
 
 struct Named {
@@ -216,4 +216,4 @@ TEST(Submerged, RoundShapesAreWithinTheStatedError) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::submerged_test

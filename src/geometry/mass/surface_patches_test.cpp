@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::surface_patches_test {
 namespace {
 
 struct Known {
@@ -96,4 +96,4 @@ TEST(SurfacePatches, OnlyWhatIsBelow) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::surface_patches_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::cast_ball_test {
 namespace {
 
 using testing_random::Mixed;
@@ -161,4 +161,4 @@ TEST(CastBall, LeavesOverlapsAndSliversToASearch) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::cast_ball_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::cast_shape_test {
 namespace {
 
 using oracle::Random;
@@ -201,4 +201,4 @@ TEST(CastShape, StartsInOverlap) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::cast_shape_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::cast_surface_test {
 namespace {
 
 using test::Random;
@@ -210,4 +210,4 @@ TEST(CastRayAtHeightField, FindsWhatAPlainTestOfAllTrianglesFinds) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::cast_surface_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::cast_test {
 namespace {
 
 using oracle::Random;
@@ -190,4 +190,4 @@ TEST(CastRay, KeepsItsPrecisionFromAThousandKilometres) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::cast_test

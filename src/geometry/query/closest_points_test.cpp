@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::closest_points_test {
 namespace {
 
 using oracle::Random;
@@ -143,4 +143,4 @@ TEST(FindNearest, OfPlanesIsExact) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::closest_points_test

@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-namespace gyre {
+namespace gyre::surface_overlap_test {
 namespace {
 
 struct Random {
@@ -169,4 +169,4 @@ TEST(SurfacesOverlap, FlushAndTouching) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::surface_overlap_test

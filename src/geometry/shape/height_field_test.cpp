@@ -10,7 +10,7 @@
 #include <cstring>
 #include <set>
 
-namespace gyre {
+namespace gyre::height_field_test {
 namespace {
 
 using test::Random;
@@ -230,4 +230,4 @@ TEST(HeightField, HashesTellFieldsApart) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::height_field_test

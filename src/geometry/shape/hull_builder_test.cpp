@@ -13,7 +13,7 @@
 #include <set>
 #include <string>
 
-namespace gyre {
+namespace gyre::hull_builder_test {
 namespace {
 
 using Points = std::vector<Vec3>;
@@ -506,4 +506,4 @@ TEST(Hull, SupportIsThatOfAPlainSearch) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::hull_builder_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace gyre {
+namespace gyre::mesh_test {
 namespace {
 
 using test::Random;
@@ -311,4 +311,4 @@ TEST(Triangle, SeenFromBehindTwiceIsItself) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::mesh_test

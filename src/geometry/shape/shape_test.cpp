@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace gyre {
+namespace gyre::shape_test {
 namespace {
 
 struct Random {
@@ -200,4 +200,4 @@ TEST(Shape, NamesAndEmptyGeometry) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::shape_test

@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-namespace gyre {
+namespace gyre::support_test {
 namespace {
 
 struct Random {
@@ -259,4 +259,4 @@ TEST(Support, HullFacesWithManyCornersAreThinned) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::support_test

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace gyre {
+namespace gyre::ray_traversal_test {
 namespace {
 
 using testing_random::Random;
@@ -118,4 +118,4 @@ TEST(RayTraversal, EndsWhereWhoeverWalksSays) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::ray_traversal_test

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace gyre {
+namespace gyre::static_tree_test {
 namespace {
 
 using test::Random;
@@ -167,4 +167,4 @@ TEST(StaticTree, RaysMeetTheNearestBox) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::static_tree_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::bits_test {
 namespace {
 
 TEST(Bits, NumbersOfEveryWidthComeBack) {
@@ -93,4 +93,4 @@ TEST(Bits, SignsFoldAndUnfold) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::bits_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::bytes_test {
 namespace {
 
 TEST(Bytes, EveryTypeComesBack) {
@@ -78,4 +78,4 @@ TEST(Bytes, EnumsAndBoolsThatDoNotExistFail) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::bytes_test

@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-namespace gyre {
+namespace gyre::command_codec_test {
 namespace {
 
 constexpr std::uint16_t kWorld = 77;
@@ -232,4 +232,4 @@ TEST(CommandCodec, DamagedBytesNeverHarm) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::command_codec_test

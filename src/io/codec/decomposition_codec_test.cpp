@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::decomposition_codec_test {
 namespace {
 
 TEST(DecompositionCodec, GivesBackWhatWasSaved) {
@@ -67,4 +67,4 @@ TEST(DecompositionCodec, KeysTellMeshesAndSettingsApart) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::decomposition_codec_test

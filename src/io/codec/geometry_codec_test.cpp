@@ -10,7 +10,7 @@
 
 #include <cstring>
 
-namespace gyre {
+namespace gyre::geometry_codec_test {
 namespace {
 
 Geometry random_hull(std::uint32_t seed, int points) {
@@ -163,4 +163,4 @@ TEST(GeometryCodec, DamageIsRefusedOrHarmless) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::geometry_codec_test

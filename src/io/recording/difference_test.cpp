@@ -8,7 +8,7 @@
 
 #include <cstring>
 
-namespace gyre {
+namespace gyre::difference_test {
 namespace {
 
 using scenes::kScenes;
@@ -159,4 +159,4 @@ TEST(FirstDifference, NoneOfAGoodRecording) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::difference_test

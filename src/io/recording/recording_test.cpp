@@ -9,7 +9,7 @@
 #include <cstring>
 #include <iterator>
 
-namespace gyre {
+namespace gyre::recording_test {
 namespace {
 
 using scenes::kScenes;
@@ -331,4 +331,4 @@ TEST(DamagedRecording, SealedAgainIsRefusedOrPlays) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::recording_test

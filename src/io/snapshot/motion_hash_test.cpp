@@ -10,7 +10,7 @@
 #include <cstring>
 #include <set>
 
-namespace gyre {
+namespace gyre::motion_hash_test {
 namespace {
 
 World make_pile(int steps) {
@@ -72,4 +72,4 @@ TEST(MotionHash, IncludesWhatFellAsleepInTheStep) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::motion_hash_test

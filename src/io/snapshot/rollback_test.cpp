@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::rollback_test {
 namespace {
 
 using scenes::kScenes;
@@ -93,4 +93,4 @@ INSTANTIATE_TEST_SUITE_P(LongScenes, LongRollbackSoak, testing::ValuesIn(kScenes
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::rollback_test

@@ -9,7 +9,7 @@
 
 #include <cstring>
 
-namespace gyre {
+namespace gyre::snapshot_test {
 namespace {
 
 using scenes::kScenes;
@@ -297,4 +297,4 @@ TEST(SnapshotCheck, EveryLinkIsChecked) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::snapshot_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::state_copy_test {
 namespace {
 
 using scenes::kScenes;
@@ -138,4 +138,4 @@ TEST(StateCopy, HoldsNothingOfManifoldsThatAreNotInUse) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::state_copy_test

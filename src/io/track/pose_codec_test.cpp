@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::pose_codec_test {
 namespace {
 
 struct Random {
@@ -214,4 +214,4 @@ TEST(PoseCodec, BytesThatAreNoPoseAreRefused) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::pose_codec_test

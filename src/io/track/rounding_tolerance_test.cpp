@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::rounding_tolerance_test {
 namespace {
 
 using testing_random::Random;
@@ -66,4 +66,4 @@ TEST(RoundingTolerance, IsNoneForWhatCannotBeTold) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::rounding_tolerance_test

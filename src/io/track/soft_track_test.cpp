@@ -13,7 +13,7 @@
 #include <limits>
 #include <optional>
 
-namespace gyre {
+namespace gyre::soft_track_test {
 namespace {
 
 constexpr RecordOptions kPosesOnly{.commands = false};
@@ -341,4 +341,4 @@ TEST(SoftTrack, ReadsVerticesOfAnyBytesWithoutHarm) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::soft_track_test

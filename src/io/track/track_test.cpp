@@ -11,7 +11,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace gyre {
+namespace gyre::track_test {
 namespace {
 
 using scenes::kScenes;
@@ -503,4 +503,4 @@ TEST(Track, OneHalfSaysWhatTheOtherIsFor) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::track_test

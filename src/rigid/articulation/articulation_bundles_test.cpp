@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-namespace gyre {
+namespace gyre::articulation_bundles_test {
 namespace {
 
 constexpr std::size_t kMaxArticulations = 40;
@@ -79,4 +79,4 @@ TEST(ArticulationBundlesTest, SixteenLanesHaveKernelsOfHalfAsMany) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::articulation_bundles_test

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <vector>
 
-namespace gyre {
+namespace gyre::ccd_joint_projection_simd_test {
 namespace {
 
 constexpr int kLinks = 5;
@@ -160,4 +160,4 @@ TEST_F(ChainsAfterImpact, WithOtherJointsByRows) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::ccd_joint_projection_simd_test

@@ -7,7 +7,7 @@
 
 #include <set>
 
-namespace gyre {
+namespace gyre::sliced_rows_test {
 namespace {
 
 std::int32_t column_at(const SlicedRows& rows, int slot, int row) {
@@ -86,4 +86,4 @@ TEST(SlicedRows, EntriesOfOnePlaceAreAddedUp) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::sliced_rows_test

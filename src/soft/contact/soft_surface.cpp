@@ -25,7 +25,7 @@ double lowest_height(DVec3 a, DVec3 b, DVec3 c) {
 
 void set_radii(SoftSurface& surface, std::span<const DVec3> places, float radius) {
   surface.radius.assign(std::size_t(surface.vertices), radius);
-  for (const SurfaceTriangle& one : surface.triangles) {
+  for (const SoftTriangle& one : surface.triangles) {
     const float height =
         float(lowest_height(places[one.corner[0]], places[one.corner[1]], places[one.corner[2]]));
     for (const std::uint32_t v : one.corner)
@@ -41,7 +41,7 @@ void set_edges(SoftSurface& surface) {
   Array<std::uint32_t> side, scratch_side;
   keys.resize(sides), scratch_keys.resize(sides), side.resize(sides), scratch_side.resize(sides);
   for (std::size_t i = 0; i < sides; ++i) {
-    const SurfaceTriangle& one = surface.triangles[i / 3];
+    const SoftTriangle& one = surface.triangles[i / 3];
     const std::uint32_t p = one.corner[i % 3], q = one.corner[(i + 1) % 3];
     keys[i] = std::uint64_t(min(p, q)) << 32 | max(p, q);
     side[i] = std::uint32_t(i);
@@ -75,7 +75,7 @@ void set_around(SoftSurface& surface) {
 void set_owned_corners(SoftSurface& surface) {
   Array<std::uint8_t> owned;
   owned.resize(std::size_t(surface.vertices));
-  for (SurfaceTriangle& one : surface.triangles) {
+  for (SoftTriangle& one : surface.triangles) {
     for (unsigned i = 0; i < 3; ++i) {
       if (owned[one.corner[i]] != 0) continue;
       owned[one.corner[i]] = 1;

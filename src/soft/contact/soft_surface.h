@@ -22,7 +22,7 @@ struct SurfaceEdge {
   std::uint32_t triangle = 0, side = 0;  // of which it is the edge 01, 12 or 20, the one that owns it
 };
 
-struct SurfaceTriangle {
+struct SoftTriangle {
   std::uint32_t corner[3] = {};
   std::int32_t owned_edge[3] = {-1, -1, -1};  // of the edges 01, 12, 20: those that this triangle owns
   std::uint32_t owned_corners = 0;            // bit i: this triangle owns corner i
@@ -31,7 +31,7 @@ struct SurfaceTriangle {
 
 struct SoftSurface {
   int vertices = 0;
-  Array<SurfaceTriangle> triangles;  // in the order of the leaves
+  Array<SoftTriangle> triangles;  // in the order of the leaves
   Array<SurfaceEdge> edges;
   // Vertices that share an edge with vertex v: around[around_begin[v]] to around[around_begin[v + 1] - 1].
   Array<std::uint32_t> around_begin, around;

@@ -24,7 +24,7 @@ class CandidateSearch {
   // Vertices that triangle i owns against triangle k.
   void add_corners(std::uint32_t s, std::uint32_t i, std::uint32_t t, std::uint32_t k) {
     const SurfaceBoxes &a = boxes_[s], &b = boxes_[t];
-    const SurfaceTriangle& from = a.surface->triangles[i];
+    const SoftTriangle& from = a.surface->triangles[i];
     if (from.owned_corners == 0) return;
     const std::uint32_t* const corner = b.surface->triangles[k].corner;
     for (unsigned c = 0; c < 3; ++c) {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::surface_contacts_test {
 namespace {
 
 using namespace surface_test;
@@ -139,4 +139,4 @@ TEST(SurfaceContacts, AFreePairKeepsItsMomentum) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::surface_contacts_test

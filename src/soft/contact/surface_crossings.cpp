@@ -72,8 +72,8 @@ class CrossingCount {
  private:
   // Edges that triangle i owns, against triangle k.
   long owned_edges(const SurfaceBoxes& a, std::uint32_t i, const SurfaceBoxes& b, std::uint32_t k) const {
-    const SurfaceTriangle& from = a.surface->triangles[i];
-    const SurfaceTriangle& to = b.surface->triangles[k];
+    const SoftTriangle& from = a.surface->triangles[i];
+    const SoftTriangle& to = b.surface->triangles[k];
     const bool same = a.surface == b.surface && a.first == b.first;
     long found = 0;
     for (const std::int32_t number : from.owned_edge) {
@@ -87,7 +87,7 @@ class CrossingCount {
     }
     return found;
   }
-  static int shares(std::uint32_t v, const SurfaceTriangle& one) {
+  static int shares(std::uint32_t v, const SoftTriangle& one) {
     return one.corner[0] == v || one.corner[1] == v || one.corner[2] == v;
   }
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::surface_crossings_test {
 namespace {
 
 using namespace surface_test;
@@ -84,7 +84,7 @@ long brute_force(const Surfaces& all) {
   for (std::size_t s = 0; s < all.surfaces.size(); ++s) {
     for (const SurfaceEdge& edge : all.surfaces[s].edges) {
       for (std::size_t t = 0; t < all.surfaces.size(); ++t) {
-        for (const SurfaceTriangle& one : all.surfaces[t].triangles) {
+        for (const SoftTriangle& one : all.surfaces[t].triangles) {
           bool common = false;
           for (const std::uint32_t v : one.corner) common |= s == t && (v == edge.a || v == edge.b);
           const auto at = [&](std::uint32_t v) { return all.positions[all.placed[t].first + v]; };
@@ -152,4 +152,4 @@ TEST(Crossings, OfASheetThatLiesFlatAreNone) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::surface_crossings_test

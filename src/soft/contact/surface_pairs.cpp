@@ -93,7 +93,7 @@ class PairFinder {
   }
   // True if no other triangle of b has a point nearer to p than the closest point of triangle k, and k is the first that has it.
   bool touches_triangle(DVec3 p, const SimplexPoint& closest, const PlacedSurface& b, std::uint32_t k) const {
-    const SurfaceTriangle& one = b.surface->triangles[k];
+    const SoftTriangle& one = b.surface->triangles[k];
     const auto at = [&](std::uint32_t v) { return positions_[b.first + v] - p; };  // relative to p
     const DVec3 away = -closest.point;
     if (closest.corners == 7) return true;
@@ -110,7 +110,7 @@ class PairFinder {
       if (closest.corners == (1u << c | 1u << next)) {
         if (one.neighbour[c] < 0) return true;
         if (std::uint32_t(one.neighbour[c]) < k) return false;
-        const SurfaceTriangle& other = b.surface->triangles[one.neighbour[c]];
+        const SoftTriangle& other = b.surface->triangles[one.neighbour[c]];
         for (const std::uint32_t v : other.corner) {
           if (v != one.corner[c] && v != one.corner[next] && leads_toward(at(v) - closest.point, away))
             return false;

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::surface_pairs_test {
 namespace {
 
 using namespace surface_test;
@@ -24,7 +24,7 @@ Counted brute_force_pairs(const Surfaces& all, double most) {
   for (std::size_t s = 0; s < all.surfaces.size(); ++s) {
     for (std::size_t t = 0; t < all.surfaces.size(); ++t) {
       for (std::uint32_t v = 0; v < std::uint32_t(all.surfaces[s].vertices); ++v) {
-        for (const SurfaceTriangle& one : all.surfaces[t].triangles) {
+        for (const SoftTriangle& one : all.surfaces[t].triangles) {
           std::uint32_t at[3];
           bool common = false;
           for (int k = 0; k < 3; ++k) at[k] = place(t, one.corner[k]), common |= at[k] == place(s, v);
@@ -228,4 +228,4 @@ TEST(DisplacementBounds, LeaveMovesAloneThatDoNotApproach) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::surface_pairs_test

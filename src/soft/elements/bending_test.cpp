@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::bending_test {
 namespace {
 
 using soft_test::Bench;
@@ -215,4 +215,4 @@ TEST(MembraneStatics, AStripStretchesAsItsModulusSays) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::bending_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::solid_test {
 namespace {
 
 using soft_test::Bench;
@@ -303,4 +303,4 @@ TEST(SolidDeterminism, WidthsAndThreadsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::solid_test

@@ -11,7 +11,7 @@
 
 #include <vector>
 
-namespace gyre {
+namespace gyre::lattice_stencils_test {
 namespace {
 
 // Two centres and two corners of cells, wound positively.
@@ -157,4 +157,4 @@ TEST(LatticeStencils, FillThePartInside) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::lattice_stencils_test

@@ -16,7 +16,7 @@
 #include <map>
 #include <string>
 
-namespace gyre {
+namespace gyre::tetrahedral_fill_test {
 namespace {
 
 constexpr Vec3 kHalf{0.5f, 0.5f, 0.5f};
@@ -404,4 +404,4 @@ TEST(TetrahedralFillRefusals, CoordinatesThatRoundingSpoils) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::tetrahedral_fill_test

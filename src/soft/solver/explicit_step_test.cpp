@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::explicit_step_test {
 namespace {
 
 constexpr float kStiffness = 1.0e4f, kMass = 0.01f;  // w = 1000 / s
@@ -91,4 +91,4 @@ TEST(ExplicitSchemes, ImplicitSchemesDampAsTheirFormulasSay) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::explicit_step_test

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <gyre/memory.h>
 
-namespace gyre {
+namespace gyre::implicit_step_test {
 namespace {
 
 using soft_test::Bench;
@@ -235,4 +235,4 @@ TEST(SoftMemory, NothingIsAllocatedOnceWarm) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::implicit_step_test

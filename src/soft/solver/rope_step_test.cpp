@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gyre {
+namespace gyre::rope_step_test {
 namespace {
 
 constexpr Vec3 kGravity{0.0f, -9.81f, 0.0f};
@@ -141,4 +141,4 @@ TEST(Rope, KeepsItsLengthThroughAViolentSwing) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::rope_step_test

@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace gyre {
+namespace gyre::filled_solid_test {
 namespace {
 
 SolidDef bunny_def() {
@@ -87,4 +87,4 @@ TEST(FilledSolid, RefusesWhatItCannotFill) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::filled_solid_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace gyre::articulation_test {
+namespace gyre::articulation_test::articulation_kernel_test {
 namespace {
 
 TEST(ArticulationKernel, LanesMatchOneArticulation) {
@@ -277,4 +277,4 @@ TEST(ArticulationMatrix, WhatEliminationReachesHasABitForEachColumn) {
 }
 
 }  // namespace
-}  // namespace gyre::articulation_test
+}  // namespace gyre::articulation_test::articulation_kernel_test

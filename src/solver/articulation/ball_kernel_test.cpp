@@ -9,7 +9,7 @@
 #include <cstring>
 #include <vector>
 
-namespace gyre {
+namespace gyre::ball_kernel_test {
 namespace {
 
 constexpr int kJoints = 11;  // no whole number of blocks at any width but one
@@ -116,4 +116,4 @@ TEST(BallKernel, LanesHaveTheBitsOfSingleJoints) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::ball_kernel_test

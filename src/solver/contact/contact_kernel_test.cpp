@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace gyre {
+namespace gyre::contact_kernel_test {
 namespace {
 
 // A ball on static ground, with a load from the last step; solved for a sub-step of a 240th of a second.
@@ -139,4 +139,4 @@ TEST(ContactKernel, FrictionGoesWhereTheLoadGoes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::contact_kernel_test

@@ -12,7 +12,7 @@
 
 #include "math/rotation.h"
 
-namespace gyre {
+namespace gyre::motion_kernel_test {
 namespace {
 
 struct Random : testing_random::MixedSingles {
@@ -327,4 +327,4 @@ TEST(MotionKernel, VelocitiesInLanesHaveTheBitsOfThoseInRecords) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::motion_kernel_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace gyre {
+namespace gyre::rotation_kernel_test {
 namespace {
 
 struct Random : testing_random::MixedSingles {
@@ -171,4 +171,4 @@ TEST(RotationKernel, RotatesByVectorsAsSingleOnes) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::rotation_kernel_test

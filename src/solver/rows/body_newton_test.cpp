@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::body_newton_test {
 namespace {
 
 struct Solved {
@@ -82,4 +82,4 @@ TEST(BodyNewton, WhatALockedBodyCannotDoItDoesNot) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::body_newton_test

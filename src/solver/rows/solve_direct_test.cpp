@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-namespace gyre {
+namespace gyre::solve_direct_test {
 namespace {
 
 // A positive semi-definite matrix G G^T of rank at most `rank`.
@@ -285,4 +285,4 @@ TEST(FrictionSet, NearestPointsAreNearest) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::solve_direct_test

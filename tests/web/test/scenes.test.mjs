@@ -1,4 +1,4 @@
-// Every scene of the repository opens from the drawer and plays 40 steps without an error, and something moves (but see STILL).
+// Every scene of the repository opens from the drawer and takes 30 steps without an error, and something moves (but see STILL).
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -17,7 +17,7 @@ const scenesIn = (folder) =>
 const folders = readdirSync(join(root, 'scenes'), { withFileTypes: true }).filter((entry) => entry.isDirectory());
 const scenes = ['', ...folders.map((entry) => entry.name)].flatMap(scenesIn);
 
-test('every scene opens and plays', async (t) => {
+test('every scene opens and moves', async (t) => {
   const page = await viewer.open(t, 'scene=stack&quality=low&play=0', { width: 640, height: 400 });
   for (const scene of scenes) {
     await t.test(scene, async () => {
@@ -25,9 +25,12 @@ test('every scene opens and plays', async (t) => {
       if (!(await page.locator('.drawer').count())) await page.keyboard.press('s');
       await page.locator(`.scene-card[data-file="${scene}"]`).click();
       await page.waitForFunction((name) => window.gyre.ready && window.gyre.file === name, scene);
-      const before = await page.evaluate(() => (window.gyre.speed = 4) && [...window.gyre.poses(), ...window.gyre.allVertices()]);
-      await page.waitForFunction(() => window.gyre.step >= 40, null, { timeout: 60000 });
-      await page.evaluate(() => window.gyre.pause());
+      const before = await page.evaluate(() => {
+        window.gyre.pause();
+        return [...window.gyre.poses(), ...window.gyre.allVertices()];
+      });
+      await page.evaluate(() => window.gyre.advance(30));
+      await page.waitForFunction(() => window.gyre.step >= 30);
       const after = await page.evaluate(() => [...window.gyre.poses(), ...window.gyre.allVertices()]);
       assert.ok(after.length >= before.length, 'what tears has more vertices, never fewer');
       assert.ok(after.every(Number.isFinite), 'a number is not finite');
