@@ -76,6 +76,18 @@ void add_method_options(CLI::App& command, SimulateOptions& options) {
   command.add_flag("--no-sleeping", options.no_sleeping, "Resting bodies stay awake");
 }
 
+void add_vtk_options(CLI::App& command, SimulateOptions& options) {
+  CLI::Option* vtk =
+      command
+          .add_option("--vtk", options.vtk,
+                      "Write surfaces and fields of the start and of every step for ParaView, which opens FOLDER/run.pvd")
+          ->type_name("FOLDER");
+  command.add_option("--vtk-every", options.vtk_every, "VTK files of every Nth step only")
+      ->type_name("N")
+      ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"))
+      ->needs(vtk);
+}
+
 void add_output_options(CLI::App& command, SimulateOptions& options) {
   CLI::Option* record = command
                             .add_option("--record", options.record,
@@ -130,15 +142,7 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
                   "Rows of --trace, --joints, --contacts and --probes only every Nth step")
       ->type_name("N")
       ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"));
-  CLI::Option* vtk =
-      command
-          .add_option("--vtk", options.vtk,
-                      "Write surfaces and fields of the start and of every step for ParaView, which opens FOLDER/run.pvd")
-          ->type_name("FOLDER");
-  command.add_option("--vtk-every", options.vtk_every, "VTK files of every Nth step only")
-      ->type_name("N")
-      ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"))
-      ->needs(vtk);
+  add_vtk_options(command, options);
   CLI::Option* stats = command.add_option("--stats", options.stats, "Write a table of figures of each step")
                            ->type_name("FILE.csv");
   command
