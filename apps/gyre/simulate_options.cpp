@@ -77,11 +77,11 @@ void add_method_options(CLI::App& command, SimulateOptions& options) {
 }
 
 void add_vtk_options(CLI::App& command, SimulateOptions& options) {
-  CLI::Option* vtk =
-      command
-          .add_option("--vtk", options.vtk,
-                      "Write surfaces and fields of the start and of every step for ParaView, which opens FOLDER/run.pvd")
-          ->type_name("FOLDER");
+  CLI::Option* vtk = command
+                         .add_option("--vtk", options.vtk,
+                                     "Write surfaces and fields of the start and of every step for ParaView, "
+                                     "which opens FOLDER/run.pvd")
+                         ->type_name("FOLDER");
   command.add_option("--vtk-every", options.vtk_every, "VTK files of every Nth step only")
       ->type_name("N")
       ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"))
