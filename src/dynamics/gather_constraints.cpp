@@ -77,10 +77,11 @@ class ContactGatherer {
   Found gather(std::uint32_t slot, std::size_t index) const {
     const Contact& contact = w_.contacts.contacts[slot];
     const Ends ends = find_ends(contact);
-    const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPoseRead : kConstrained;
-    touch_body(contact.body_a, ends.active_a, touch);
-    touch_body(contact.body_b, ends.active_b, touch);
     const bool speculative = in_lanes_ && is_speculative(w_, contact);
+    // Bounces and speculative contacts act at present poses, with the inertia of present orientations.
+    const bool reads_pose = speculative || contact.surface.restitution > 0.0f;
+    touch_body(contact.body_a, ends.active_a, reads_pose ? kPoseRead : kConstrained);
+    touch_body(contact.body_b, ends.active_b, reads_pose ? kPoseRead : kConstrained);
     const ColoringPair pair{ends.active_a ? local_index_[contact.body_a] : ColoringPair::kNone,
                             ends.active_b ? local_index_[contact.body_b] : ColoringPair::kNone};
     Found found;
@@ -212,7 +213,9 @@ void gather_contacts(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   s.pairs.resize_uninitialized(count);
   s.slots.resize_uninitialized(count);
   using Found = ContactGatherer::Found;
-  const auto either = [](Found a, Found b) { return Found{a.gaps || b.gaps, a.bouncy || b.bouncy, a.speculative || b.speculative}; };
+  const auto either = [](Found a, Found b) {
+    return Found{a.gaps || b.gaps, a.bouncy || b.bouncy, a.speculative || b.speculative};
+  };
   const ContactGatherer gatherer(batch, tasks.worker_count() == 1);
   const auto gather_block = [&](int begin, int end, int) {
     Found found;

@@ -140,12 +140,12 @@ TEST_F(Tools, ARecordingIsKnownToOtherCommands) {
   EXPECT_NE(info.out.find("track   61 frames"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("body \"bob\", dynamic, 1 shape"), std::string::npos) << info.out;
   EXPECT_NE(gyre({"info", "r.gyrec", "--json"}).out.find("\"frames\": 61"), std::string::npos);
-  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
-           {"simulate", "r.gyrec"}, {"convert", "r.gyrec", "x.gyre.json"}}) {
-    const Finished done = gyre(command);
-    EXPECT_EQ(done.code, 3);
-    EXPECT_NE(done.err.find("is a recording, expected a scene; gyre replay"), std::string::npos) << done.err;
-  }
+  const Finished simulated = gyre({"simulate", "r.gyrec"});
+  EXPECT_EQ(simulated.code, 3);
+  EXPECT_NE(simulated.err.find("is a recording, expected a scene; gyre replay"), std::string::npos) << simulated.err;
+  const Finished converted = gyre({"convert", "r.gyrec", "x.gyre.json"});
+  EXPECT_NE(converted.code, 0);
+  EXPECT_NE(converted.err.find("a recording becomes a .glb or .gltf file"), std::string::npos) << converted.err;
 }
 
 TEST_F(Tools, StandardInputAndOutputTakeThePlaceOfFiles) {

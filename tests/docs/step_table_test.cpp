@@ -80,26 +80,5 @@ TEST(StepTable, NamesEveryStageOfASubStep) {
     EXPECT_NE(document.find("`" + stage + "`"), std::string::npos) << stage << " is not in docs/step.md";
 }
 
-// Every `[text](path)` of the documents leads to a file of the tree.
-TEST(Documents, HaveNoDeadLinks) {
-  std::vector<std::filesystem::path> documents;
-  for (const char* name : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md"})
-    documents.push_back(source_path(name));
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(source_path("docs"))) {
-    if (entry.path().extension() == ".md") documents.push_back(entry.path());
-  }
-  for (const std::filesystem::path& document : documents) {
-    std::ifstream file(document);
-    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 2)) {
-      std::string target = text.substr(at + 2, text.find(')', at) - at - 2);
-      if (target.empty() || target.find("://") != std::string::npos || target[0] == '#') continue;
-      target = target.substr(0, target.find('#'));
-      EXPECT_TRUE(std::filesystem::exists(document.parent_path() / target))
-          << document << " links to " << target;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace gyre::step_table_test

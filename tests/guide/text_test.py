@@ -22,8 +22,9 @@ import lines  # noqa: E402
 import scene_reference  # noqa: E402
 
 OPTIONS = argparse.Namespace(gyre="", python="")
-LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^()\s]+)\)")
-SITE_PAGES = [ROOT / "README.md", ROOT / "docs" / "site" / "index.md", ROOT / "web" / "course" / "README.md"]
+LINK = re.compile(r"\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^()\s]+)\)")
+LINKED_PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "web/course/README.md")]
+LINKED_PAGES += sorted((ROOT / "docs").rglob("*.md"))
 
 
 def without_code(text):
@@ -46,7 +47,7 @@ def run(arguments, folder):
 class Text(unittest.TestCase):
     def test_links_lead_somewhere(self):
         faults = []
-        for page in blocks.pages() + SITE_PAGES:
+        for page in LINKED_PAGES:
             base = ROOT if page.parent.name == "site" else page.parent
             for words, address in LINK.findall(without_code(page.read_text(encoding="utf-8"))):
                 if re.match(r"[a-z]+:", address):
