@@ -24,7 +24,8 @@ test('every scene opens and moves', async (t) => {
       await page.evaluate(() => document.activeElement?.blur());
       if (!(await page.locator('.drawer').count())) await page.keyboard.press('s');
       await page.locator(`.scene-card[data-file="${scene}"]`).click();
-      await page.waitForFunction((name) => window.gyre.ready && window.gyre.file === name, scene);
+      // Meshes are decomposed when a scene opens, which takes half a minute of a busy machine.
+      await page.waitForFunction((name) => window.gyre.ready && window.gyre.file === name, scene, { timeout: 120000 });
       const before = await page.evaluate(() => {
         window.gyre.pause();
         return [...window.gyre.poses(), ...window.gyre.allVertices()];
