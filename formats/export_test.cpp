@@ -45,7 +45,7 @@ Scene read_back(const std::string& gltf) {
   return scene ? *std::move(scene) : Scene{};
 }
 
-// What another program reads: the file without Gyre's own members.
+// The file as another program reads it: without Gyre's own members.
 std::string without_extras(const std::string& gltf) {
   Json json = Json::parse(gltf);
   json.erase("extras");

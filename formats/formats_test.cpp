@@ -427,7 +427,7 @@ TEST(Mjcf, DamagedFilesAreRefused) {
 
 // ------------------------------------------------------------------------------------------------------------- MuJoCo
 
-// Where the bodies of a model are after 2 s: the centre of mass (m) and the orientation (w, x, y, z) in the frame of the file, which has
+// The places of the bodies of a model after 2 s: the centre of mass (m) and the orientation (w, x, y, z) in the frame of the file, which has
 // z up. MuJoCo 3.14 (npm package @mujoco/mujoco) computed them with its RK4 integrator and steps of 0.2 ms.
 struct MujocoBody {
   const char* name;

@@ -291,7 +291,8 @@ class World {
   // angular_y (b).
   JointAxisState joint_axis_state(JointId joint, JointAxis axis) const;
   bool joint_enabled(JointId joint) const;
-  // What acts on an axis, as it is in force; the zero value for axes that set_joint_axis() does not take. And what set_motor() and set_drive() set.
+  // The limits, motors and springs of an axis as they are in force; the zero value for axes that set_joint_axis() does not take. Then the
+  // values that set_motor() and set_drive() set.
   JointAxisDef joint_axis_def(JointId joint, JointAxis axis) const;
   Motor motor(JointId joint) const;
   PoseDrive drive(JointId joint) const;

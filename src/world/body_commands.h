@@ -20,7 +20,7 @@ void set_density(WorldState& s, std::uint32_t shape, float density);
 void set_locked_axes(WorldState& s, std::uint32_t body, const LockedAxes& locked);
 void set_can_sleep(WorldState& s, std::uint32_t body, bool can_sleep);
 void set_sensor(WorldState& s, std::uint32_t shape, bool sensor);
-// What is absent stays.
+// Members that are absent stay.
 void set_shape(WorldState& s, std::uint32_t shape, const std::optional<AnyShape>& geometry,
                const std::optional<Transform>& local);
 void set_pair_ignored(WorldState& s, std::uint32_t a, std::uint32_t b, bool ignored);

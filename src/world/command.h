@@ -213,7 +213,7 @@ struct SetSensor {
   ShapeId shape;
   bool sensor = false;
 };
-// What is absent stays.
+// Members that are absent stay.
 struct SetShape {
   ShapeId shape;
   std::optional<AnyShape> geometry;

@@ -27,7 +27,7 @@ struct JointLoad {
 // False if limits and motors cannot act on such an axis.
 bool read_joint_load(const RigidWorld& w, std::uint32_t slot, JointAxis axis, float load, JointLoad& out);
 
-// What acts on an axis; the zero value where limits and motors cannot act.
+// The limits, motors and springs of an axis; the zero value where they cannot act.
 JointAxisDef read_joint_axis_def(const RigidWorld& w, std::uint32_t slot, JointAxis axis);
 Motor read_motor(const JointRecord& joint);
 

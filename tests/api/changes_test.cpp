@@ -59,7 +59,7 @@ TEST(Changes, MassFollowsDensityFormAndWish) {
   EXPECT_NEAR(w.mass_properties(s.box).mass, 250, 0.01) << "back to that of the shapes";
   ASSERT_TRUE(w.set_sensor(s.shape(s.box), true));
   EXPECT_EQ(w.mass_properties(s.box).mass, 1) << "a body of sensors alone";
-  // What bears a weight feels the new one.
+  // Bodies that bear the weight feel the new one.
   ASSERT_TRUE(w.set_sensor(s.shape(s.box), false));
   s.run(120);
   std::vector<ContactPoint> points(w.body_contacts(s.box, {}));

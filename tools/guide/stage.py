@@ -30,7 +30,7 @@ TOKEN = re.compile(r"^[ \t]*```.*?^[ \t]*```|(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]
 PICTURES = (".png", ".gif", ".svg", ".webp", ".jpg")
 LIVE = ROOT / "web" / "course" / "dist" / "live.js"
 LARGEST = 400_000  # bytes of a file that is shown
-# What browsers do differently without it, as far as Furo minds.
+# Differences between browsers without it, as far as Furo minds.
 NORMALIZED = "html{line-height:1.15;-webkit-text-size-adjust:100%}body{margin:0}code,kbd,pre,samp{font-family:monospace,monospace;font-size:1em}"
 KATEX = Path("/usr/share/javascript/katex")
 RENDER = """;

@@ -10,7 +10,7 @@
 //     draw(poses.pose(body, clock.alpha()));
 //   }
 //
-// What is drawn lags behind the simulation by up to one step. Nothing here changes the world.
+// The picture lags behind the simulation by up to one step. Nothing here changes the world.
 #pragma once
 
 #include <gyre/world.h>

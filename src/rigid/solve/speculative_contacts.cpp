@@ -63,7 +63,7 @@ Vec3 displacement_of(const ContactSolve& s, std::int32_t body, Vec3 from_center,
          seconds * point_velocity(motion, from_center);
 }
 
-// When the two shapes meet, as a share of the sweeps.
+// The time at which the two shapes meet, as a share of the sweeps.
 Impact meeting_time(const ContactSolve& s, const Contact& contact, const Sweep (&sweeps)[2]) {
   const ColliderShape &a = s.w.shapes.colliders[contact.shape_a], &b = s.w.shapes.colliders[contact.shape_b];
   const SweptShape swept_a = make_swept_shape(a.shape, a.body_from_shape, sweeps[0]),
