@@ -3,6 +3,7 @@
 #include "dynamics/fluid_solids.h"
 #include "fluid/store/fluid_builder.h"
 #include "rigid/sleep/island.h"
+#include "world/fluid_events.h"
 #include "world/refusal.h"
 #include "world/world_state.h"
 
@@ -54,6 +55,7 @@ CommandResult execute(WorldState& s, const AddFluid& c) {
   return out;
 }
 CommandResult execute(WorldState& s, const RemoveFluid& c) {
+  end_fluid_touches(s, c.fluid.index);
   // Bodies that the fluid held may fall.
   for (const FluidPush& push : s.fluids.entries[c.fluid.index].pushes)
     if (s.rigid.bodies.ids.live(push.body)) wake(s.rigid, push.body);
@@ -83,6 +85,11 @@ Error check_fluid_columns(const RigidWorld& w, const FluidStore& fluids) {
       if (push.body >= w.bodies.ids.capacity()) return bad("a fluid pushes a body that is not there");
       if (!is_finite(push.force) || !is_finite(push.torque))
         return bad("the force of a fluid that is not finite");
+    }
+    if (entry.frames.size() > 1) return bad("a fluid with two frames");
+    for (const FluidFrame& frame : entry.frames) {
+      if (!is_finite(frame.pose) || !is_finite(frame.velocity) || !is_finite(frame.angular_velocity))
+        return bad("the frame of a fluid that is not finite");
     }
     const std::vector<FluidEmitter> emitters = emitter_defs(entry);
     const Error e = std::visit(

@@ -8,6 +8,7 @@
 #include "rigid/rigid_step.h"
 #include "rigid/sleep/island.h"
 #include "rigid/time/step_error.h"
+#include "world/fluid_events.h"
 #include "world/soft_events.h"
 #include "world/stages.h"
 #include "world/validate_state.h"
@@ -338,9 +339,10 @@ void end_step(WorldState& s, float seconds) {
   clocks.broken.trim(next.broken, s.published_events.broken);
   clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
   report_soft_events(s);
+  if (!s.fluids.entries.empty()) report_fluid_events(s);
   const SoftEvents& soft = s.published_soft_events;
   s.events = {e.begins,        e.ends,      e.hits,    e.sensors,     e.broken,
-              e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn};
+              e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn, s.published_fluid_touches};
   s.stepping = false;
 }
 
