@@ -163,7 +163,7 @@ bool ProbeTable::add_rows(const SceneRunner& runner) {
   runner.for_each_fluid([&](const SceneFluid& fluid, FluidId id) {
     for (const SceneProbe& probe : fluid.probes) {
       if (!written) return;
-      const FluidProbe found = runner.world().probe(id, probe.position);
+      const FluidProbe found = runner.world().probe(id, runner.probe_place(id, probe));
       row_ = begin;
       add_text(row_, fluid.name);
       add_text(row_, probe.name);

@@ -98,11 +98,11 @@ bool is_inside(const FluidEntry& entry, DVec3 world_point) {
 }
 
 // Shapes that may be inside, by body.
-struct Candidate {
+struct VisitingShape {
   std::uint32_t body = 0, shape = 0;
 };
 
-void list_candidates(const RigidWorld& w, const FluidEntry& entry, Array<Candidate>& out) {
+void list_visiting_shapes(const RigidWorld& w, const FluidEntry& entry, Array<VisitingShape>& out) {
   const GasBox& box = entry.box();
   // A box in the world around the box of the fluid.
   Aabb whole{};
@@ -120,10 +120,10 @@ void list_candidates(const RigidWorld& w, const FluidEntry& entry, Array<Candida
     if (proxy.sensor || w.bodies.flags[body].type == BodyType::fixed || !overlap(proxy.fat_box, near)) return;
     out.push_back({body, shape});
   });
-  Array<Candidate> scratch;
+  Array<VisitingShape> scratch;
   scratch.resize(out.size());
   merge_sort(out.view(), scratch.view(),
-             [](const Candidate& a, const Candidate& b) { return a.body < b.body; });
+             [](const VisitingShape& a, const VisitingShape& b) { return a.body < b.body; });
 }
 
 }  // namespace
@@ -131,10 +131,10 @@ void list_candidates(const RigidWorld& w, const FluidEntry& entry, Array<Candida
 void find_fluid_visitors(const RigidWorld& w, const SoftStore& soft, const FluidEntry& entry,
                          Array<FoundVisitor>& out) {
   out.clear();
-  Array<Candidate> candidates;
-  list_candidates(w, entry, candidates);
+  Array<VisitingShape> candidates;
+  list_visiting_shapes(w, entry, candidates);
   const GasBox& box = entry.box();
-  for (const Candidate& one : candidates) {
+  for (const VisitingShape& one : candidates) {
     if (!out.empty() && out[out.size() - 1].who.index == one.body) continue;
     const Pose pose = origin_pose(w.bodies, one.body) * w.shapes.body_from_shape[one.shape];
     const LocalShape shape(entry, w.shapes.colliders[one.shape].shape, pose);

@@ -235,6 +235,14 @@ struct SetPairIgnored {
   BodyId a, b;
   bool ignored = true;
 };
+struct SetFluidPose {
+  FluidId fluid;
+  Pose pose;
+};
+struct SetFluidVelocity {
+  FluidId fluid;
+  Vec3 linear, angular;
+};
 
 // Recordings store the index of a command in this list: append new ones.
 using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
@@ -243,7 +251,7 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled,
                              SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices, AddFluid, RemoveFluid, SetEmitters,
                              SetSleepShare, SetSleepSpeed, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetShape,
-                             SetBodyUserData, SetShapeUserData, SetBreakLoad, SetPairIgnored>;
+                             SetBodyUserData, SetShapeUserData, SetBreakLoad, SetPairIgnored, SetFluidPose, SetFluidVelocity>;
 
 // The result of a command: success, and the id of the new object.
 struct CommandResult {

@@ -2,6 +2,7 @@
 
 #include "dynamics/fluid_solids.h"
 #include "fluid/store/fluid_builder.h"
+#include "fluid/store/fluid_motion.h"
 #include "rigid/sleep/island.h"
 #include "world/fluid_events.h"
 #include "world/refusal.h"
@@ -39,6 +40,15 @@ Error check(const WorldState& s, const SetEmitters& c) {
                     *entry.def);
 }
 
+Error check(const WorldState& s, const SetFluidPose& c) {
+  const Error e = check_id(s, c.fluid, "set_fluid_pose");
+  return e ? e : check_frame(c.pose, {}, {});
+}
+Error check(const WorldState& s, const SetFluidVelocity& c) {
+  const Error e = check_id(s, c.fluid, "set_fluid_velocity");
+  return e ? e : check_frame({}, c.linear, c.angular);
+}
+
 CommandResult execute(WorldState& s, const AddFluid& c) {
   const IdPool::Slot slot = s.fluids.ids.acquire();
   if (s.fluids.entries.size() < s.fluids.ids.capacity()) s.fluids.entries.resize(s.fluids.ids.capacity());
@@ -46,7 +56,7 @@ CommandResult execute(WorldState& s, const AddFluid& c) {
   if (slot.index < s.fluid_scratch.size()) s.fluid_scratch[slot.index] = {};
   if (entry.is_liquid()) {
     FluidSolids solids;
-    cut_fluid_cells(s.rigid, entry.box(), entry.shape(), true, *s.tasks, solids);
+    cut_fluid_cells(s.rigid, entry, *s.tasks, solids);
     fill_liquid(entry, solids.solids);
   }
   CommandResult out;
@@ -66,6 +76,20 @@ CommandResult execute(WorldState& s, const RemoveFluid& c) {
 }
 CommandResult execute(WorldState& s, const SetEmitters& c) {
   set_emitters(s.fluids.entries[c.fluid.index], c.emitters);
+  return {true, {}, {}, {}};
+}
+
+CommandResult execute(WorldState& s, const SetFluidPose& c) {
+  FluidEntry& entry = s.fluids.entries[c.fluid.index];
+  FluidFrame frame = entry.frame() != nullptr ? *entry.frame() : FluidFrame{};
+  frame.pose = {c.pose.position, normalized(c.pose.orientation)};
+  set_frame(entry, frame);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetFluidVelocity& c) {
+  FluidEntry& entry = s.fluids.entries[c.fluid.index];
+  FluidFrame frame = entry.frame() != nullptr ? *entry.frame() : FluidFrame{};
+  change_frame_velocity(entry, c.linear - frame.velocity, c.angular - frame.angular_velocity);
   return {true, {}, {}, {}};
 }
 

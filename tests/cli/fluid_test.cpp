@@ -94,7 +94,8 @@ TEST_F(FluidCommandLine, ProbedVorticesDecayAsTheyShould) {
 }
 
 TEST_F(FluidCommandLine, EventsTellWhatEntersAGas) {
-  write("e.gyre.json", R"({"gyre_scene": 1, "name": "events", "world": {"time_step": 0.01, "gravity": [0, 0, 0]},
+  write("e.gyre.json",
+        R"({"gyre_scene": 1, "name": "events", "world": {"time_step": 0.01, "gravity": [0, 0, 0]},
     "bodies": [{"name": "ball", "position": [-0.25, 0.5, 0.5], "linear_velocity": [10, 0, 0],
                 "shapes": [{"type": "sphere", "radius": 0.1, "density": 1000}]}],
     "gases": [{"name": "air", "bounds": [[0, 0, 0], [1, 1, 1]], "cells": [4, 4, 4]}]})");

@@ -172,6 +172,33 @@ void add_gravity(const LiquidPass& pass, Vec3 gravity) {
   }
 }
 
+// What a box that turns adds to particles: their velocity turns against it by twice its angle, and they are drawn away from its axis.
+void turn_particles(const LiquidPass& pass, const BoxMotion& motion) {
+  constexpr int kBlock = 1024;
+  LiquidGrid& grid = pass.grid;
+  const Quat back = from_rotation_vector(-2.0f * pass.step * motion.spin);
+  const float s[3] = {motion.spin.x, motion.spin.y, motion.spin.z};
+  const float square = dot(motion.spin, motion.spin);
+  for_blocks(pass.tasks, grid.particles(), kBlock, [&](int begin, int end, int) {
+    for (int p = begin; p < end; ++p) {
+      const Vec3 place{grid.position[0][p], grid.position[1][p], grid.position[2][p]};
+      const Vec3 velocity{grid.motion[0][p], grid.motion[1][p], grid.motion[2][p]};
+      const Vec3 changed = rotate(back, velocity) + pass.step * motion.outward(place);
+      for (int axis = 0; axis < 3; ++axis)
+        if (!pass.flat(axis)) grid.motion[axis][p] = part_along(changed, axis);
+      for (int b = 0; b < 3; ++b) {
+        if (pass.flat(b)) continue;
+        const Vec3 column =
+            rotate(back, Vec3{grid.affine[b][p], grid.affine[3 + b][p], grid.affine[6 + b][p]});
+        for (int a = 0; a < 3; ++a) {
+          const float outward = (a == b ? square : 0.0f) - s[a] * s[b];
+          if (!pass.flat(a)) grid.affine[3 * a + b][p] = part_along(column, a) + pass.step * outward;
+        }
+      }
+    }
+  });
+}
+
 void save_velocity(const LiquidPass& pass) {
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
@@ -184,6 +211,7 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
                  std::span<const LiquidEmitter> emitters, double time, LiquidReport& report,
                  std::span<GasImpulse> impulses) {
   sort_particles(pass);
+  if (settings.motion.turns()) turn_particles(pass, settings.motion);
   transfer_to_grid(pass);
   find_surface(pass);
   build_liquid_matrix(pass);

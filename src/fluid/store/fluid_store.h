@@ -36,8 +36,8 @@ struct FluidEntry {
   GasGrid gas;                          // of a gas, else empty
   LiquidGrid liquid;                    // of a liquid, else empty
   Array<GasEmitter> emitters;
-  Array<float> emitter_fuel;  // kg/m^3, one for each emitter of a gas with combustion, else empty
-  Array<FluidPush> pushes;  // ascending by body
+  Array<float> emitter_fuel;     // kg/m^3, one for each emitter of a gas with combustion, else empty
+  Array<FluidPush> pushes;       // ascending by body
   Array<FluidVisitor> visitors;  // bodies, then soft matter, each ascending by index
   Array<FluidFrame> frames;      // none: the axes of the world; or one
 
