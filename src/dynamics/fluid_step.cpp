@@ -246,7 +246,7 @@ void step_gas_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const G
   settings.vorticity = def.vorticity, settings.viscosity = def.viscosity;
   settings.advection = def.advection;
   settings.gravity = gravity_in_box(w, entry.frame(), seconds);
-  if (entry.frame() != nullptr && entry.frame()->moves()) settings.motion = box_motion(entry);
+  if (entry.frame() != nullptr && entry.frame()->moves()) settings.motion = frame_motion(entry);
   settings.combustion = def.combustion;
   settings.emitter_fuel = entry.emitter_fuel.view();
   list_bodies(w, entry.frame(), def.density, own);
@@ -268,7 +268,7 @@ void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, cons
   settings.density = def.density, settings.viscosity = def.viscosity;
   settings.surface_tension = def.surface_tension;
   settings.gravity = gravity_in_box(w, entry.frame(), seconds);
-  if (entry.frame() != nullptr && entry.frame()->moves()) settings.motion = box_motion(entry);
+  if (entry.frame() != nullptr && entry.frame()->moves()) settings.motion = frame_motion(entry);
   own.sources.clear();
   own.report.full = entry.liquid.particles() >= kMaxLiquidParticles && !entry.emitters.empty();
   if (!own.report.full) {

@@ -99,7 +99,8 @@ TEST(FluidEvents, ARopeEntersByItsVertexAndWhatIsRemovedLeaves) {
   rope.points = {{0.5, 1.4, 0.5}, {0.5, 1.2, 0.5}, {0.5, 1.05, 0.5}};
   const SoftId soft = world.add_rope(rope);
   ASSERT_TRUE(soft);
-  const BodyId ball = add_ball(world, {0.3, 0.2, 0.3}, 0.05f);
+  const BodyId ball = world.add_body({.type = BodyType::kinematic, .pose = {.position = {0.3, 0.2, 0.3}}},
+                                     {.geometry = Sphere{0.05f}});
   world.step(kStep);
   ASSERT_EQ(world.events().fluid_touches.size(), 2u) << "the ball is inside from the start";
   EXPECT_EQ(world.events().fluid_touches[0].fluid, pool);
@@ -280,7 +281,7 @@ TEST(FluidFrames, AGasTurnedWithItsWorldDoesTheSame) {
 
 TEST(FluidFrames, ABoxThatMovesLeavesStillAirStillAndAFullTankFeelsItsAcceleration) {
   World world = make_world({.gravity = {}});
-  const FluidId air = world.add_gas({.cells = {10, 10, 10}, .linear_velocity = {1.5f, 0, 0.5f}});
+  const FluidId air = world.add_gas({.cells = {10, 10, 10}});
   world.set_fluid_velocity(air, {1.5f, 0, 0.5f}, {0, 0.7f, 0});
   LiquidDef def = tank({0.4, 0.4, 0.4}, 0.4, 0.05f);
   def.pose.position = {10, 0, 0};
@@ -341,7 +342,6 @@ TEST(FluidFrames, ATankThatTurnsHasItsParabola) {
   const Pose pose = world.fluid_info(pool).pose;
   const Vec3 velocity = world.probe(pool, to_world(pose, {0.1, 0.05, 0})).velocity;
   EXPECT_NEAR(length(velocity), 0.1f * float(kSpin), 0.03f);
-  // 14,000 particles of mass m: L = w sum m r^2, from a snapshot as from the world itself.
   World again = std::move(*load_snapshot(save_snapshot(world)));
   for (int i = 0; i < 5; ++i) world.step(kStep), again.step(kStep);
   EXPECT_EQ(again.hash(), world.hash());

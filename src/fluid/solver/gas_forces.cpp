@@ -104,7 +104,7 @@ void add_buoyancy(const GasPass& pass, Vec3 gravity, float buoyancy) {
 
 void add_turning(const GasPass& pass) {
   const GridShape& shape = pass.shape();
-  const BoxMotion& motion = pass.motion;
+  const FrameMotion& motion = pass.motion;
   for (int axis = 0; axis < 3; ++axis) {
     const float* const from = pass.grid.velocity[axis].data();
     float* const to = pass.scratch(axis);

@@ -82,10 +82,10 @@ void change_frame_velocity(FluidEntry& entry, Vec3 linear, Vec3 angular) {
   set_frame(entry, frame);
 }
 
-BoxMotion box_motion(const FluidEntry& entry) {
+FrameMotion frame_motion(const FluidEntry& entry) {
   const FluidFrame& frame = *entry.frame();
   const Vec3 corner = to_float(entry.box().corner);
-  BoxMotion out;
+  FrameMotion out;
   out.spin = vector_to_frame(&frame, frame.angular_velocity);
   out.velocity = vector_to_frame(&frame, frame.velocity) + cross(out.spin, corner);
   out.center = -corner;

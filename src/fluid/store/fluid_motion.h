@@ -3,7 +3,7 @@
 // In: a frame, its change. Out: the frame of an entry, and velocities relative to it.
 #pragma once
 
-#include "fluid/grid/box_motion.h"
+#include "fluid/grid/frame_motion.h"
 #include "fluid/store/fluid_store.h"
 
 namespace gyre {
@@ -16,6 +16,6 @@ void set_frame(FluidEntry& entry, const FluidFrame& frame);
 // Adds to the velocity of the frame. The fluid keeps its velocity in the world.
 void change_frame_velocity(FluidEntry& entry, Vec3 linear, Vec3 angular);
 // For an entry with a frame.
-BoxMotion box_motion(const FluidEntry& entry);
+FrameMotion frame_motion(const FluidEntry& entry);
 
 }  // namespace gyre

@@ -44,7 +44,7 @@ bool read_fluids(ByteReader& in, FluidStore& fluids) {
     if (entry.def == nullptr) continue;
     bool good = true;
     for_each_later_fluid_array(entry, [&](auto& array) { good = good && read_array(in, array); });
-    if (!good) return false;
+    if (!good || !fits_definition(entry)) return false;
   }
   return true;
 }

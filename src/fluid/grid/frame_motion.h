@@ -1,4 +1,4 @@
-// BoxMotion: how the axes of a fluid's box move, as the fluid sees it. Velocities are relative to the box; a box that turns adds the accelerations
+// FrameMotion: how the axes of a fluid's box move, as the fluid sees it. Velocities are relative to the box; a box that turns adds the accelerations
 // -w x (w x r) - 2 w x v (L. D. Landau, E. M. Lifshitz, "Mechanics", section 39).
 #pragma once
 
@@ -7,7 +7,7 @@
 namespace gyre {
 
 // All in the axes of the box, places from its lower corner.
-struct BoxMotion {
+struct FrameMotion {
   Vec3 velocity{};  // m/s, of the lower corner
   Vec3 spin{};      // rad/s
   Vec3 center{};    // m: a point that does not accelerate
