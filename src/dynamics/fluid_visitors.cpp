@@ -126,6 +126,20 @@ void list_visiting_shapes(const RigidWorld& w, const FluidEntry& entry, Array<Vi
              [](const VisitingShape& a, const VisitingShape& b) { return a.body < b.body; });
 }
 
+FluidTouch touch_of(const RigidWorld& w, const FluidStore& fluids, std::uint32_t slot,
+                    const FluidVisitor& who, int vertex, bool begins) {
+  FluidTouch out;
+  out.fluid = {slot, std::uint16_t(fluids.ids.generation(slot)), w.world_number};
+  if (who.is_soft != 0)
+    out.soft = {who.index, std::uint16_t(who.generation), w.world_number};
+  else
+    out.body = {who.index, std::uint16_t(who.generation), w.world_number};
+  out.vertex = vertex, out.begins = begins;
+  return out;
+}
+
+std::uint64_t order_of(const FluidVisitor& who) { return std::uint64_t(who.is_soft) << 32 | who.index; }
+
 }  // namespace
 
 void find_fluid_visitors(const RigidWorld& w, const SoftStore& soft, const FluidEntry& entry,
@@ -149,6 +163,44 @@ void find_fluid_visitors(const RigidWorld& w, const SoftStore& soft, const Fluid
     while (vertex < p.count && !is_inside(entry, p.place(vertex))) ++vertex;
     if (vertex < p.count) out.push_back({{slot, soft.ids.generation(slot), 1}, vertex});
   }
+}
+
+void update_fluid_visitors(const RigidWorld& w, const SoftStore& soft, FluidStore& fluids) {
+  Array<FoundVisitor> found;
+  for (std::uint32_t slot = 0; slot < fluids.entries.size(); ++slot) {
+    FluidEntry& entry = fluids.entries[slot];
+    if (entry.def == nullptr) continue;
+    find_fluid_visitors(w, soft, entry, found);
+    const auto tell = [&](const FluidVisitor& who, int vertex, bool begins) {
+      fluids.events.push_back(touch_of(w, fluids, slot, who, vertex, begins));
+    };
+    const Array<FluidVisitor>& before = entry.visitors;
+    std::size_t a = 0, b = 0;
+    while (a < before.size() || b < found.size()) {
+      const bool only_before =
+          b == found.size() || (a < before.size() && order_of(before[a]) < order_of(found[b].who));
+      const bool only_now =
+          a == before.size() || (!only_before && order_of(found[b].who) < order_of(before[a]));
+      if (only_before) {
+        tell(before[a++], -1, false);
+      } else if (only_now) {
+        tell(found[b].who, found[b].vertex, true);
+        ++b;
+      } else {
+        // Another object has the index of one that was removed.
+        if (before[a].generation != found[b].who.generation)
+          tell(before[a], -1, false), tell(found[b].who, found[b].vertex, true);
+        ++a, ++b;
+      }
+    }
+    entry.visitors.clear();
+    for (const FoundVisitor& one : found) entry.visitors.push_back(one.who);
+  }
+}
+
+void end_fluid_touches(const RigidWorld& w, FluidStore& fluids, std::uint32_t slot) {
+  for (const FluidVisitor& who : fluids.entries[slot].visitors)
+    fluids.events.push_back(touch_of(w, fluids, slot, who, -1, false));
 }
 
 }  // namespace gyre

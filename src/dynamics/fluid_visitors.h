@@ -22,4 +22,9 @@ struct FoundVisitor {
 void find_fluid_visitors(const RigidWorld& w, const SoftStore& soft, const FluidEntry& entry,
                          Array<FoundVisitor>& out);
 
+// After a step: compares with the visitors of the step before, which are state, and adds the events to the store.
+void update_fluid_visitors(const RigidWorld& w, const SoftStore& soft, FluidStore& fluids);
+// All visitors of a fluid that is about to be removed leave.
+void end_fluid_touches(const RigidWorld& w, FluidStore& fluids, std::uint32_t slot);
+
 }  // namespace gyre

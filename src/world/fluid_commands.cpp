@@ -1,10 +1,10 @@
 #include "world/fluid_commands.h"
 
 #include "dynamics/fluid_solids.h"
+#include "dynamics/fluid_visitors.h"
 #include "fluid/store/fluid_builder.h"
 #include "fluid/store/fluid_motion.h"
 #include "rigid/sleep/island.h"
-#include "world/fluid_events.h"
 #include "world/refusal.h"
 #include "world/world_state.h"
 
@@ -65,7 +65,7 @@ CommandResult execute(WorldState& s, const AddFluid& c) {
   return out;
 }
 CommandResult execute(WorldState& s, const RemoveFluid& c) {
-  end_fluid_touches(s, c.fluid.index);
+  end_fluid_touches(s.rigid, s.fluids, c.fluid.index);
   // Bodies that the fluid held may fall.
   for (const FluidPush& push : s.fluids.entries[c.fluid.index].pushes)
     if (s.rigid.bodies.ids.live(push.body)) wake(s.rigid, push.body);

@@ -2,13 +2,13 @@
 #include "base/check.h"
 #include "dynamics/fluid_reaction.h"
 #include "dynamics/fluid_step.h"
+#include "dynamics/fluid_visitors.h"
 #include "dynamics/soft_contacts.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/integrate/spring_stability.h"
 #include "rigid/rigid_step.h"
 #include "rigid/sleep/island.h"
 #include "rigid/time/step_error.h"
-#include "world/fluid_events.h"
 #include "world/soft_events.h"
 #include "world/stages.h"
 #include "world/validate_state.h"
@@ -339,7 +339,11 @@ void end_step(WorldState& s, float seconds) {
   clocks.broken.trim(next.broken, s.published_events.broken);
   clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
   report_soft_events(s);
-  if (!s.fluids.entries.empty()) report_fluid_events(s);
+  if (!s.fluids.entries.empty()) {
+    update_fluid_visitors(s.rigid, s.soft, s.fluids);
+    std::swap(s.published_fluid_touches, s.fluids.events);
+    s.fluids.events.clear();
+  }
   const SoftEvents& soft = s.published_soft_events;
   s.events = {e.begins,        e.ends,      e.hits,    e.sensors,     e.broken,
               e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn, s.published_fluid_touches};
