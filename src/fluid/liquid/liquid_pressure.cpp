@@ -14,7 +14,7 @@ constexpr float kSpreadShare = 0.25f;
 constexpr float kSpreadTolerance = 0.02f;  // of a full cell: what is left alone
 // Of the square of an edge: how far viscosity may reach in a sub-step for particles to go ahead of it.
 constexpr float kThinShare = 0.02f;
-constexpr float kMaxSpread = 0.5f;         // of a full cell, that counts
+constexpr float kMaxSpread = 0.5f;  // of a full cell, that counts
 
 PressureVectors vectors_of(const LiquidPass& pass) {
   PressureVectors vectors;
@@ -173,7 +173,7 @@ PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& sett
 }
 
 bool leads(const LiquidPass& pass, const LiquidSettings& settings) {
-  if (pass.solids.present() && pass.memory.coupling.any_moves) return false;
+  if (settings.motion.turns() || (pass.solids.present() && pass.memory.coupling.any_moves)) return false;
   const float edge = pass.box().cell.x;
   return settings.viscosity * pass.step < kThinShare * settings.density * edge * edge;
 }
