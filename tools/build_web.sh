@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the npm package web/gyre-physics: three WebAssembly modules (SIMD; SIMD and threads; plain), and one that reads glTF, with Debian's emscripten, the
-# bindings, and the TypeScript around them, into web/gyre-physics/dist. `npm pack` in that folder then makes the package.
+# Builds the npm package web/gyre-physics: three WebAssembly modules (SIMD; SIMD and threads; plain) and one that reads glTF, with Debian's
+# emscripten, the bindings, and the TypeScript around them, into web/gyre-physics/dist. `npm pack` in that folder then makes the package.
 #
 #   tools/build_web.sh [simd|threads|plain|typescript]...   only these parts; without any, all
 set -euo pipefail
@@ -45,7 +45,7 @@ for part in "${parts[@]}"; do
   case $part in
     simd | threads | plain)
       node $package/tools/pack.mjs "$part" "build/web-$part/web" $package/dist/engine
-      # The reader of glTF is the same module in every build but that with threads.
+      # The reader of glTF is one module for all builds: without SIMD if that is made, which then comes last.
       if [ "$part" != threads ]; then node $package/tools/pack.mjs gltf "build/web-$part/web" $package/dist/engine; fi
       ;;
     typescript)

@@ -28,7 +28,13 @@ let glue = readFileSync(join(from, `${program}.mjs`), 'utf8');
 // Twice more, for size: 1.4 % of a packed module, where -Oz, here or for emscripten's link, leaves fewer bytes that pack worse. Nothing
 // lies in the first 1,024 bytes (GLOBAL_BASE, ../../bindings), so what is added to an address can go into the access: another 1.2 %.
 const module = join(from, `${program}.small.wasm`);
-const features = { simd: ['--enable-simd'], threads: ['--enable-simd', '--enable-threads', '--enable-bulk-memory', '--enable-sign-ext'], plain: [], gltf: ['--strip-target-features'] }[build];
+// The reader of glTF may come from a folder with SIMD; nothing is added where it does not.
+const features = {
+  simd: ['--enable-simd'],
+  threads: ['--enable-simd', '--enable-threads', '--enable-bulk-memory', '--enable-sign-ext'],
+  plain: [],
+  gltf: ['--enable-simd'],
+}[build];
 execFileSync('wasm-opt', ['--enable-mutable-globals', ...features, '--low-memory-unused', '-Os', '-Os', join(from, `${program}.wasm`), '-o', module]);
 const wasm = readFileSync(module);
 const packed = execFileSync('zstd', ['--ultra', '-22', '--no-check', '-q', '-c', module], { maxBuffer: wasm.length });
