@@ -19,7 +19,7 @@ typedef struct GyreLoadOptions {
   bool free_base;      /* URDF: the root link moves freely; otherwise the root is static */
   bool keep_fixed;     /* fixed joints stay joints; otherwise they make one body of two links */
   bool self_collision; /* URDF: links of the robot collide with each other, neighbours excepted */
-  bool decompose;      /* concave meshes of moving bodies become several hulls; otherwise each becomes one hull */
+  bool decompose; /* concave meshes of moving bodies become several hulls; otherwise each becomes one hull */
   /* Folders that may be read beside the folder of the file. NAME=FOLDER is the folder of the package NAME. */
   const char* const* packages;
   size_t package_count;
