@@ -447,7 +447,7 @@ CommandResult execute(WorldState& s, const SetCombineRules& c) {
 
 // Sums beyond the range of float are clamped.
 Vec3 bounded(Vec3 v) {
-  constexpr float kMax = 3.0e38f;
+  constexpr float kMax = 3.0e38f;  // just below the largest float
   return {clamp(v.x, -kMax, kMax), clamp(v.y, -kMax, kMax), clamp(v.z, -kMax, kMax)};
 }
 CommandResult execute(WorldState& s, const AddForce& c) {

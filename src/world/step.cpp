@@ -101,7 +101,7 @@ void report_stiffness(WorldState& s) {
   if (step <= longest) return;
   const JointRecord& joint = w.joints.records[mode.joint];
   const std::int32_t body = joint.body_b != kNoBody ? joint.body_b : joint.body_a;
-  constexpr double kRadiansPerTurn = 6.283185307179586;
+  constexpr double kRadiansPerTurn = 6.283185307179586;  // rad
   report_problem(s, ErrorCode::unstable, body_id(w, std::uint32_t(body)),
                  "%s cannot follow the explicit springs (%.4g Hz, most of it joint %u): it moves by %.4g s "
                  "at a time, the critical "
@@ -122,7 +122,7 @@ void report_large_islands(WorldState& s) {
 
 // Sequential impulses converge slowly where heavy bodies hang on light ones, or in loops. Joints open then.
 void report_missed_impulses(WorldState& s) {
-  constexpr double kMissed = 2.0;
+  constexpr double kMissed = 2.0;  // times the speed of a fall for a sub-step
   const RowStats& rows = s.solve.rows;
   if (!(rows.missed_share > kMissed)) return;
   report_problem(s, ErrorCode::unstable, {},

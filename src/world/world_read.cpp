@@ -435,7 +435,7 @@ SpringStability World::spring_stability() const {
   out.springs = fastest.springs;
   out.critical_step = std::numeric_limits<double>::infinity();
   if (fastest.springs == 0) return out;
-  constexpr double kTurn = 6.283185307179586;
+  constexpr double kTurn = 6.283185307179586;  // rad
   out.frequency = fastest.frequency / kTurn;
   out.damping_ratio = fastest.frequency > 0.0 ? fastest.decay / fastest.frequency : 0.0;
   const double step = critical_step(motion_settings(w).integrator, fastest.frequency, fastest.decay);

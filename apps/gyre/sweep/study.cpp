@@ -217,7 +217,7 @@ void refuse_equal_names(const Members& in, const char* key, const std::vector<st
   }
 }
 
-Study parse_study(const std::string& text, const std::string& path, const ReadText& read) {
+Study parse_study(const std::string& text, const std::string& path, ReadText read) {
   const Json root = parse_document(text, path, {});
   Members in(path, "", root);
   Study out;
@@ -300,7 +300,7 @@ std::vector<Json> Study::values_of(std::uint64_t number) const {
   return out;
 }
 
-SceneResult<Study> read_study(const std::string& text, const std::string& path, const ReadText& read) {
+SceneResult<Study> read_study(const std::string& text, const std::string& path, ReadText read) {
   try {
     return parse_study(text, path, read);
   } catch (const SceneError& error) {

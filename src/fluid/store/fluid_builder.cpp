@@ -93,7 +93,7 @@ Error check_combustion(const Combustion& combustion) {
     const Error e = check_range(name, double(value), low, bound);
     return e ? refuse("combustion.%s", e.message) : e;
   };
-  constexpr double kMinPositive = 1.0e-30;
+  constexpr double kMinPositive = 1.0e-30;  // in the units of each setting: not zero
   if (const Error e = check("ignition_temperature", combustion.ignition_temperature, 0.0, "at least 0"))
     return e;
   if (const Error e = check("burn_rate", combustion.burn_rate, 0.0, "at least 0")) return e;

@@ -160,7 +160,7 @@ void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
 
 // True if the fully submerged body would oscillate with w h > 0.3 about a cut across its thinnest part.
 bool needs_implicit_buoyancy(const RigidWorld& w, const FieldBody& from, double h) {
-  constexpr double kStiff = 0.1;
+  constexpr double kStiff = 0.1;  // (w h)^2 from which the implicit form pays
   double buoyancy = 0.0;
   for (const std::uint32_t slot : from.fields) {
     const FieldRecord& field = w.fields[slot];

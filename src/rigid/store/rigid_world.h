@@ -8,6 +8,7 @@
 #include "collision/contact/collide.h"
 #include "collision/contact/contact_store.h"
 #include "collision/contact/internal_edges.h"
+#include "math/standard_gravity.h"
 #include "rigid/store/active_constraints.h"
 #include "rigid/store/body_store.h"
 #include "rigid/store/field_record.h"
@@ -58,10 +59,9 @@ struct RigidSettings {
 };
 
 // The acceleration by which speeds are judged: that of gravity, and where the world has none, that of the Earth's.
-constexpr float kEarthGravity = 9.81f;  // m/s^2
 inline float reference_gravity(const RigidSettings& settings) {
   const float gravity = length(settings.gravity);
-  return gravity > 0.0f ? gravity : kEarthGravity;
+  return gravity > 0.0f ? gravity : float(kEarthGravity);
 }
 
 // The world's sleep speed, as a share of sqrt(gravity * bounding radius), the natural speed of a body.
