@@ -260,6 +260,51 @@ TEST(Urdf, AMimicJointTurnsInItsRatio) {
   EXPECT_NEAR(runner.world().angular_velocity(follower).y, -2 * leading, 1e-3f);
 }
 
+// A square of 2 by 1 units in centimetres, one polygon, which the scene of the file shows twice: turned and moved, and mirrored.
+constexpr const char* kDae = R"(<COLLADA><asset><unit meter="0.01"/><up_axis>Z_UP</up_axis></asset>
+  <library_geometries><geometry id="g"><mesh><source id="s"><float_array id="a" count="12">0 0 0 2 0 0 2 1 0 0 1 0</float_array>
+    <technique_common><accessor source="#a" count="4" stride="3"/></technique_common></source>
+    <vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
+    <polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><input semantic="NORMAL" source="#s" offset="1"/>
+      <vcount>4</vcount><p>0 0 1 0 2 0 3 0</p></polylist></mesh></geometry></library_geometries>
+  <library_nodes><node id="n"><instance_geometry url="#g"/></node></library_nodes>
+  <library_visual_scenes><visual_scene id="all">
+    <node><translate>0 0 5</translate><rotate>0 0 1 90</rotate><instance_node url="#n"/></node>
+    <node><scale>-1 1 1</scale><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#all"/></scene></COLLADA>)";
+
+TEST(Urdf, ColladaMeshesAreReadInMetresAndInTheirPlaces) {
+  ImportOptions options;
+  options.open_files = false;
+  const auto robot = [&](std::string dae) {
+    options.files["m.dae"] = std::move(dae);
+    return import_scene(
+        "<robot name='r'><link name='base'><collision><geometry><mesh "
+        "filename='m.dae'/></geometry></collision></link></robot>",
+        FileFormat::urdf, "r.urdf", options);
+  };
+  const SceneResult<Scene> scene = robot(kDae);
+  ASSERT_TRUE(scene) << scene.error().text();
+  ASSERT_EQ(scene->meshes.size(), 1u);
+  const SceneMesh& mesh = scene->meshes[0];
+  ASSERT_EQ(mesh.vertices.size(), 8u);
+  EXPECT_NEAR(length(mesh.vertices[2] - Vec3{-0.01f, 0.02f, 0.05f}), 0, 1e-7);
+  EXPECT_NEAR(length(mesh.vertices[6] - Vec3{-0.02f, 0.01f, 0}), 0, 1e-7);
+  EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6}));
+  const auto refused = [&](const std::string& from, const std::string& to, const std::string& expected) {
+    std::string text = kDae;
+    text.replace(text.find(from), from.size(), to);
+    const SceneResult<Scene> other = robot(text);
+    ASSERT_FALSE(other) << to;
+    EXPECT_NE(other.error().text().find(expected), std::string::npos) << other.error().text();
+  };
+  refused("0 0 1 0 2 0", "9 0 1 0 2 0", "index out of range");
+  refused("<vcount>4", "<vcount>5", "fewer indices");
+  refused("url=\"#n\"", "url=\"#x\"", "names nothing");
+  refused("<instance_geometry url=\"#g\"/></node></library_nodes>",
+          "<instance_node url=\"#n\"/></node></library_nodes>", "nested too deep");
+}
+
 TEST(Urdf, OptionsFreeTheBaseAndKeepFixedJoints) {
   ImportOptions options;
   options.free_base = true;
@@ -393,6 +438,50 @@ TEST(Mjcf, AngleUnitsOrientationsAndContactBitsAreRead) {
   EXPECT_FALSE(collide(world.filter, b.filter));
   EXPECT_FALSE(collide(a.filter, b.filter));
   EXPECT_EQ(scene->notes[0], "a.xml: not simulated: sensor <gyro> (2)");
+}
+
+// An arm of 1 kg at the end of 0.3 m, which is level, and a wheel that turns about the same axis.
+std::string coupled_by(const std::string& more) {
+  return R"(<mujoco><compiler angle="radian"/><worldbody>
+    <body name="arm" pos="0 0 1"><joint name="p" axis="0 1 0"/><geom type="sphere" size="0.05" pos="0.3 0 0" mass="1"/></body>
+    <body name="wheel" pos="2 0 1"><joint name="q" axis="0 1 0"/><geom type="sphere" size="0.1" mass="1"/></body></worldbody>)" +
+         more + "</mujoco>";
+}
+
+TEST(Mjcf, AFixedTendonThatAnEqualityHoldsCouplesTwoHinges) {
+  const std::string tendon =
+      "<tendon><fixed name='t'><joint joint='p' coef='1'/><joint joint='q' coef='-0.5'/></fixed></tendon>";
+  const SceneResult<Scene> scene = import_scene(
+      coupled_by(tendon + "<equality><tendon tendon1='t'/></equality>"), FileFormat::mjcf, "a.xml");
+  ASSERT_TRUE(scene) << scene.error().text();
+  EXPECT_TRUE(scene->notes.empty()) << scene->notes[0];
+  SceneRunner runner = run_scene(*scene, 0.002);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(runner.step());
+  const double arm = runner.world().angular_velocity(body_in(runner, "arm")).z;
+  EXPECT_GT(std::abs(arm), 0.5);  // it falls
+  EXPECT_NEAR(runner.world().angular_velocity(body_in(runner, "wheel")).z, 2 * arm, 1e-3);
+}
+
+TEST(Mjcf, TendonsThatExertNothingAreNoNoteAndOthersAreCounted) {
+  const SceneResult<Scene> idle = import_scene(
+      coupled_by(
+          "<tendon><fixed name='t'><joint joint='p' coef='1'/><joint joint='q' coef='1'/></fixed></tendon>"),
+      FileFormat::mjcf, "a.xml");
+  ASSERT_TRUE(idle) << idle.error().text();
+  EXPECT_TRUE(idle->notes.empty());
+  const SceneResult<Scene> others = import_scene(
+      coupled_by("<tendon><fixed name='t' stiffness='3' range='0 1'><joint joint='p' coef='1'/></fixed>"
+                 "<spatial/></tendon><equality><tendon tendon1='t'/></equality>"),
+      FileFormat::mjcf, "a.xml");
+  ASSERT_TRUE(others) << others.error().text();
+  EXPECT_EQ(others->notes[0],
+            "a.xml: not simulated: equality <tendon> (1), limits of a fixed tendon (1), stiffness of a fixed "
+            "tendon (1), tendon <spatial> (1)");
+  const SceneResult<Scene> wrong =
+      import_scene(coupled_by("<tendon><fixed name='t'><joint joint='r' coef='1'/></fixed></tendon>"),
+                   FileFormat::mjcf, "a.xml");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().text().find("found joint \"r\""), std::string::npos) << wrong.error().text();
 }
 
 TEST(Mjcf, JointsWithoutACounterpartGetALightBodyBetween) {

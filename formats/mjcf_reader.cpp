@@ -46,6 +46,8 @@ class MjcfReader {
   void connect(int parent, int child, const std::vector<MjcfJoint>& joints);
   void read_equalities();
   void couple_joints(const XmlElement& equality);
+  void couple_tendons(const XmlElement& equality);
+  void read_tendons();
   void read_excludes();
   void set_filters();
   int body_named(const XmlElement& element, const char* attribute, bool required) const;
@@ -56,6 +58,11 @@ class MjcfReader {
     ModelAxis axis;
     bool alone = false;  // the only joint of its body
   };
+  // A length of a fixed tendon: the sum of joint coordinates, each times a coefficient.
+  using TendonTerms = std::map<std::string, double>;
+
+  bool couple(const std::string& name, const JointPlace& first, const JointPlace& second, double factor);
+  void add_terms(const XmlElement& equality, const char* attribute, double factor, TendonTerms& terms) const;
 
   Import& import_;
   const XmlElement& root_;
@@ -67,6 +74,7 @@ class MjcfReader {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> contact_bits_;  // of each link
   std::map<std::string, int> link_names_;
   std::map<std::string, JointPlace> joint_places_;
+  std::map<std::string, TendonTerms> tendons_;
   std::vector<int> body_of_;
 };
 
@@ -359,6 +367,23 @@ int MjcfReader::body_named(const XmlElement& element, const char* attribute, boo
 }
 
 // A gear measures rotations against the world, so that a coupling holds if both hinges have a static parent.
+// Holds the coordinate of `first` at `factor` times that of `second`. False if the engine has no such coupling.
+bool MjcfReader::couple(const std::string& name, const JointPlace& first, const JointPlace& second,
+                        double factor) {
+  const auto is_turned_by_the_world = [&](const JointPlace& place) {
+    return place.alone && !place.axis.slide &&
+           import_.scene.bodies[std::size_t(place.parent)].def.type == BodyType::fixed;
+  };
+  if (factor == 0 || !is_turned_by_the_world(first) || !is_turned_by_the_world(second)) return false;
+  GearDef gear;
+  gear.anchor = first.axis.anchor;
+  gear.axis = second.axis.axis;
+  gear.axis_b = first.axis.axis;
+  gear.ratio = float(-1.0 / factor);
+  add_joint(import_, name, second.child, first.child, gear);
+  return true;
+}
+
 void MjcfReader::couple_joints(const XmlElement& equality) {
   const auto first = joint_places_.find(equality.need_text("joint1"));
   if (first == joint_places_.end())
@@ -367,21 +392,68 @@ void MjcfReader::couple_joints(const XmlElement& equality) {
   std::vector<double> poly = equality.numbers("polycoef", 1, 5);
   if (poly.empty()) poly = {0, 1};
   poly.resize(5);
-  const auto is_still = [&](const JointPlace& place) {
-    return place.alone && import_.scene.bodies[std::size_t(place.parent)].def.type == BodyType::fixed;
-  };
-  const bool is_linear = poly[0] == 0 && poly[1] != 0 && poly[2] == 0 && poly[3] == 0 && poly[4] == 0;
-  if (second == joint_places_.end() || !is_linear || !is_still(first->second) || !is_still(second->second) ||
-      second->second.axis.slide || first->second.axis.slide) {
+  const bool is_linear = poly[0] == 0 && poly[2] == 0 && poly[3] == 0 && poly[4] == 0;
+  if (second == joint_places_.end() || !is_linear ||
+      !couple(equality.text("name", "coupling"), first->second, second->second, poly[1]))
     import_.findings.left_out("equality <joint>");
-    return;
+}
+
+// Fixed tendons by name. Without a spring, limit or friction of its own a tendon exerts nothing until an equality holds it.
+void MjcfReader::read_tendons() {
+  for (const XmlElement& section : root_.children("tendon")) {
+    for (const XmlElement& tendon : section.children()) {
+      if (tendon.name() != "fixed") {
+        import_.findings.left_out("tendon <" + tendon.name() + ">");
+        continue;
+      }
+      TendonTerms terms;
+      for (const XmlElement& term : tendon.children("joint")) {
+        const std::string joint = term.need_text("joint");
+        if (joint_places_.count(joint) == 0)
+          term.fail("found joint \"" + joint + "\", expected the name of a joint");
+        terms[joint] += term.need_number("coef");
+      }
+      if (tendon.has("name")) tendons_[tendon.text("name")] = std::move(terms);
+      for (const char* force : {"stiffness", "damping", "frictionloss"}) {
+        if (tendon.has(force) && !(tendon.number(force, 0) == 0))
+          import_.findings.left_out(std::string(force) + " of a fixed tendon");
+      }
+      const bool is_limited = tendon.text("limited", "auto") == "auto"
+                                  ? tendon.has("range") && compiler_.auto_limits
+                                  : tendon.text("limited") == "true";
+      if (is_limited) import_.findings.left_out("limits of a fixed tendon");
+    }
   }
-  GearDef gear;
-  gear.anchor = first->second.axis.anchor;
-  gear.axis = second->second.axis.axis;
-  gear.axis_b = first->second.axis.axis;
-  gear.ratio = float(-1.0 / poly[1]);
-  add_joint(import_, equality.text("name", "coupling"), second->second.child, first->second.child, gear);
+}
+
+void MjcfReader::add_terms(const XmlElement& equality, const char* attribute, double factor,
+                           TendonTerms& terms) const {
+  const auto tendon = tendons_.find(equality.text(attribute));
+  if (tendon == tendons_.end()) {
+    equality.fail("found " + std::string(attribute) + " \"" + equality.text(attribute) +
+                  "\", expected the name of a fixed tendon");
+  }
+  for (const auto& [joint, coefficient] : tendon->second) terms[joint] += factor * coefficient;
+}
+
+// The length of one tendon stays, or is a multiple of another's: a coupling where the sum of both is one of two hinges.
+void MjcfReader::couple_tendons(const XmlElement& equality) {
+  std::vector<double> poly = equality.numbers("polycoef", 1, 5);
+  if (poly.empty()) poly = {0, 1};
+  poly.resize(5);
+  TendonTerms terms;
+  add_terms(equality, "tendon1", 1, terms);
+  if (equality.has("tendon2")) add_terms(equality, "tendon2", -poly[1], terms);
+  for (auto term = terms.begin(); term != terms.end();)
+    term = term->second == 0 ? terms.erase(term) : std::next(term);
+  const bool is_linear = poly[0] == 0 && poly[2] == 0 && poly[3] == 0 && poly[4] == 0;
+  if (terms.size() == 2 && is_linear) {
+    const auto first = terms.begin(), second = std::next(first);
+    if (couple(equality.text("name", "tendon"), joint_places_.at(first->first),
+               joint_places_.at(second->first), -second->second / first->second))
+      return;
+  }
+  import_.findings.left_out("equality <tendon>");
 }
 
 void MjcfReader::read_equalities() {
@@ -391,6 +463,10 @@ void MjcfReader::read_equalities() {
       if (!equality.flag("active", true)) continue;
       if (kind == "joint") {
         couple_joints(equality);
+        continue;
+      }
+      if (kind == "tendon" && tendons_.count(equality.text("tendon1")) != 0) {
+        couple_tendons(equality);
         continue;
       }
       if ((kind != "connect" && kind != "weld") || !equality.has("body1")) {
@@ -461,7 +537,7 @@ void MjcfReader::set_filters() {
 
 void MjcfReader::count_unknown() const {
   constexpr const char* kKnown[] = {"compiler", "option",    "size",     "visual",   "statistic", "default",
-                                    "asset",    "worldbody", "actuator", "equality", "contact"};
+                                    "asset",    "worldbody", "actuator", "equality", "contact",   "tendon"};
   for (const XmlElement& section : root_.children()) {
     const std::string name = section.name();
     if (std::any_of(std::begin(kKnown), std::end(kKnown), [&](const char* known) { return name == known; }))
@@ -481,6 +557,7 @@ void MjcfReader::read() {
   set_filters();
   body_of_ = build_bodies(import_, tree_);
   make_joints();
+  read_tendons();
   read_equalities();
   read_excludes();
   count_unknown();

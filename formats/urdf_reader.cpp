@@ -1,5 +1,6 @@
 // URDF robots to scenes. The format: Open Robotics, "XML Robot Description Format", http://wiki.ros.org/urdf/XML. z is up there; the
 // robot's frame is turned so that y is up. See import.h.
+#include "formats/xml_collada.h"
 #include "formats/model_tree.h"
 #include "formats/xml_robots.h"
 
@@ -195,8 +196,8 @@ std::optional<SceneShape> UrdfReader::shape_of(const XmlElement& collision) {
     shape.local.orientation = shape.local.orientation * z_from_y;
   } else if (kind.name() == "mesh") {
     const std::string file = kind.need_text("filename");
-    if (mesh_format_of(file) == MeshFormat::none) {
-      import_.findings.left_out("collision mesh that is not .stl, .obj or .ply");
+    if (mesh_format_of(file) == MeshFormat::none && !is_collada(file)) {
+      import_.findings.left_out("collision mesh that is not .stl, .obj, .ply or .dae");
       return std::nullopt;
     }
     const Vec3 scale = kind.vec3("scale", {1, 1, 1});

@@ -120,7 +120,7 @@ OUTER = {
     "examples": set(),
     "kit": {"kit"},
     "capi": {"capi", "scene"},
-    "web": {"web", "scene"},
+    "web": {"web", "formats", "scene"},
 }
 
 PUBLIC_STANDARD = {

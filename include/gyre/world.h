@@ -305,6 +305,9 @@ class World {
   SoftVertices vertices(SoftId soft) const;
   // The surface: three vertices each, counter-clockwise seen from outside (of a cloth: from one side). None of a rope.
   std::span<const std::uint32_t> soft_triangles(SoftId soft) const;
+  // The elements of a solid as it is now, also of one made from a box or a surface. Copies up to out.size() numbers, four vertices a
+  // tetrahedron; returns how many numbers there are, 0 for ropes and cloths. At rest each tetrahedron has a positive volume.
+  std::size_t solid_tetrahedra(SoftId solid, std::span<std::uint32_t> out) const;
   // The surface that a solid was made of (SolidDef::surface), carried along by its tetrahedra: for pictures. Copies up to out.size() places of
   // its vertices, in the order of the definition; returns how many there are, 0 without such a surface.
   std::size_t soft_surface(SoftId soft, std::span<DVec3> out) const;
