@@ -46,6 +46,7 @@ class MjcfReader {
   void connect(int parent, int child, const std::vector<MjcfJoint>& joints);
   void read_equalities();
   void couple_joints(const XmlElement& equality);
+  void couple_tendon(const XmlElement& equality);
   void read_excludes();
   void set_filters();
   int body_named(const XmlElement& element, const char* attribute, bool required) const;
@@ -55,7 +56,18 @@ class MjcfReader {
     int parent = -1, child = -1;
     ModelAxis axis;
     bool alone = false;  // the only joint of its body
+    int made = -1;       // the hinge or slider of the scene, if it is alone
   };
+  static SceneCouplingTerm term_of(const JointPlace& place, double coefficient) {
+    return {place.made, place.axis.slide ? JointAxis::linear_x : JointAxis::angular_x, float(coefficient)};
+  }
+  static std::vector<double> polynomial_of(const XmlElement& equality) {
+    std::vector<double> poly = equality.numbers("polycoef", 1, 5);
+    if (poly.empty()) poly = {0, 1};
+    poly.resize(5);
+    return poly;
+  }
+  static bool is_linear(const std::vector<double>& poly) { return poly[2] == 0 && poly[3] == 0 && poly[4] == 0; }
 
   Import& import_;
   const XmlElement& root_;
@@ -314,11 +326,13 @@ void MjcfReader::connect(int parent, int child, const std::vector<MjcfJoint>& jo
     axes.push_back(joint.axis);
     has_ball = has_ball || joint.ball;
     if (!joint.name.empty())
-      joint_places_[joint.name] = {parent, child, joint.axis, joints.size() == 1 && !joint.ball};
+      joint_places_[joint.name] = {parent, child, joint.axis, joints.size() == 1 && !joint.ball, -1};
   }
   std::optional<JointDef> whole;
   if (!has_ball) whole = joint_of_axes(axes);
   if (has_ball && joints.size() == 1) whole = ball_of(joints[0]);
+  if (whole && joints.size() == 1 && !joints[0].name.empty())
+    joint_places_[joints[0].name].made = int(import_.scene.joints.size());
   if (whole) return add(joints[0].name, parent, child, *whole);
   int from = parent;
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -358,30 +372,43 @@ int MjcfReader::body_named(const XmlElement& element, const char* attribute, boo
   return body_of_[std::size_t(found->second)];
 }
 
-// A gear measures rotations against the world, so that a coupling holds if both hinges have a static parent.
+// Positions are measured from the pose of the file, as its polynomials are.
 void MjcfReader::couple_joints(const XmlElement& equality) {
   const auto first = joint_places_.find(equality.need_text("joint1"));
   if (first == joint_places_.end())
     equality.fail("found joint1 \"" + equality.text("joint1") + "\", expected the name of a joint");
   const auto second = joint_places_.find(equality.text("joint2"));
-  std::vector<double> poly = equality.numbers("polycoef", 1, 5);
-  if (poly.empty()) poly = {0, 1};
-  poly.resize(5);
-  const auto is_still = [&](const JointPlace& place) {
-    return place.alone && import_.scene.bodies[std::size_t(place.parent)].def.type == BodyType::fixed;
-  };
-  const bool is_linear = poly[0] == 0 && poly[1] != 0 && poly[2] == 0 && poly[3] == 0 && poly[4] == 0;
-  if (second == joint_places_.end() || !is_linear || !is_still(first->second) || !is_still(second->second) ||
-      second->second.axis.slide || first->second.axis.slide) {
+  const std::vector<double> poly = polynomial_of(equality);
+  if (second == joint_places_.end() || !is_linear(poly) || poly[1] == 0 || !first->second.alone || !second->second.alone) {
     import_.findings.left_out("equality <joint>");
     return;
   }
-  GearDef gear;
-  gear.anchor = first->second.axis.anchor;
-  gear.axis = second->second.axis.axis;
-  gear.axis_b = first->second.axis.axis;
-  gear.ratio = float(-1.0 / poly[1]);
-  add_joint(import_, equality.text("name", "coupling"), second->second.child, first->second.child, gear);
+  SceneCoupling coupling;
+  coupling.terms = {term_of(first->second, 1), term_of(second->second, -poly[1])};
+  coupling.offset = float(poly[0]);
+  import_.scene.couplings.push_back(std::move(coupling));
+}
+
+// A fixed tendon, the sum of coefficients times positions, that keeps its length.
+void MjcfReader::couple_tendon(const XmlElement& equality) {
+  const std::string name = equality.need_text("tendon1");
+  const std::vector<double> poly = polynomial_of(equality);
+  SceneCoupling coupling;
+  for (const XmlElement& section : root_.children("tendon")) {
+    for (const XmlElement& fixed : section.children("fixed")) {
+      if (fixed.text("name") != name) continue;
+      for (const XmlElement& part : fixed.children("joint")) {
+        const auto found = joint_places_.find(part.need_text("joint"));
+        if (found == joint_places_.end() || !found->second.alone) return import_.findings.left_out("equality <tendon>");
+        coupling.terms.push_back(term_of(found->second, part.number("coef", 1)));
+      }
+    }
+  }
+  const std::size_t count = coupling.terms.size();
+  if (count < 2 || count > std::size_t(kMaxCouplingTerms) || equality.has("tendon2") || !is_linear(poly))
+    return import_.findings.left_out("equality <tendon>");
+  coupling.offset = float(poly[0]);
+  import_.scene.couplings.push_back(std::move(coupling));
 }
 
 void MjcfReader::read_equalities() {
@@ -389,8 +416,8 @@ void MjcfReader::read_equalities() {
     for (const XmlElement& equality : section.children()) {
       const std::string kind = equality.name();
       if (!equality.flag("active", true)) continue;
-      if (kind == "joint") {
-        couple_joints(equality);
+      if (kind == "joint" || kind == "tendon") {
+        kind == "joint" ? couple_joints(equality) : couple_tendon(equality);
         continue;
       }
       if ((kind != "connect" && kind != "weld") || !equality.has("body1")) {
