@@ -116,7 +116,11 @@ std::vector<Command> all_commands() {
           SetBodyUserData{body, 1234567890123},
           SetShapeUserData{shape, 1234567890124},
           SetBreakLoad{joint, 1.5f, 2.5f},
-          SetPairIgnored{body, BodyId{4, 6, kWorld}, true}};
+          SetPairIgnored{body, BodyId{4, 6, kWorld}, true},
+          SetEnabled{body, false},
+          AddCoupling{{.terms = {{joint, JointAxis::linear_y, 2.5f}, {JointId{1, 2, kWorld}, JointAxis::angular_z, -3.0f}},
+                       .offset = 0.75f}},
+          RemoveCoupling{CouplingId{4, 3, kWorld}}};
 }
 
 // Fields of certain kinds of joints are restored as well.
