@@ -262,11 +262,14 @@ void SceneRunner::put_present_softs(Scene& out, const std::vector<int>& places) 
   // One that was torn is no longer of its grid or mesh.
   put(out.cloths, scene_.cloths, cloths_, [&](SceneCloth& cloth, std::size_t i) {
     ClothDef present = world_.cloth_def(cloths_[i]);
-    const std::size_t before = cloth.def.grid ? std::size_t(cloth.def.grid->cells[0] + 1) * std::size_t(cloth.def.grid->cells[1] + 1)
-                                              : scene_.meshes[std::size_t(cloth.mesh)].vertices.size();
+    const std::size_t before =
+        cloth.def.grid ? std::size_t(cloth.def.grid->cells[0] + 1) * std::size_t(cloth.def.grid->cells[1] + 1)
+                       : scene_.meshes[std::size_t(cloth.mesh)].vertices.size();
     if (present.settings.positions.size() == before) return;
     std::string name = cloth.name + " (torn)";
-    while (std::any_of(out.meshes.begin(), out.meshes.end(), [&](const SceneMesh& mesh) { return mesh.name == name; })) name += "'";
+    while (std::any_of(out.meshes.begin(), out.meshes.end(),
+                       [&](const SceneMesh& mesh) { return mesh.name == name; }))
+      name += "'";
     cloth.mesh = int(out.meshes.size());
     cloth.def.grid.reset();
     cloth.def.pressure.reset();
@@ -293,7 +296,25 @@ std::vector<FluidEmitter> SceneRunner::present_emitters(const std::vector<FluidE
   return left;
 }
 
-// Definitions stay those of the scene. The state is the fields of a gas and the particles of a liquid.
+DVec3 SceneRunner::probe_place(FluidId fluid, const SceneProbe& probe) const {
+  const Pose pose = world_.fluid_info(fluid).pose;
+  if (pose == Pose{}) return probe.position;
+  const Quat& q = pose.orientation;
+  const DVec3 u{double(q.x), double(q.y), double(q.z)}, t = 2.0 * cross(u, probe.position);
+  return pose.position + probe.position + double(q.w) * t + cross(u, t);
+}
+
+namespace {
+
+template <class Def>
+void put_present_frame(const Def& present, Def& out) {
+  out.pose = present.pose;
+  out.linear_velocity = present.linear_velocity, out.angular_velocity = present.angular_velocity;
+}
+
+}  // namespace
+
+// Definitions stay those of the scene. The state is where the box is, and the fields of a gas and the particles of a liquid.
 void SceneRunner::put_present_fluids(Scene& out) const {
   out.gases.clear();
   for (std::size_t i = 0; i < gases_.size(); ++i) {
@@ -302,6 +323,7 @@ void SceneRunner::put_present_fluids(Scene& out) const {
     GasDef present = world_.gas_def(gases_[i]);
     gas.def.emitters = present_emitters(present.emitters);
     gas.def.fields = std::move(present.fields);
+    put_present_frame(present, gas.def);
   }
   out.liquids.clear();
   for (std::size_t i = 0; i < liquids_.size(); ++i) {
@@ -310,10 +332,12 @@ void SceneRunner::put_present_fluids(Scene& out) const {
     LiquidDef present = world_.liquid_def(liquids_[i]);
     liquid.def.emitters = present_emitters(present.emitters);
     liquid.def.particles = std::move(present.particles);
+    put_present_frame(present, liquid.def);
     // Particles may lie where the box is widened to whole cells.
     const FluidInfo info = world_.fluid_info(liquids_[i]);
     const double cell = double(liquid.def.cell_size);
-    const DVec3 widened = info.lower + DVec3{info.cells[0] * cell, info.cells[1] * cell, info.cells[2] * cell};
+    const DVec3 widened =
+        info.lower + DVec3{info.cells[0] * cell, info.cells[1] * cell, info.cells[2] * cell};
     DVec3& upper = liquid.def.upper;
     upper = {max(upper.x, widened.x), max(upper.y, widened.y), max(upper.z, widened.z)};
   }

@@ -65,6 +65,8 @@ class SceneRunner {
     each(scene_.gases, gases_);
     each(scene_.liquids, liquids_);
   }
+  // Where a probe is now, m, in the world.
+  DVec3 probe_place(FluidId fluid, const SceneProbe& probe) const;
   // Null for the world or a body that is not of this scene.
   const SceneBody* body_of(BodyId id) const;
 

@@ -247,6 +247,11 @@ class World {
 
   // Fluids (fluid.h). Replaces all emitters.
   bool set_emitters(FluidId fluid, std::span<const FluidEmitter> emitters);
+  // Moves the box with all that is in it: velocities relative to the box stay.
+  bool set_fluid_pose(FluidId fluid, const Pose& pose);
+  // The box moves with this velocity from now on (m/s of the origin of its axes, rad/s, in the world). The fluid keeps its velocity in the
+  // world until walls push it.
+  bool set_fluid_velocity(FluidId fluid, Vec3 linear, Vec3 angular);
 
   // Gives an impulse at once to every dynamic body within range; see ExplosionDef.
   bool explode(const ExplosionDef& explosion);

@@ -235,6 +235,14 @@ struct SetPairIgnored {
   BodyId a, b;
   bool ignored = true;
 };
+struct SetFluidPose {
+  FluidId fluid;
+  Pose pose;
+};
+struct SetFluidVelocity {
+  FluidId fluid;
+  Vec3 linear, angular;
+};
 
 struct SetEnabled {
   BodyId body;
@@ -256,7 +264,7 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices, AddFluid, RemoveFluid, SetEmitters,
                              SetSleepShare, SetSleepSpeed, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetShape,
                              SetBodyUserData, SetShapeUserData, SetBreakLoad, SetPairIgnored, SetEnabled, AddCoupling,
-                             RemoveCoupling>;
+                             RemoveCoupling, SetFluidPose, SetFluidVelocity>;
 
 // The result of a command: success, and the id of the new object.
 struct CommandResult {

@@ -237,6 +237,15 @@ template <Is<FluidPush> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.body), for_each_field(r.force, f), for_each_field(r.torque, f);
 }
+template <Is<FluidVisitor> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.index), f(r.generation), f(r.is_soft);
+}
+template <Is<FluidFrame> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.pose.position, f), for_each_field(r.pose.orientation, f);
+  for_each_field(r.velocity, f), for_each_field(r.angular_velocity, f);
+}
 template <Is<RigidSettings> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.gravity, f), f(r.substeps), f(r.sleeping), f(r.friction_rule), f(r.restitution_rule), f(r.last_substep);

@@ -120,6 +120,12 @@ bool World::remove_fluid(FluidId fluid) { return submit(*state_, RemoveFluid{flu
 bool World::set_emitters(FluidId fluid, std::span<const FluidEmitter> emitters) {
   return submit(*state_, SetEmitters{fluid, {emitters.begin(), emitters.end()}}).done;
 }
+bool World::set_fluid_pose(FluidId fluid, const Pose& pose) {
+  return submit(*state_, SetFluidPose{fluid, pose}).done;
+}
+bool World::set_fluid_velocity(FluidId fluid, Vec3 linear, Vec3 angular) {
+  return submit(*state_, SetFluidVelocity{fluid, linear, angular}).done;
+}
 bool World::attach(SoftId soft, int vertex, BodyId body) {
   if (!exists(body)) {
     report_problem(*state_, ErrorCode::stale_id, body, "attach: body %u (generation %u) does not exist in this world",

@@ -81,7 +81,8 @@ struct WorldState {
   Array<std::uint32_t> frozen;
   RigidEvents published_events;  // events of the last step; rigid.events collects those of the next
   SoftEvents published_soft_events;  // soft.events collects those of the next step
-  Events events;                 // spans of both
+  Array<FluidTouch> published_fluid_touches;  // fluids.events collects those of commands for the next step
+  Events events;                 // spans of all
   Array<std::uint8_t> soft_touch_mark;  // by shape; 0 but while shapes are listed
   Array<SoftTouch> soft_touching;
   Array<std::uint8_t> soft_inverted;

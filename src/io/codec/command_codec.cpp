@@ -370,12 +370,29 @@ void fields(C& c, T& v) {
 template <class C, Is<GasDef> T>
 void fields(C& c, T& v) {
   auto& [lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
-         initial, vortices, emitters, state, user_data, combustion] = v;
+         initial, vortices, emitters, state, user_data, combustion, pose, linear, angular] = v;
   all(c, lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
       initial, vortices, emitters, state, user_data);
 }
 // Combustion came later: the definition of a gas without it has the bytes that it always had.
 constexpr std::uint8_t kBurns = 0x80;
+// Nor has one that stands in the axes of the world the bytes of a pose.
+constexpr std::uint8_t kHasFrame = 0x40;
+bool has_frame(const FluidDef& def) {
+  return std::visit(
+      [](const auto& one) {
+        return one.pose != Pose{} || one.linear_velocity != Vec3{} || one.angular_velocity != Vec3{};
+      },
+      def);
+}
+template <class C, class T>
+void frame_fields(C& c, T& def) {
+  std::visit(
+      [&](auto& one) {
+        all(c, one.pose.position, one.pose.orientation, one.linear_velocity, one.angular_velocity);
+      },
+      def);
+}
 bool burns(const FluidDef& def) {
   const auto* const gas = std::get_if<GasDef>(&def);
   return gas != nullptr && gas->combustion.has_value();
@@ -397,18 +414,21 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<LiquidDef> T>
 void fields(C& c, T& v) {
-  auto& [lower, upper, cell_size, fill, density, viscosity, tension, sides, walls, initial, emitters, particles, user_data] = v;
+  auto& [lower, upper, cell_size, fill, density, viscosity, tension, sides, walls, initial, emitters, particles, user_data, pose, linear, angular] = v;
   all(c, lower, upper, cell_size, fill, density, viscosity, tension, sides, walls, initial, emitters, particles, user_data);
 }
 // The kind, then the definition.
 void fields(FieldWriter& c, const std::shared_ptr<const FluidDef>& def) {
-  c.number(std::uint8_t(def->index() | (burns(*def) ? kBurns : 0)));
+  c.number(std::uint8_t(def->index() | (burns(*def) ? kBurns : 0) | (has_frame(*def) ? kHasFrame : 0)));
   std::visit([&](const auto& one) { fields(c, one); }, *def);
   if (burns(*def)) combustion_fields(c, std::get<GasDef>(*def));
+  if (has_frame(*def)) frame_fields(c, *def);
 }
 void fields(FieldReader& c, std::shared_ptr<const FluidDef>& def) {
   std::uint8_t kind = 0;
   c.number(kind);
+  const bool is_placed = (kind & kHasFrame) != 0;
+  kind = std::uint8_t(kind & ~kHasFrame);
   const bool has_combustion = kind == kBurns;
   if (has_combustion) kind = 0;
   FluidDef read;
@@ -420,6 +440,7 @@ void fields(FieldReader& c, std::shared_ptr<const FluidDef>& def) {
     gas.combustion.emplace();
     combustion_fields(c, gas);
   }
+  if (is_placed) frame_fields(c, read);
   def = std::make_shared<const FluidDef>(std::move(read));
 }
 
@@ -440,7 +461,7 @@ template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
                  SetAwake, SetField, SetSleepSpeed, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft,
                  SetEmitters, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetBodyUserData,
-                 SetShapeUserData, SetEnabled>
+                  SetShapeUserData, SetEnabled, SetFluidPose>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
@@ -452,7 +473,7 @@ void fields(C& c, T& v) {
 }
 template <class C, class T>
 requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis, AttachSoft,
-                 SetVertices, SetShape, SetBreakLoad, SetPairIgnored>
+                 SetVertices, SetShape, SetBreakLoad, SetPairIgnored, SetFluidVelocity>
 void fields(C& c, T& v) {
   auto& [first, second, third] = v;
   all(c, first, second, third);
