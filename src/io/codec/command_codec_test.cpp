@@ -116,7 +116,8 @@ std::vector<Command> all_commands() {
           SetBodyUserData{body, 1234567890123},
           SetShapeUserData{shape, 1234567890124},
           SetBreakLoad{joint, 1.5f, 2.5f},
-          SetPairIgnored{body, BodyId{4, 6, kWorld}, true}};
+          SetPairIgnored{body, BodyId{4, 6, kWorld}, true},
+          SetVertexLimits{SoftId{3, 1, kWorld}, {{1, 2, 3}}, {0.5f}, {{0, 1, 0}}, {0.25f}}};
 }
 
 // Fields of certain kinds of joints are restored as well.

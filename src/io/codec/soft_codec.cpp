@@ -30,6 +30,13 @@ void write_soft(ByteWriter& out, const SoftStore& soft) {
     for_each_damage_array(entry, [&](const auto& array) { write_array(out, array); });
     for_each_soft_array(entry, [&](const auto& array) { write_array(out, array); });
   });
+  // By slot; left out if there are none.
+  bool any = false;
+  soft.for_each([&](const SoftEntry& entry) { any = any || has_rare_state(entry); });
+  if (!any) return;
+  soft.for_each([&](const SoftEntry& entry) {
+    for_each_rare_array(entry, [&](const auto& array) { write_array(out, array); });
+  });
 }
 
 bool read_soft(ByteReader& in, SoftStore& soft) {
@@ -48,7 +55,12 @@ bool read_soft(ByteReader& in, SoftStore& soft) {
     for_each_soft_array(entry, [&](auto& array) { good = good && read_array(in, array); });
     if (!good || !fits(entry)) return false;
   }
-  return true;
+  bool good = true;
+  if (in.left() == 0) return good;
+  soft.for_each([&](SoftEntry& entry) {
+    for_each_rare_array(entry, [&](auto& array) { good = good && read_array(in, array); });
+  });
+  return good;
 }
 
 }  // namespace gyre

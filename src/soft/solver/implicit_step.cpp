@@ -217,8 +217,8 @@ void find_impulses(const Particles& particles, const ImplicitSettings& settings,
 }
 
 void keep_momentum(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
-                   const VectorRows& change) {
-  if (step.carried.empty()) return gyre::keep_momentum(body.particles, impulses, change);
+                   const VectorRows& change, double ahead = 0.0) {
+  if (step.carried.empty()) return gyre::keep_momentum(body.particles, impulses, change, ahead);
   keep_linear_momentum(body.particles, step.carried, impulses, change);
 }
 
@@ -246,7 +246,7 @@ ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, co
   step.report = solve(body, step.pass, settings, mass, kernels, tasks);
   if (body.held.empty()) {
     find_impulses(body.particles, settings, step.pass.product);
-    keep_momentum(body, step, step.pass.product, step.pass.change);
+    keep_momentum(body, step, step.pass.product, step.pass.change, settings.is_stage ? double(settings.step) : 0.0);
   }
   keep_pull(body, settings, step.pass);
   change_velocities(body.particles, step.pass.change);

@@ -283,7 +283,7 @@ void invert_in_band(Band<Width> factor, Band<Width> inverse) {
 RopeStep begin_rope(SoftBody& body, const RopeSettings& settings, Arena& arena) {
   RopeStep step;
   const std::size_t count = std::size_t(body.particles.count);
-  step.h = double(settings.step);
+  step.h = step.move = double(settings.step);
   step.has_bending = body.chain.bend_stiffness > 0.0;
   step.band = arena.make<double>(kUnknowns * count * (step.has_bending ? 11 : 8));
   step.right = arena.make<double>(kUnknowns * count);
@@ -330,9 +330,9 @@ void add_rope_change(SoftBody& body, RopeStep& step, std::span<const Vec3> chang
   for (int i = 0; i < p.count; ++i) {
     const DVec3 own = scale * DVec3(change[std::size_t(i)]);
     step.velocity[std::size_t(i)] += own;
-    step.place[std::size_t(i)] += step.h * own;
+    step.place[std::size_t(i)] += step.move * own;
     p.set_velocity(i, to_float(step.velocity[std::size_t(i)]));
-    if (i > 0) body.chain.tension[i - 1] += scale * step.right[kUnknowns * std::size_t(i) + 3] / step.h;
+    if (i > 0) body.chain.tension[i - 1] += scale * step.right[kUnknowns * std::size_t(i) + 3] / step.move;
   }
 }
 

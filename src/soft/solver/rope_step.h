@@ -35,6 +35,7 @@ struct RopeReport {
 struct RopeStep {
   RopeReport report;
   double h = 0.0;
+  double move = 0.0;  // s, for which a change of velocity moves the particles
   bool has_bending = false;
   std::span<double> band, right;
   std::span<DVec3> place, velocity;  // at the end of the sub-step

@@ -2,6 +2,7 @@
 
 #include "soft/solver/explicit_step.h"
 #include "soft/solver/soft_pass.h"
+#include "soft/solver/visual_step.h"
 
 namespace gyre {
 
@@ -45,6 +46,42 @@ void carry_explicitly(SoftEntry& entry, const SoftStep& step) {
   }
 }
 
+// A step of backward Euler, of a rope or of anything else.
+void begin_implicit_step(SoftEntry& entry, const SoftStepSettings& settings, bool is_stage, SoftStep& step,
+                         const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
+  if (entry.kind == SoftKind::rope) {
+    step.method = SoftMethod::rope;
+    step.rope = begin_rope(
+        entry.body, {.step = settings.step, .gravity = settings.gravity, .carried = settings.carried}, arena);
+    return;
+  }
+  step.method = SoftMethod::conjugate_gradients;
+  ImplicitSettings implicit;
+  implicit.step = settings.step;
+  implicit.gravity = settings.gravity;
+  implicit.carried = settings.carried;
+  implicit.is_stage = is_stage;
+  step.implicit = begin_implicit(entry.body, implicit, kernels, arena, tasks);
+}
+
+void begin_two_stages(SoftEntry& entry, const SoftStepSettings& settings, SoftStep& step,
+                      const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
+  SoftStepSettings stage = settings;
+  stage.step = float(kSdirkShare * double(settings.step));
+  step.stages = begin_sdirk(entry.body, settings.carried, arena);
+  {
+    const ArenaScope scope(arena);
+    begin_implicit_step(entry, stage, true, step, kernels, arena, tasks);
+    if (entry.kind == SoftKind::rope) finish_rope(entry.body, step.rope);
+    if (entry.kind != SoftKind::rope) finish_implicit(entry.body, step.implicit, kernels, tasks);
+  }
+  turn_sdirk(entry.body, step.stages);
+  stage.carried = step.stages.carried;
+  begin_implicit_step(entry, stage, true, step, kernels, arena, tasks);
+  step.rope.move = double(settings.step);
+  end_sdirk(entry.body, step.stages);
+}
+
 }  // namespace
 
 SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, const SoftKernels& kernels,
@@ -53,23 +90,19 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
   step.h = settings.step;
   step.carried = settings.carried;
   const SoftIntegrator integrator = entry.settings().integrator;
-  if (integrator != SoftIntegrator::implicit) {
+  if (!is_implicit(integrator)) {
     step.method = SoftMethod::explicit_scheme;
-    step_explicit(entry.body, {settings.step, settings.gravity, scheme_of(integrator)}, kernels, arena,
-                  tasks);
+    if (integrator == SoftIntegrator::visual) step_visual(entry.body, settings.step, settings.gravity, arena);
+    if (integrator != SoftIntegrator::visual)
+      step_explicit(entry.body, {settings.step, settings.gravity, scheme_of(integrator)}, kernels, arena,
+                    tasks);
     carry_explicitly(entry, step);
-  } else if (entry.kind == SoftKind::rope) {
-    step.method = SoftMethod::rope;
-    step.rope = begin_rope(
-        entry.body, {.step = settings.step, .gravity = settings.gravity, .carried = settings.carried}, arena);
-    if (!entry.contacts.empty() || !entry.attachments.empty()) find_rope_inverse_masses(step.rope, arena);
-  } else {
-    ImplicitSettings implicit;
-    implicit.step = settings.step;
-    implicit.gravity = settings.gravity;
-    implicit.carried = settings.carried;
-    step.implicit = begin_implicit(entry.body, implicit, kernels, arena, tasks);
+    return step;
   }
+  if (integrator == SoftIntegrator::sdirk2) begin_two_stages(entry, settings, step, kernels, arena, tasks);
+  if (integrator == SoftIntegrator::implicit) begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
+  if (step.method == SoftMethod::rope && (!entry.contacts.empty() || !entry.attachments.empty()))
+    find_rope_inverse_masses(step.rope, arena);
   return step;
 }
 
@@ -125,8 +158,10 @@ void add_change(SoftEntry& entry, SoftStep& step, std::span<const Vec3> change, 
 
 void finish_soft_step(SoftEntry& entry, SoftStep& step, const SoftKernels& kernels, TaskSystem& tasks) {
   if (step.method == SoftMethod::rope) finish_rope(entry.body, step.rope);
-  if (step.method == SoftMethod::conjugate_gradients)
+  if (step.method == SoftMethod::conjugate_gradients) {
     finish_implicit(entry.body, step.implicit, kernels, tasks);
+    if (!step.stages.empty()) move_by_impulses(entry.body, step.stages, double(step.h));
+  }
 }
 
 }  // namespace gyre
