@@ -27,7 +27,7 @@ enum class SoftKind : std::uint8_t { rope, cloth, solid };
 const char* to_string(SoftKind kind);
 
 // How the particles move in a sub-step. Implicit (backward Euler) is stable at any stiffness and damps oscillations. sdirk2 (two implicit
-// stages, of second order) is as stable and damps fast ones alone, so that motion stays lively, for twice the time. visual (positions moved to fit
+// stages, of second order) is as stable and damps fast ones alone, so that motion stays lively, for twice the time (ropes: four times). visual (positions moved to fit
 // the springs, once a sub-step) is for many ropes and cloths that only decorate: it is stable and quick, and its stiffness is not that of the material.
 // The others are explicit, to be compared: on a spring of angular frequency w, explicit Euler gains energy at any step, semi-implicit Euler and Verlet
 // beyond h = 2 / w, RK4 beyond 2.83 / w (E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", 2006).

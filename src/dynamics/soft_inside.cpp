@@ -18,8 +18,8 @@ double distance_to(const RigidWorld& w, const SoftEntry& entry, std::uint32_t bo
     const Proxy& proxy = w.shapes.proxies[id.index];
     if (proxy.sensor || !may_pair(own, proxy)) continue;
     const Pose pose = origin_pose(w.bodies, body) * w.shapes.body_from_shape[id.index];
-    const DVec3 local =
-        rotate_inverse(to_double(pose.orientation), entry.body.particles.place(int(particle)) - pose.position);
+    const DVec3 local = rotate_inverse(to_double(pose.orientation),
+                                       entry.body.particles.place(int(particle)) - pose.position);
     PointDistance found;
     if (find_point_distance(w.shapes.colliders[id.index].shape, local, kAnyDepth, found))
       nearest = min(nearest, found.distance);
@@ -48,10 +48,11 @@ void for_each_neighbour(const SoftBody& body, std::uint32_t particle, Visit&& vi
     return;
   }
   visit_row(
-      body.springs.rows, particle, [&](std::size_t place) { return body.springs.stiffness[place] > 0.0f; }, visit);
-  visit_row(
-      body.continuum.rows, particle, [&](std::size_t place) { return body.continuum.edge_of_place[place] >= 0; },
+      body.springs.rows, particle, [&](std::size_t place) { return body.springs.stiffness[place] > 0.0f; },
       visit);
+  visit_row(
+      body.continuum.rows, particle,
+      [&](std::size_t place) { return body.continuum.edge_of_place[place] >= 0; }, visit);
 }
 
 }  // namespace
@@ -81,7 +82,9 @@ void add_inside(const RigidWorld& w, SoftEntry& entry, std::uint32_t body, std::
   entry.inside.clear();
   std::size_t k = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (; k < others.size() && (others[k].particle < i || (others[k].particle == i && others[k].body < std::int32_t(body))); ++k)
+    for (; k < others.size() &&
+           (others[k].particle < i || (others[k].particle == i && others[k].body < std::int32_t(body)));
+         ++k)
       entry.inside.push_back(others[k]);
     if (seen[i] != 0) entry.inside.push_back({i, std::int32_t(body)});
   }

@@ -495,8 +495,9 @@ void turn_soft_rows(SoftSolve& s, int, int) {
   for (SoftRow& row : s.scratch->rows) {
     if (row.touched < 0) continue;
     const SoftEntry& entry = entry_of(s, row.member);
-    const Vec3 arm = row.is_contact ? turned_now(w, row.body, entry.contacts[row.source].from_body)
-                                    : rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
+    const Vec3 arm = row.is_contact
+                         ? turned_now(w, row.body, entry.contacts[row.source].from_body)
+                         : rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
     const Vec3 moment = cross(arm - row.arm, (-1.0f / float(s.parts)) * row.impulse);
     s.w->bodies.motion[std::size_t(row.body)].angular_velocity +=
         w.bodies.inertia[std::size_t(row.body)].inverse * moment;

@@ -66,8 +66,8 @@ struct SoftWork {
   SoftBody before;                            // what a sub-step that is solved anew begins with
   Array<Vec3> impulses, change;               // by particle
   std::uint32_t first_row = 0, last_row = 0;  // in SoftScratch::rows
-  Array<Vec3> field_forces;                   // N, by particle, of a visual entry: those of the whole step; else none
-  std::uint32_t carried = 0;                  // rows that carry, from first_row on in SoftScratch::carried
+  Array<Vec3> field_forces;   // N, by particle, of a visual entry: those of the whole step; else none
+  std::uint32_t carried = 0;  // rows that carry, from first_row on in SoftScratch::carried
 };
 
 // A change of velocity of a body, m/s and rad/s.

@@ -102,12 +102,12 @@ DVec3 swung(SoftIntegrator integrator, bool is_cloth, int substeps) {
   if (is_cloth) {
     ClothDef def;
     def.grid = ClothGrid{{0.5f, 1.0f}, {3, 6}};
-    def.stretch_stiffness = 30.0f, def.shear_stiffness = 10.0f, def.bend_stiffness = 0.0f, def.self_collision = false;
+    def.stretch_stiffness = 15.0f, def.shear_stiffness = 5.0f, def.bend_stiffness = 0.0f, def.self_collision = false;
     def.settings.integrator = integrator;
     soft = world.add_cloth(def);
     for (int i = 0; i <= 3; ++i) world.pin(soft, i);
   } else {
-    RopeDef def{.points = line({0, 0, 0}, {1, 0, 0}, 6), .links = RopeLinks::springs, .stretch_stiffness = 30.0f};
+    RopeDef def{.points = line({0, 0, 0}, {1, 0, 0}, 6), .links = RopeLinks::springs, .stretch_stiffness = 10.0f};
     def.settings.integrator = integrator;
     soft = world.add_rope(def);
     world.pin(soft, 0);
@@ -116,18 +116,17 @@ DVec3 swung(SoftIntegrator integrator, bool is_cloth, int substeps) {
   const SoftVertices v = world.vertices(soft);
   return v.position(v.size() - 1);
 }
-// Errors fall with the square of the sub-step; those of backward Euler with the sub-step.
+// Errors fall with the square of the sub-step, until at 1e-5 m the tolerance of the solver and the rounding of velocities show; those of backward Euler with the sub-step.
 TEST(Soft, TheSchemeOfTwoStagesIsOfSecondOrder) {
   for (const bool is_cloth : {false, true}) {
     const DVec3 exact = swung(SoftIntegrator::sdirk2, is_cloth, 64);
     const auto order = [&](SoftIntegrator integrator) {
-      const double coarse = length(swung(integrator, is_cloth, 4) - exact), fine = length(swung(integrator, is_cloth, 8) - exact);
+      const double coarse = length(swung(integrator, is_cloth, 1) - exact), fine = length(swung(integrator, is_cloth, 2) - exact);
       return std::log2(coarse / fine);
     };
-    EXPECT_GT(order(SoftIntegrator::sdirk2), 1.6) << is_cloth;
-    EXPECT_LT(order(SoftIntegrator::sdirk2), 2.6) << is_cloth;
-    EXPECT_LT(order(SoftIntegrator::implicit), 1.4) << is_cloth;
-    EXPECT_LT(length(swung(SoftIntegrator::sdirk2, is_cloth, 4) - exact), 0.2 * length(swung(SoftIntegrator::implicit, is_cloth, 4) - exact));
+    EXPECT_NEAR(order(SoftIntegrator::sdirk2), 2.0, 0.3) << is_cloth;
+    EXPECT_NEAR(order(SoftIntegrator::implicit), 1.0, 0.2) << is_cloth;
+    EXPECT_LT(length(swung(SoftIntegrator::sdirk2, is_cloth, 2) - exact), 0.1 * length(swung(SoftIntegrator::implicit, is_cloth, 2) - exact));
   }
 }
 

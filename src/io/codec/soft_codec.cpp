@@ -1,7 +1,7 @@
 #include "io/codec/soft_codec.h"
 
-#include "io/codec/command_codec.h"
 #include "io/codec/array_codec.h"
+#include "io/codec/command_codec.h"
 #include "soft/store/soft_builder.h"
 #include "soft/store/soft_damage.h"
 
@@ -17,8 +17,10 @@ bool fits(const SoftEntry& entry) {
   for (const Array<double>* column : {&p.x, &p.y, &p.z}) good = good && column->size() == rows;
   for (const Array<float>* column : {&p.vx, &p.vy, &p.vz}) good = good && column->size() == rows;
   for (const Array<float>& column : entry.body.pull) good = good && (column.empty() || column.size() == rows);
-  for (const Array<double>& column : entry.body.moved) good = good && (column.empty() || column.size() == rows);
-  return good && entry.rest.size() == 1 && entry.body.chain.tension.size() == entry.body.chain.rest_length.size();
+  for (const Array<double>& column : entry.body.moved)
+    good = good && (column.empty() || column.size() == rows);
+  return good && entry.rest.size() == 1 &&
+         entry.body.chain.tension.size() == entry.body.chain.rest_length.size();
 }
 
 }  // namespace

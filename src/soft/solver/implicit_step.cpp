@@ -98,7 +98,8 @@ class Solver {
     const std::size_t rows = std::size_t(pass_.slices) * kSliceRows;
     double along = 0.0;
     for (std::size_t i = 0; i < rows; ++i)
-      along += double(dot(pass_.volume_gradient[i], {pass_.direction.x[i], pass_.direction.y[i], pass_.direction.z[i]}));
+      along += double(
+          dot(pass_.volume_gradient[i], {pass_.direction.x[i], pass_.direction.y[i], pass_.direction.z[i]}));
     const float scaled = pass_.volume_scale * float(along);
     for (std::size_t i = 0; i < rows; ++i) {
       const Vec3 more = scaled * pass_.volume_gradient[i];
@@ -191,7 +192,8 @@ void add_gas(const SoftBody& body, SoftPass& pass, Arena& arena) {
   find_volume_gradient(body.particles, body.gas, gradient);
   const double volume = enclosed_volume(body.particles, body.gas.triangles);
   const double scale = double(pass.geometric_scale) * volume_stiffness(body.gas, volume);
-  double growth = 0.0;  // m^3/s, at the velocities that the sub-step begins with and what is told of their change
+  double growth =
+      0.0;  // m^3/s, at the velocities that the sub-step begins with and what is told of their change
   const Particles& p = body.particles;
   for (std::size_t i = 0; i < rows; ++i) {
     const Vec3 known{pass.change.x[i], pass.change.y[i], pass.change.z[i]};
@@ -246,7 +248,8 @@ ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, co
   step.report = solve(body, step.pass, settings, mass, kernels, tasks);
   if (body.held.empty()) {
     find_impulses(body.particles, settings, step.pass.product);
-    keep_momentum(body, step, step.pass.product, step.pass.change, settings.is_stage ? double(settings.step) : 0.0);
+    keep_momentum(body, step, step.pass.product, step.pass.change,
+                  settings.is_stage ? double(settings.step) : 0.0);
   }
   keep_pull(body, settings, step.pass);
   change_velocities(body.particles, step.pass.change);

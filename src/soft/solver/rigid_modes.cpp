@@ -24,12 +24,14 @@ DVec3 turn_of(const double (&inertia)[6], DVec3 momentum) {
 
 }  // namespace
 
-void keep_momentum(const Particles& particles, const VectorRows& impulses, const VectorRows& change, double ahead) {
+void keep_momentum(const Particles& particles, const VectorRows& impulses, const VectorRows& change,
+                   double ahead) {
   double mass = 0.0;
   DVec3 first{}, linear{};
   const DVec3 origin = particles.count > 0 ? particles.place(0) : DVec3{};
   const auto place = [&](int i) {
-    return ahead == 0.0 ? particles.place(i) : particles.place(i) + ahead * (DVec3(particles.velocity(i)) + row_of(change, i));
+    return ahead == 0.0 ? particles.place(i)
+                        : particles.place(i) + ahead * (DVec3(particles.velocity(i)) + row_of(change, i));
   };
   for (int i = 0; i < particles.count; ++i) {
     const double m = double(particles.mass[i]);

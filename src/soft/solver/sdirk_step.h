@@ -22,12 +22,12 @@ constexpr double kSdirkShare = 0.29289321881345248;  // c
 
 // What the stages leave for the end of the sub-step. Its memory is the arena's.
 struct SdirkStages {
-  std::span<DVec3> place;                  // m, when the sub-step began; empty: there are no stages
-  std::span<Vec3> velocity;                // m/s, when the sub-step began
-  std::span<DVec3> told;                   // m, of held particles in their order: where they are at the end
-  std::span<Vec3> found;                   // m/s, after the second stage, before impulses
-  std::span<CarriedInertia> carried;       // for the second stage
-  std::span<Vec3> outside;                 // N, by carried inertia: the force on its particle from outside
+  std::span<DVec3> place;             // m, when the sub-step began; empty: there are no stages
+  std::span<Vec3> velocity;           // m/s, when the sub-step began
+  std::span<DVec3> told;              // m, of held particles in their order: where they are at the end
+  std::span<Vec3> found;              // m/s, after the second stage, before impulses
+  std::span<CarriedInertia> carried;  // for the second stage
+  std::span<Vec3> outside;            // N, by carried inertia: the force on its particle from outside
 
   bool empty() const { return place.empty(); }
 };

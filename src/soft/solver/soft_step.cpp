@@ -11,6 +11,8 @@ namespace {
 // Iterations by which impulses spread through a body. Each reaches the neighbours of those before; what is missing is found by the rows of the
 // next half-step.
 constexpr int kSpreadIterations = 8;
+// Iterations of Newton's for ropes, whose tension differs between the stages of a scheme.
+constexpr int kStageIterations = 3;
 constexpr double kSpreadTolerance = 1.0e-4;  // of the square of the error
 
 ExplicitScheme scheme_of(SoftIntegrator integrator) {
@@ -51,8 +53,12 @@ void begin_implicit_step(SoftEntry& entry, const SoftStepSettings& settings, boo
                          const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
   if (entry.kind == SoftKind::rope) {
     step.method = SoftMethod::rope;
-    step.rope = begin_rope(
-        entry.body, {.step = settings.step, .gravity = settings.gravity, .carried = settings.carried}, arena);
+    step.rope = begin_rope(entry.body,
+                           {.step = settings.step,
+                            .gravity = settings.gravity,
+                            .least_iterations = is_stage ? kStageIterations : 1,
+                            .carried = settings.carried},
+                           arena);
     return;
   }
   step.method = SoftMethod::conjugate_gradients;
@@ -79,6 +85,10 @@ void begin_two_stages(SoftEntry& entry, const SoftStepSettings& settings, SoftSt
   stage.carried = step.stages.carried;
   begin_implicit_step(entry, stage, true, step, kernels, arena, tasks);
   step.rope.move = double(settings.step);
+  if (entry.kind == SoftKind::rope)
+    keep_lengths(entry.body,
+                 {.step = settings.step, .gravity = settings.gravity, .carried = settings.carried}, step.rope,
+                 arena);
   end_sdirk(entry.body, step.stages);
 }
 
@@ -100,7 +110,8 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
     return step;
   }
   if (integrator == SoftIntegrator::sdirk2) begin_two_stages(entry, settings, step, kernels, arena, tasks);
-  if (integrator == SoftIntegrator::implicit) begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
+  if (integrator == SoftIntegrator::implicit)
+    begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
   if (step.method == SoftMethod::rope && (!entry.contacts.empty() || !entry.attachments.empty()))
     find_rope_inverse_masses(step.rope, arena);
   return step;

@@ -31,7 +31,8 @@ void keep_limits(SoftEntry& entry) {
     if (limit.distance < 0.0f) continue;
     const DVec3 way = p.place(i) - limit.target;
     const double far = length(way);
-    if (far > double(limit.distance)) put(entry, i, limit.target + (double(limit.distance) / far) * way, way / far);
+    if (far > double(limit.distance))
+      put(entry, i, limit.target + (double(limit.distance) / far) * way, way / far);
   }
 }
 

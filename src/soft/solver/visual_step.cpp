@@ -8,7 +8,7 @@ namespace gyre {
 
 namespace {
 
-constexpr int kMostColors = 64;
+constexpr int kMaxColors = 64;
 constexpr float kTetherSlack = 1.01f;  // links give a little
 
 void make_links(SoftBody& body) {
@@ -35,7 +35,7 @@ void make_links(SoftBody& body) {
   for (const VisualLink& link : found) {
     const std::uint64_t free = ~(used[link.a] | used[link.b]);
     int c = 0;
-    while (c + 1 < kMostColors && (free >> c & 1u) == 0) ++c;
+    while (c + 1 < kMaxColors && (free >> c & 1u) == 0) ++c;
     used[link.a] |= std::uint64_t(1) << c, used[link.b] |= std::uint64_t(1) << c;
     color.push_back(std::uint8_t(c));
     colors = c + 1 > colors ? c + 1 : colors;
@@ -124,9 +124,11 @@ void step_visual(SoftBody& body, float step, Vec3 gravity, Arena& arena) {
   for (int i = 0; i < p.count; ++i) {
     const float loose = p.loose[i], share = loose / p.mass[i];
     const Vec3 pull = loose * gravity + share * Vec3{p.fx[i], p.fy[i], p.fz[i]};
-    nodes[std::size_t(i)] = {to_float(p.place(i) - origin) + step * (loose * p.velocity(i) + step * pull), share};
+    nodes[std::size_t(i)] = {to_float(p.place(i) - origin) + step * (loose * p.velocity(i) + step * pull),
+                             share};
   }
-  for (const HeldParticle& one : body.held) nodes[std::size_t(one.particle)].place = to_float(one.place - origin);
+  for (const HeldParticle& one : body.held)
+    nodes[std::size_t(one.particle)].place = to_float(one.place - origin);
   sweep_links(body.visual, step, nodes);
   pull_tethers(body.visual, nodes);
   const float rate = 1.0f / step;
