@@ -237,13 +237,19 @@ class World {
   bool add_angular_impulse(BodyId body, Vec3 impulse);        // N m s
 
   // Soft matter (soft.h). The vertex keeps its present place in the frame of the body, and turns freely there; it follows a moving body within
-  // the step. It no longer collides with that body. A second call replaces the first.
+  // the step. It no longer collides with that body, nor do its neighbours
+  // as far as they are inside it now. A second call replaces the first.
   bool attach(SoftId soft, int vertex, BodyId body);
   bool pin(SoftId soft, int vertex);      // to the world: it stays where it is
   bool release(SoftId soft, int vertex);  // from a body or the world; true if it was free already
   // Positions (m) and velocities (m/s) of all vertices at once; either may be empty and stays then. Attached vertices stay attached, where
   // they are put.
   bool set_vertices(SoftId soft, std::span<const DVec3> positions, std::span<const Vec3> velocities);
+  // Keeps every vertex near an animated target, as a coat near a body: within distances[i] (m; below 0: free) of targets[i] (m), and in front of the plane that
+  // lies backstops[i] (m) behind the target, seen along normals[i]. Normals and backstops may be empty. Called before each step in which
+  // the targets move; the limits stay until the next call, and empty targets end them. docs/soft.md: Skinning
+  bool set_vertex_limits(SoftId soft, std::span<const DVec3> targets, std::span<const float> distances, std::span<const Vec3> normals,
+                         std::span<const float> backstops);
 
   // Fluids (fluid.h). Replaces all emitters.
   bool set_emitters(FluidId fluid, std::span<const FluidEmitter> emitters);

@@ -100,6 +100,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   if (!first) p.row_islands<solve_row_islands>();
   p.contacts<solve_contacts>();
   // Soft matter, with bodies as joints and contacts leave them.
+  if (p.begins_soft(half_step)) p.soft_rows<turn_soft_rows>();
   if (p.begins_soft(half_step)) p.soft_members<begin_soft_members>();
   if (p.begins_soft(half_step)) p.soft_rows<solve_soft_surfaces>();
   if (p.begins_soft(half_step)) p.soft_rows<solve_soft_rows>();

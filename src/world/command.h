@@ -176,6 +176,14 @@ struct SetVertices {
   std::vector<DVec3> positions;
   std::vector<Vec3> velocities;
 };
+// No targets: limits end. Normals and backstops may be empty.
+struct SetVertexLimits {
+  SoftId soft;
+  std::vector<DVec3> targets;
+  std::vector<float> distances;
+  std::vector<Vec3> normals;
+  std::vector<float> backstops;
+};
 struct AddFluid {
   std::shared_ptr<const FluidDef> def;
 };
@@ -264,7 +272,7 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices, AddFluid, RemoveFluid, SetEmitters,
                              SetSleepShare, SetSleepSpeed, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetShape,
                              SetBodyUserData, SetShapeUserData, SetBreakLoad, SetPairIgnored, SetEnabled, AddCoupling,
-                             RemoveCoupling, SetFluidPose, SetFluidVelocity>;
+                             RemoveCoupling, SetFluidPose, SetFluidVelocity, SetVertexLimits>;
 
 // The result of a command: success, and the id of the new object.
 struct CommandResult {

@@ -223,6 +223,14 @@ template <Is<SoftAttachment> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.body), for_each_field(r.place, f), for_each_field(r.local, f), for_each_field(r.impulse, f);
 }
+template <Is<SoftInside> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.particle), f(r.body);
+}
+template <Is<SoftLimit> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.target, f), f(r.distance), for_each_field(r.normal, f), f(r.backstop);
+}
 template <Is<SoftContact> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.shape), f(r.body), f(r.triangle), for_each_field(r.normal, f), for_each_field(r.from_body, f), f(r.gap);

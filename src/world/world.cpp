@@ -139,6 +139,15 @@ bool World::release(SoftId soft, int vertex) { return submit(*state_, ReleaseSof
 bool World::set_vertices(SoftId soft, std::span<const DVec3> positions, std::span<const Vec3> velocities) {
   return submit(*state_, SetVertices{soft, {positions.begin(), positions.end()}, {velocities.begin(), velocities.end()}}).done;
 }
+bool World::set_vertex_limits(SoftId soft, std::span<const DVec3> targets, std::span<const float> distances, std::span<const Vec3> normals,
+                              std::span<const float> backstops) {
+  return submit(*state_, SetVertexLimits{soft,
+                                         {targets.begin(), targets.end()},
+                                         {distances.begin(), distances.end()},
+                                         {normals.begin(), normals.end()},
+                                         {backstops.begin(), backstops.end()}})
+      .done;
+}
 
 bool World::explode(const ExplosionDef& explosion) { return submit(*state_, Explode{explosion}).done; }
 bool World::set_filter(ShapeId shape, const Filter& filter) { return submit(*state_, SetFilter{shape, filter}).done; }

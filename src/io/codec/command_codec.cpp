@@ -466,6 +466,11 @@ void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
 }
+template <class C, Is<SetVertexLimits> T>
+void fields(C& c, T& v) {
+  auto& [soft, targets, distances, normals, backstops] = v;
+  all(c, soft, targets, distances, normals, backstops);
+}
 template <class C, Is<SetMotion> T>
 void fields(C& c, T& v) {
   auto& [integrator, springs, time, tolerance, max_impacts] = v;

@@ -122,7 +122,8 @@ std::vector<Command> all_commands() {
                        .offset = 0.75f}},
           RemoveCoupling{CouplingId{4, 3, kWorld}},
           SetFluidPose{FluidId{2, 1, kWorld}, Pose{{1, 2, 3}, {0, 1, 0, 0}}},
-          SetFluidVelocity{FluidId{2, 1, kWorld}, {1, 2, 3}, {4, 5, 6}}};
+          SetFluidVelocity{FluidId{2, 1, kWorld}, {1, 2, 3}, {4, 5, 6}},
+          SetVertexLimits{SoftId{3, 1, kWorld}, {{1, 2, 3}}, {0.5f}, {{0, 1, 0}}, {0.25f}}};
 }
 
 // Fields of certain kinds of joints are restored as well.

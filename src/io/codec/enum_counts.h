@@ -42,7 +42,7 @@ inline constexpr int kEnumCount<FieldKind> = kFieldKindCount;
 template <>
 inline constexpr int kEnumCount<SoftKind> = int(SoftKind::solid) + 1;
 template <>
-inline constexpr int kEnumCount<SoftIntegrator> = int(SoftIntegrator::verlet) + 1;
+inline constexpr int kEnumCount<SoftIntegrator> = int(SoftIntegrator::visual) + 1;
 template <>
 inline constexpr int kEnumCount<RopeLinks> = int(RopeLinks::rods) + 1;
 template <>

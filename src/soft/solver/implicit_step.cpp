@@ -101,7 +101,8 @@ class Solver {
     const std::size_t rows = std::size_t(pass_.slices) * kSliceRows;
     double along = 0.0;
     for (std::size_t i = 0; i < rows; ++i)
-      along += double(dot(pass_.volume_gradient[i], {pass_.direction.x[i], pass_.direction.y[i], pass_.direction.z[i]}));
+      along += double(
+          dot(pass_.volume_gradient[i], {pass_.direction.x[i], pass_.direction.y[i], pass_.direction.z[i]}));
     const float scaled = pass_.volume_scale * float(along);
     for (std::size_t i = 0; i < rows; ++i) {
       const Vec3 more = scaled * pass_.volume_gradient[i];
@@ -201,7 +202,8 @@ void add_gas(const SoftBody& body, SoftPass& pass, Arena& arena) {
   find_volume_gradient(body.particles, body.gas, gradient);
   const double volume = enclosed_volume(body.particles, body.gas.triangles);
   const double scale = double(pass.geometric_scale) * volume_stiffness(body.gas, volume);
-  double growth = 0.0;  // m^3/s, at the velocities that the sub-step begins with and what is told of their change
+  double growth =
+      0.0;  // m^3/s, at the velocities that the sub-step begins with and what is told of their change
   const Particles& p = body.particles;
   for (std::size_t i = 0; i < rows; ++i) {
     const Vec3 known{pass.change.x[i], pass.change.y[i], pass.change.z[i]};
@@ -227,8 +229,8 @@ void find_impulses(const Particles& particles, const ImplicitSettings& settings,
 }
 
 void keep_momentum(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
-                   const VectorRows& change) {
-  if (step.carried.empty()) return gyre::keep_momentum(body.particles, impulses, change);
+                   const VectorRows& change, double ahead = 0.0) {
+  if (step.carried.empty()) return gyre::keep_momentum(body.particles, impulses, change, ahead);
   keep_linear_momentum(body.particles, step.carried, impulses, change);
 }
 
@@ -256,7 +258,8 @@ ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, co
   step.report = solve(body, step.pass, settings, mass, kernels, tasks);
   if (body.held.empty()) {
     find_impulses(body.particles, settings, step.pass.product);
-    keep_momentum(body, step, step.pass.product, step.pass.change);
+    keep_momentum(body, step, step.pass.product, step.pass.change,
+                  settings.is_stage ? double(settings.step) : 0.0);
   }
   keep_pull(body, settings, step.pass);
   change_velocities(body.particles, step.pass.change);

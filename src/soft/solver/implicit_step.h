@@ -36,6 +36,9 @@ struct ImplicitSettings {
   int least_iterations = 3;
   int most_iterations = 50;
   std::span<const CarriedInertia> carried{};
+  // A stage of a scheme of several (soft/solver/sdirk_step.h): the elements give no moment where the stage ends, as they do in truth, so that the scheme keeps
+  // its order. Else the moment where the sub-step begins is none, with which backward Euler keeps angular momentum.
+  bool is_stage = false;
 };
 
 struct ImplicitReport {
