@@ -12,7 +12,7 @@ namespace gyre {
 namespace {
 
 constexpr std::size_t kMaxCouplings = 65536;
-constexpr float kMaxCoefficient = 1.0e6f;
+constexpr float kMaxCoefficient = 1.0e6f;  // 1, m or 1/m, by the axes that are coupled
 
 CouplingId coupling_id(const WorldState& s, std::uint32_t slot) {
   return {slot, std::uint16_t(s.rigid.couplings[slot].generation), s.number};
