@@ -53,9 +53,10 @@ class FieldReader {
   void shape(AnyShape& value) { value = read_shape(in_, geometry_); }
   template <class T>
   void count(std::vector<T>& list) {
-    // A shape takes more, an emitter without a velocity this.
+    // A shape takes more, an emitter without a velocity this; a term is stored without gaps.
     constexpr std::size_t kMinBytes = std::is_same_v<T, ShapeDef>       ? 64
                                       : std::is_same_v<T, FluidEmitter> ? 53
+                                      : std::is_same_v<T, CouplingTerm> ? 11
                                                                         : sizeof(T);
     list.resize(in_.get_count(kMinBytes));
   }
