@@ -193,7 +193,7 @@ void read_common(SceneReading& reading, Members& members, SceneFluid& fluid, Def
   fluid.name = read_unique_name(reading, members.need("name"));
   members.read("color", fluid.color);
   read_fluid_bounds(members, def);
-  members.read("position", def.pose.position);
+  if (const auto position = members.find("position")) def.pose.position = position->place();
   members.read("orientation", def.pose.orientation);
   members.read("linear_velocity", def.linear_velocity);
   members.read("angular_velocity", def.angular_velocity);

@@ -106,7 +106,7 @@ TEST(FluidEvents, ARopeEntersByItsVertexAndWhatIsRemovedLeaves) {
   EXPECT_EQ(world.events().fluid_touches[0].fluid, pool);
   EXPECT_EQ(world.events().fluid_touches[1].fluid, other);
   std::vector<FluidTouch> all;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 25; ++i) {
     world.step(kStep);
     for (const FluidTouch& one : world.events().fluid_touches) all.push_back(one);
   }

@@ -4,7 +4,6 @@
 #include "fluid/liquid/extrapolation.h"
 #include "fluid/liquid/liquid_cells.h"
 #include "fluid/liquid/liquid_pressure.h"
-#include "fluid/liquid/liquid_reading.h"
 #include "fluid/liquid/liquid_viscosity.h"
 #include "fluid/liquid/particle_transfer.h"
 #include "fluid/liquid/surface_tension.h"
@@ -264,7 +263,6 @@ LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, std::span<co
     run_substep(pass, settings, emitters, time, report, impulses);
   }
   if (grid.box.any_open()) sort_particles(pass);
-  report.volume = liquid_volume(grid, solids);
   return report;
 }
 
