@@ -57,11 +57,20 @@ class MjcfReader {
     int parent = -1, child = -1;
     ModelAxis axis;
     bool alone = false;  // the only joint of its body
+    int made = -1;       // the hinge or slider of the scene, if it is alone
   };
+  static SceneCouplingTerm term_of(const JointPlace& place, double coefficient) {
+    return {place.made, place.axis.slide ? JointAxis::linear_x : JointAxis::angular_x, float(coefficient)};
+  }
+  static std::vector<double> polynomial_of(const XmlElement& equality) {
+    std::vector<double> poly = equality.numbers("polycoef", 1, 5);
+    if (poly.empty()) poly = {0, 1};
+    poly.resize(5);
+    return poly;
+  }
+  static bool is_linear(const std::vector<double>& poly) { return poly[2] == 0 && poly[3] == 0 && poly[4] == 0; }
   // A length of a fixed tendon: the sum of joint coordinates, each times a coefficient.
   using TendonTerms = std::map<std::string, double>;
-
-  bool couple(const std::string& name, const JointPlace& first, const JointPlace& second, double factor);
   void add_terms(const XmlElement& equality, const char* attribute, double factor, TendonTerms& terms) const;
 
   Import& import_;
@@ -322,11 +331,13 @@ void MjcfReader::connect(int parent, int child, const std::vector<MjcfJoint>& jo
     axes.push_back(joint.axis);
     has_ball = has_ball || joint.ball;
     if (!joint.name.empty())
-      joint_places_[joint.name] = {parent, child, joint.axis, joints.size() == 1 && !joint.ball};
+      joint_places_[joint.name] = {parent, child, joint.axis, joints.size() == 1 && !joint.ball, -1};
   }
   std::optional<JointDef> whole;
   if (!has_ball) whole = joint_of_axes(axes);
   if (has_ball && joints.size() == 1) whole = ball_of(joints[0]);
+  if (whole && joints.size() == 1 && !joints[0].name.empty())
+    joint_places_[joints[0].name].made = int(import_.scene.joints.size());
   if (whole) return add(joints[0].name, parent, child, *whole);
   int from = parent;
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -366,36 +377,21 @@ int MjcfReader::body_named(const XmlElement& element, const char* attribute, boo
   return body_of_[std::size_t(found->second)];
 }
 
-// A gear measures rotations against the world, so that a coupling holds if both hinges have a static parent.
-// Holds the coordinate of `first` at `factor` times that of `second`. False if the engine has no such coupling.
-bool MjcfReader::couple(const std::string& name, const JointPlace& first, const JointPlace& second,
-                        double factor) {
-  const auto is_turned_by_the_world = [&](const JointPlace& place) {
-    return place.alone && !place.axis.slide &&
-           import_.scene.bodies[std::size_t(place.parent)].def.type == BodyType::fixed;
-  };
-  if (factor == 0 || !is_turned_by_the_world(first) || !is_turned_by_the_world(second)) return false;
-  GearDef gear;
-  gear.anchor = first.axis.anchor;
-  gear.axis = second.axis.axis;
-  gear.axis_b = first.axis.axis;
-  gear.ratio = float(-1.0 / factor);
-  add_joint(import_, name, second.child, first.child, gear);
-  return true;
-}
-
+// Positions are measured from the pose of the file, as its polynomials are.
 void MjcfReader::couple_joints(const XmlElement& equality) {
   const auto first = joint_places_.find(equality.need_text("joint1"));
   if (first == joint_places_.end())
     equality.fail("found joint1 \"" + equality.text("joint1") + "\", expected the name of a joint");
   const auto second = joint_places_.find(equality.text("joint2"));
-  std::vector<double> poly = equality.numbers("polycoef", 1, 5);
-  if (poly.empty()) poly = {0, 1};
-  poly.resize(5);
-  const bool is_linear = poly[0] == 0 && poly[2] == 0 && poly[3] == 0 && poly[4] == 0;
-  if (second == joint_places_.end() || !is_linear ||
-      !couple(equality.text("name", "coupling"), first->second, second->second, poly[1]))
+  const std::vector<double> poly = polynomial_of(equality);
+  if (second == joint_places_.end() || !is_linear(poly) || poly[1] == 0 || !first->second.alone || !second->second.alone) {
     import_.findings.left_out("equality <joint>");
+    return;
+  }
+  SceneCoupling coupling;
+  coupling.terms = {term_of(first->second, 1), term_of(second->second, -poly[1])};
+  coupling.offset = float(poly[0]);
+  import_.scene.couplings.push_back(std::move(coupling));
 }
 
 // Fixed tendons by name. Without a spring, limit or friction of its own a tendon exerts nothing until an equality holds it.
@@ -436,24 +432,25 @@ void MjcfReader::add_terms(const XmlElement& equality, const char* attribute, do
   for (const auto& [joint, coefficient] : tendon->second) terms[joint] += factor * coefficient;
 }
 
-// The length of one tendon stays, or is a multiple of another's: a coupling where the sum of both is one of two hinges.
+// The length of one tendon stays, or is a multiple of another's.
 void MjcfReader::couple_tendons(const XmlElement& equality) {
-  std::vector<double> poly = equality.numbers("polycoef", 1, 5);
-  if (poly.empty()) poly = {0, 1};
-  poly.resize(5);
+  const std::vector<double> poly = polynomial_of(equality);
   TendonTerms terms;
   add_terms(equality, "tendon1", 1, terms);
   if (equality.has("tendon2")) add_terms(equality, "tendon2", -poly[1], terms);
-  for (auto term = terms.begin(); term != terms.end();)
-    term = term->second == 0 ? terms.erase(term) : std::next(term);
-  const bool is_linear = poly[0] == 0 && poly[2] == 0 && poly[3] == 0 && poly[4] == 0;
-  if (terms.size() == 2 && is_linear) {
-    const auto first = terms.begin(), second = std::next(first);
-    if (couple(equality.text("name", "tendon"), joint_places_.at(first->first),
-               joint_places_.at(second->first), -second->second / first->second))
-      return;
+  SceneCoupling coupling;
+  bool alone = true;
+  for (const auto& [joint, coefficient] : terms) {
+    if (coefficient == 0) continue;
+    const JointPlace& place = joint_places_.at(joint);
+    alone = alone && place.alone;
+    coupling.terms.push_back(term_of(place, coefficient));
   }
-  import_.findings.left_out("equality <tendon>");
+  const std::size_t count = coupling.terms.size();
+  if (!alone || count < 2 || count > std::size_t(kMaxCouplingTerms) || !is_linear(poly))
+    return import_.findings.left_out("equality <tendon>");
+  coupling.offset = float(poly[0]);
+  import_.scene.couplings.push_back(std::move(coupling));
 }
 
 void MjcfReader::read_equalities() {

@@ -1,5 +1,5 @@
 // The tables that a simulation writes, step by step (CSV): the motion of every body and vertex, forces of joints, contact points, figures of
-// the whole world, and fluids at probes.
+// the whole world, fluids at probes, and events.
 #pragma once
 
 #include "output_file.h"
@@ -63,6 +63,18 @@ class ProbeTable : public CsvTable {
  public:
   bool open(const std::string& path);
   bool add_rows(const SceneRunner& runner);
+};
+
+// One row per event of a step: what happened, and to whom.
+class EventTable {
+ public:
+  bool open(const std::string& path);
+  bool add_rows(const SceneRunner& runner);
+  OutputFile& file() { return file_; }
+
+ private:
+  OutputFile file_;
+  std::string row_;
 };
 
 // One row a step.

@@ -2,6 +2,7 @@
 #include "base/check.h"
 #include "dynamics/fluid_reaction.h"
 #include "dynamics/fluid_step.h"
+#include "dynamics/fluid_visitors.h"
 #include "dynamics/soft_contacts.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/integrate/spring_stability.h"
@@ -338,9 +339,14 @@ void end_step(WorldState& s, float seconds) {
   clocks.broken.trim(next.broken, s.published_events.broken);
   clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
   report_soft_events(s);
+  if (!s.fluids.entries.empty()) {
+    update_fluid_visitors(s.rigid, s.soft, s.fluids);
+    std::swap(s.published_fluid_touches, s.fluids.events);
+    s.fluids.events.clear();
+  }
   const SoftEvents& soft = s.published_soft_events;
   s.events = {e.begins,        e.ends,      e.hits,    e.sensors,     e.broken,
-              e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn};
+              e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn, s.published_fluid_touches};
   s.stepping = false;
 }
 

@@ -18,7 +18,7 @@ import headers  # noqa: E402
 import model  # noqa: E402
 
 # The definition of each object and the type of its id.
-OBJECTS = {"WorldDef": None, "BodyDef": "BodyId", "ShapeDef": "ShapeId", "FieldDef": "FieldId", "GasDef": "FluidId", "LiquidDef": "FluidId",
+OBJECTS = {"WorldDef": None, "BodyDef": "BodyId", "CouplingDef": "CouplingId", "ShapeDef": "ShapeId", "FieldDef": "FieldId", "GasDef": "FluidId", "LiquidDef": "FluidId",
            "RopeDef": "SoftId", "ClothDef": "SoftId", "SolidDef": "SoftId", "SoftSettings": "SoftId", "MassDef": "BodyId", "LockedAxes": "BodyId",
            "Material": "ShapeId", "Filter": "ShapeId", "MaterialPair": None, "SurfaceRule": None, "Stepping": None, "SolverOptions": None,
            "JointAxisDef": "JointId", "Motor": "JointId", "PoseDrive": "JointId"}
