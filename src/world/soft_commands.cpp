@@ -305,6 +305,25 @@ std::span<const std::uint32_t> World::soft_triangles(SoftId soft) const {
   if (!exists(soft)) return {};
   return state_->soft.entries[soft.index].triangles.view();
 }
+std::size_t World::solid_tetrahedra(SoftId solid, std::span<std::uint32_t> out) const {
+  if (!exists(solid)) return 0;
+  std::size_t count = 0;
+  for (const TetBlock& block : state_->soft.entries[solid.index].body.continuum.tetrahedra) {
+    for (int lane = 0; lane < kTetLanes; ++lane) {
+      if (!(block.volume[lane] > 0.0f)) continue;
+      // Corners ascend in a block; the last two change places where that turns the tetrahedron inside out.
+      const auto& m = block.inverse;
+      const Vec3 x{m[0][lane], m[1][lane], m[2][lane]}, y{m[3][lane], m[4][lane], m[5][lane]},
+          z{m[6][lane], m[7][lane], m[8][lane]};
+      const bool inverted = dot(cross(x, y), z) < 0.0f;
+      for (int k = 0; k < 4; ++k, ++count) {
+        const int corner = inverted && k > 1 ? 5 - k : k;
+        if (count < out.size()) out[count] = std::uint32_t(block.corner[corner][lane]);
+      }
+    }
+  }
+  return count;
+}
 std::size_t World::soft_surface(SoftId soft, std::span<DVec3> out) const {
   if (!exists(soft)) return 0;
   const FloatMode mode;

@@ -38,7 +38,7 @@ inline constexpr int kEnumCount<SpringKind> = int(SpringKind::explicit_force) + 
 template <>
 inline constexpr int kEnumCount<TimeStepping> = kTimeSteppingCount;
 template <>
-inline constexpr int kEnumCount<FieldKind> = int(FieldKind::buoyancy) + 1;
+inline constexpr int kEnumCount<FieldKind> = kFieldKindCount;
 template <>
 inline constexpr int kEnumCount<SoftKind> = int(SoftKind::solid) + 1;
 template <>

@@ -204,6 +204,7 @@ struct OtherSize {
   void operator()(const char*, const FluidStore& fluids) {
     fluids.for_each([&](const FluidEntry& entry) {
       for_each_fluid_array(entry, [&](const auto& array) { bytes += array.bytes(); });
+      for_each_later_fluid_array(entry, [&](const auto& array) { bytes += array.bytes(); });
     });
   }
   void operator()(const char*, const std::vector<AnyShape>& shapes) { bytes += shapes.capacity() * sizeof(AnyShape); }

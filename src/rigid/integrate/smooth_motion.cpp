@@ -232,7 +232,7 @@ Members group_bodies(const RigidWorld& w, const SolveBatch& batch,
 // Forces that depend on velocities need more evaluations.
 bool feels_velocity(const RigidWorld& w, const SmoothBody& body) {
   bool feels = body.linear_damping > 0.0 || body.angular_damping > 0.0;
-  for (const std::uint32_t slot : body.fields) feels = feels || w.fields[slot].is_medium();
+  for (const std::uint32_t slot : body.fields) feels = feels || w.fields[slot].is_medium() || w.fields[slot].is_magnetic();
   return feels;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/container/sort.h"
 #include "math/rotation.h"
+#include "math/standard_gravity.h"
 #include "soft/body/enclosed_gas.h"
 #include "soft/elements/cloth.h"
 #include "soft/elements/rope.h"
@@ -17,7 +18,6 @@ namespace {
 
 // A rod of a cloth is a spring under which the cloth hangs longer by this share by its own weight.
 constexpr double kRodStrain = 1.0e-3;
-constexpr double kEarthGravity = 9.81;  // m/s^2
 
 Pose normalized_pose(const Pose& pose) { return {pose.position, normalized(pose.orientation)}; }
 
