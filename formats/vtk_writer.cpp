@@ -135,13 +135,11 @@ const char* soft_file(const World& world, SoftId soft, std::string& bytes) {
   };
   const SoftKind kind = world.soft_info(soft).kind;
   if (kind == SoftKind::solid) {
-    const SolidDef def = world.solid_def(soft);
-    const auto within = [&](std::uint32_t corner) { return corner < vertices.size(); };
-    if (!def.tetrahedra.empty() && std::all_of(def.tetrahedra.begin(), def.tetrahedra.end(), within)) {
-      add_cells(def.tetrahedra, 4);
-      bytes = tetrahedra(piece);
-      return ".vtu";
-    }
+    std::vector<std::uint32_t> corners(world.solid_tetrahedra(soft, {}));
+    (void)world.solid_tetrahedra(soft, corners);
+    add_cells(corners, 4);
+    bytes = tetrahedra(piece);
+    return ".vtu";
   }
   if (kind == SoftKind::rope) {
     for (std::size_t i = 0; i < vertices.size(); ++i) piece.connectivity.push_back(std::int64_t(i));
@@ -156,14 +154,28 @@ const char* soft_file(const World& world, SoftId soft, std::string& bytes) {
 
 std::string gas_image(const World& world, FluidId gas) {
   const FluidInfo info = world.fluid_info(gas);
-  std::string extent, origin, spacing;
+  const Vec3 columns[3] = {rotate(info.pose.orientation, Vec3{1, 0, 0}),
+                           rotate(info.pose.orientation, Vec3{0, 1, 0}),
+                           rotate(info.pose.orientation, Vec3{0, 0, 1})};
+  const auto place = [&](DVec3 in_box) {
+    return info.pose.position + in_box.x * DVec3(columns[0]) + in_box.y * DVec3(columns[1]) +
+           in_box.z * DVec3(columns[2]);
+  };
+  const DVec3 corner = info.pose == Pose{} ? info.lower : place(info.lower);
+  std::string extent, origin, spacing, direction;
+  if (info.pose.orientation != Quat{}) {
+    direction = "\" Direction=\"";
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        append_number(direction += row + column > 0 ? " " : "", columns[column][row]);
+  }
   for (int axis = 0; axis < 3; ++axis) {
     extent += (axis > 0 ? " 0 " : "0 ") + std::to_string(info.cells[std::size_t(axis)]);
-    append_number(origin += axis > 0 ? " " : "", info.lower[axis]);
+    append_number(origin += axis > 0 ? " " : "", corner[axis]);
     append_number(spacing += axis > 0 ? " " : "", info.cell[axis]);
   }
   std::string out = begin_file("ImageData") + " WholeExtent=\"" + extent + "\" Origin=\"" + origin +
-                    "\" Spacing=\"" + spacing + "\">\n<Piece Extent=\"" + extent +
+                    "\" Spacing=\"" + spacing + direction + "\">\n<Piece Extent=\"" + extent +
                     "\">\n<CellData Scalars=\"smoke\" Vectors=\"velocity\">\n";
   std::vector<DVec3> centers;
   for (int z = 0; z < info.cells[2]; ++z) {
@@ -171,6 +183,7 @@ std::string gas_image(const World& world, FluidId gas) {
       for (int x = 0; x < info.cells[0]; ++x)
         centers.push_back(info.lower +
                           multiply_each(info.cell, Vec3{float(x) + 0.5f, float(y) + 0.5f, float(z) + 0.5f}));
+      if (info.pose != Pose{}) centers.back() = place(centers.back());
     }
   }
   std::vector<float> values(centers.size());

@@ -193,6 +193,10 @@ void read_common(SceneReading& reading, Members& members, SceneFluid& fluid, Def
   fluid.name = read_unique_name(reading, members.need("name"));
   members.read("color", fluid.color);
   read_fluid_bounds(members, def);
+  if (const auto position = members.find("position")) def.pose.position = position->place();
+  members.read("orientation", def.pose.orientation);
+  members.read("linear_velocity", def.linear_velocity);
+  members.read("angular_velocity", def.angular_velocity);
   members.read("density", def.density, Range::above_to(0, kMaxDensity));
   members.read("viscosity", def.viscosity, kZeroOrMore);
   if (const auto boundary = members.find_value("boundary")) read_boundary(*boundary, def.sides);

@@ -11,6 +11,10 @@ namespace {
 constexpr std::pair<std::string_view, const char*> kPlaces[] = {
     {"lower", "/bounds/0"},
     {"upper", "/bounds/1"},
+    {"pose/position", "/position"},
+    {"pose/orientation", "/orientation"},
+    {"linear_velocity", "/linear_velocity"},
+    {"angular_velocity", "/angular_velocity"},
     {"cells", "/cells"},
     {"cell_size", "/cell_size"},
     {"density", "/density"},

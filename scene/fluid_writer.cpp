@@ -101,6 +101,10 @@ void write_probes(JsonWriter& json, const std::vector<SceneProbe>& probes) {
 template <class Def>
 void write_common(JsonWriter& json, const SceneFluid& fluid, const Def& def, bool is_gas) {
   write_color(json, fluid.color);
+  unless_default(json, "position", def.pose.position, DVec3{});
+  unless_default(json, "orientation", def.pose.orientation, Quat{});
+  unless_default(json, "linear_velocity", def.linear_velocity, Vec3{});
+  unless_default(json, "angular_velocity", def.angular_velocity, Vec3{});
   json.field("density", def.density);
   unless_default(json, "viscosity", def.viscosity, 0.0f);
   write_boundary(json, def.sides, Def{}.sides);

@@ -31,6 +31,7 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
   if (!builder.build()) return builder.error();
   runner.bodies_ = builder.take_bodies();
   runner.joints_ = builder.take_joints();
+  runner.couplings_ = builder.take_couplings();
   runner.ropes_ = builder.take_ropes();
   runner.cloths_ = builder.take_cloths();
   runner.soft_bodies_ = builder.take_soft_bodies();
@@ -191,6 +192,7 @@ SceneJoint SceneRunner::final_joint(std::size_t index) const {
 }
 
 void SceneRunner::put_present_state(SceneBody& body, BodyId id) const {
+  put_present_settings(body, id);
   body.def.pose = world_.pose(id);
   body.def.linear_velocity = world_.linear_velocity(id);
   body.def.angular_velocity = world_.angular_velocity(id);
@@ -201,6 +203,29 @@ void SceneRunner::put_present_state(SceneBody& body, BodyId id) const {
     if (force.end > 0.0) left.push_back(force);
   }
   body.forces = std::move(left);
+}
+
+// What the program may have changed since.
+void SceneRunner::put_present_settings(SceneBody& body, BodyId id) const {
+  BodyDef& def = body.def;
+  def.linear_damping = world_.linear_damping(id), def.angular_damping = world_.angular_damping(id);
+  def.gravity_scale = world_.gravity_scale(id);
+  def.sleep_speed = world_.sleep_speed(id);
+  def.continuous = world_.continuous(id), def.can_sleep = world_.can_sleep(id);
+  def.locked = world_.locked_axes(id);
+  def.enabled = world_.enabled(id);
+}
+
+// Couplings whose joints are left. All positions are zero in the poses in which joints are made anew.
+void SceneRunner::put_present_couplings(Scene& out, const std::vector<int>& places) const {
+  out.couplings.clear();
+  for (std::size_t i = 0; i < couplings_.size(); ++i) {
+    if (!world_.exists(couplings_[i])) continue;
+    SceneCoupling coupling = scene_.couplings[i];
+    coupling.offset = -world_.coupling_state(couplings_[i]).error;
+    for (SceneCouplingTerm& term : coupling.terms) term.joint = places[std::size_t(term.joint)];
+    out.couplings.push_back(std::move(coupling));
+  }
 }
 
 // The shape at rest stays; where the vertices are is the state.
@@ -237,11 +262,14 @@ void SceneRunner::put_present_softs(Scene& out, const std::vector<int>& places) 
   // One that was torn is no longer of its grid or mesh.
   put(out.cloths, scene_.cloths, cloths_, [&](SceneCloth& cloth, std::size_t i) {
     ClothDef present = world_.cloth_def(cloths_[i]);
-    const std::size_t before = cloth.def.grid ? std::size_t(cloth.def.grid->cells[0] + 1) * std::size_t(cloth.def.grid->cells[1] + 1)
-                                              : scene_.meshes[std::size_t(cloth.mesh)].vertices.size();
+    const std::size_t before =
+        cloth.def.grid ? std::size_t(cloth.def.grid->cells[0] + 1) * std::size_t(cloth.def.grid->cells[1] + 1)
+                       : scene_.meshes[std::size_t(cloth.mesh)].vertices.size();
     if (present.settings.positions.size() == before) return;
     std::string name = cloth.name + " (torn)";
-    while (std::any_of(out.meshes.begin(), out.meshes.end(), [&](const SceneMesh& mesh) { return mesh.name == name; })) name += "'";
+    while (std::any_of(out.meshes.begin(), out.meshes.end(),
+                       [&](const SceneMesh& mesh) { return mesh.name == name; }))
+      name += "'";
     cloth.mesh = int(out.meshes.size());
     cloth.def.grid.reset();
     cloth.def.pressure.reset();
@@ -268,7 +296,25 @@ std::vector<FluidEmitter> SceneRunner::present_emitters(const std::vector<FluidE
   return left;
 }
 
-// Definitions stay those of the scene. The state is the fields of a gas and the particles of a liquid.
+DVec3 SceneRunner::probe_place(FluidId fluid, const SceneProbe& probe) const {
+  const Pose pose = world_.fluid_info(fluid).pose;
+  if (pose == Pose{}) return probe.position;
+  const Quat& q = pose.orientation;
+  const DVec3 u{double(q.x), double(q.y), double(q.z)}, t = 2.0 * cross(u, probe.position);
+  return pose.position + probe.position + double(q.w) * t + cross(u, t);
+}
+
+namespace {
+
+template <class Def>
+void put_present_frame(const Def& present, Def& out) {
+  out.pose = present.pose;
+  out.linear_velocity = present.linear_velocity, out.angular_velocity = present.angular_velocity;
+}
+
+}  // namespace
+
+// Definitions stay those of the scene. The state is where the box is, and the fields of a gas and the particles of a liquid.
 void SceneRunner::put_present_fluids(Scene& out) const {
   out.gases.clear();
   for (std::size_t i = 0; i < gases_.size(); ++i) {
@@ -277,6 +323,7 @@ void SceneRunner::put_present_fluids(Scene& out) const {
     GasDef present = world_.gas_def(gases_[i]);
     gas.def.emitters = present_emitters(present.emitters);
     gas.def.fields = std::move(present.fields);
+    put_present_frame(present, gas.def);
   }
   out.liquids.clear();
   for (std::size_t i = 0; i < liquids_.size(); ++i) {
@@ -285,10 +332,12 @@ void SceneRunner::put_present_fluids(Scene& out) const {
     LiquidDef present = world_.liquid_def(liquids_[i]);
     liquid.def.emitters = present_emitters(present.emitters);
     liquid.def.particles = std::move(present.particles);
+    put_present_frame(present, liquid.def);
     // Particles may lie where the box is widened to whole cells.
     const FluidInfo info = world_.fluid_info(liquids_[i]);
     const double cell = double(liquid.def.cell_size);
-    const DVec3 widened = info.lower + DVec3{info.cells[0] * cell, info.cells[1] * cell, info.cells[2] * cell};
+    const DVec3 widened =
+        info.lower + DVec3{info.cells[0] * cell, info.cells[1] * cell, info.cells[2] * cell};
     DVec3& upper = liquid.def.upper;
     upper = {max(upper.x, widened.x), max(upper.y, widened.y), max(upper.z, widened.z)};
   }
@@ -307,12 +356,20 @@ Scene SceneRunner::final_scene() const {
     put_present_state(out.bodies.back(), bodies_[i]);
   }
   out.joints.clear();
+  std::vector<int> joint_places(joints_.size(), -1);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     if (!world_.exists(joints_[i])) continue;
     SceneJoint joint = final_joint(i);
     if (joint.a >= 0) joint.a = places[std::size_t(joint.a)];
     if (joint.b >= 0) joint.b = places[std::size_t(joint.b)];
+    joint_places[i] = int(out.joints.size());
     out.joints.push_back(std::move(joint));
+  }
+  put_present_couplings(out, joint_places);
+  out.ignored_pairs.clear();
+  for (const auto& [a, b] : scene_.ignored_pairs) {
+    if (world_.pair_ignored(bodies_[std::size_t(a)], bodies_[std::size_t(b)]))
+      out.ignored_pairs.push_back({places[std::size_t(a)], places[std::size_t(b)]});
   }
   put_present_softs(out, places);
   put_present_fluids(out);

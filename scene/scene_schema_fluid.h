@@ -54,7 +54,7 @@ inline constexpr char kSchemaOfGases[] = R"json(    "side": {
         "additionalProperties": false,
         "properties": {
           "name": { "$ref": "#/$defs/name", "description": "unique within the fluid" },
-          "position": { "$ref": "#/$defs/vector", "description": "m, in the world" }
+          "position": { "$ref": "#/$defs/vector", "description": "m, in the axes of the box" }
         }
       }
     },
@@ -67,6 +67,10 @@ inline constexpr char kSchemaOfGases[] = R"json(    "side": {
         "name": { "$ref": "#/$defs/name", "description": "unique over bodies, ropes, cloths, soft bodies, gases and liquids" },
         "color": { "$ref": "#/$defs/color" },
         "bounds": { "$ref": "#/$defs/box", "description": "m, [lowest corner, highest corner]" },
+        "position": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "m, of the origin of the axes of the box, in which all other members are" },
+        "orientation": { "$ref": "#/$defs/orientation", "default": [0, 0, 0, 1], "description": "of these axes" },
+        "linear_velocity": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "m/s, of the origin of these axes; the box moves and carries its walls along" },
+        "angular_velocity": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "rad/s, of these axes" },
         "cells": {
           "type": "array", "items": { "type": "integer", "minimum": 1, "maximum": 16777216 }, "minItems": 3, "maxItems": 3,
           "description": "at most 16777216 together; an axis with one cell is flat: nothing moves along it"
@@ -160,6 +164,10 @@ inline constexpr char kSchemaOfLiquids[] = R"json(    "liquid": {
         "name": { "$ref": "#/$defs/name", "description": "unique over bodies, ropes, cloths, soft bodies, gases and liquids" },
         "color": { "$ref": "#/$defs/color" },
         "bounds": { "$ref": "#/$defs/box", "description": "m, [lowest corner, highest corner]; widened at the latter to whole cells" },
+        "position": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "m, of the origin of the axes of the box, in which all other members are" },
+        "orientation": { "$ref": "#/$defs/orientation", "default": [0, 0, 0, 1], "description": "of these axes" },
+        "linear_velocity": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "m/s, of the origin of these axes; the box moves and carries its walls along" },
+        "angular_velocity": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "rad/s, of these axes" },
         "cell_size": { "$ref": "#/$defs/amount", "description": "m; at most 16777216 cells; an axis with one cell is flat: nothing moves along it" },
         "density": { "type": "number", "exclusiveMinimum": 0, "maximum": 1e20, "default": 1000, "description": "kg/m^3" },
         "viscosity": { "$ref": "#/$defs/stiffness", "default": 0, "description": "Pa s, dynamic" },
@@ -200,7 +208,7 @@ inline constexpr char kSchemaOfLiquids[] = R"json(    "liquid": {
           "additionalProperties": false,
           "description": "particles to begin with, instead of those of `fill`",
           "properties": {
-            "positions": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "description": "m, in the world; at most 4194304" },
+            "positions": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "description": "m, in the axes of the box; at most 4194304" },
             "velocities": { "type": ["array", "null"], "items": { "$ref": "#/$defs/vector" }, "description": "m/s" },
             "affine": {
               "type": ["array", "null"],

@@ -39,8 +39,8 @@ class FileSink : public ByteSink {
 std::string find_clash(const SimulateOptions& options) {
   const std::pair<const char*, const std::string*> outputs[] = {
       {"--record", &options.record},     {"--trace", &options.trace},   {"--joints", &options.joints},
-      {"--contacts", &options.contacts}, {"--probes", &options.probes}, {"--stats", &options.stats},
-      {"--final", &options.final}};
+      {"--contacts", &options.contacts}, {"--probes", &options.probes}, {"--events", &options.events},
+      {"--stats", &options.stats},       {"--final", &options.final}};
   const auto place = [](const std::string& path) {
     std::error_code error;
     const std::filesystem::path resolved = std::filesystem::weakly_canonical(path, error);
@@ -68,7 +68,7 @@ std::string find_clash(const SimulateOptions& options) {
 
 bool writes_to_standard_output(const SimulateOptions& options) {
   for (const std::string* path : {&options.record, &options.trace, &options.joints, &options.contacts,
-                                  &options.probes, &options.stats, &options.final}) {
+                                  &options.probes, &options.events, &options.stats, &options.final}) {
     if (*path == kStandardOutput) return true;
   }
   return false;
@@ -102,6 +102,7 @@ class Simulation {
   JointForceTable joints_;
   ContactPointTable contacts_;
   ProbeTable probes_;
+  EventTable events_;
   StatsTable stats_;
   OutputFile record_, final_;
   FileSink sink_{record_};
@@ -146,6 +147,7 @@ bool Simulation::open_outputs() {
   if (!options_.joints.empty() && !check(joints_.open(options_.joints), joints_.file())) return false;
   if (!options_.contacts.empty() && !check(contacts_.open(options_.contacts), contacts_.file())) return false;
   if (!options_.probes.empty() && !check(probes_.open(options_.probes), probes_.file())) return false;
+  if (!options_.events.empty() && !check(events_.open(options_.events), events_.file())) return false;
   if (!options_.stats.empty() && !check(stats_.open(options_.stats), stats_.file())) return false;
   if (!options_.final.empty() && !check(final_.open(options_.final), final_)) return false;
   if (!options_.vtk.empty()) {
@@ -172,8 +174,8 @@ bool Simulation::open_outputs() {
 
 bool Simulation::write_vtk(const VtkFile& file) const {
   OutputFile out;
-  const bool written =
-      out.open((std::filesystem::path(options_.vtk) / file.name).string()) && out.write(file.bytes) && out.commit();
+  const bool written = out.open((std::filesystem::path(options_.vtk) / file.name).string()) &&
+                       out.write(file.bytes) && out.commit();
   if (!written) say(out.message());
   return written;
 }
@@ -185,6 +187,7 @@ bool Simulation::record_step(double step_ms) {
     return fail(table.file()) == kExitGood;
   };
   if (!add_rows(trace_) || !add_rows(joints_) || !add_rows(contacts_) || !add_rows(probes_)) return false;
+  if (events_.file().is_open() && !events_.add_rows(runner_)) return fail(events_.file()) == kExitGood;
   if (!options_.vtk.empty() && runner_.steps() % options_.vtk_every == 0) {
     for (const VtkFile& file : vtk_.add_state(runner_)) {
       if (!write_vtk(file)) return false;
@@ -244,8 +247,8 @@ bool Simulation::finish_outputs(int ended) {
       return false;
     }
   }
-  for (OutputFile* file :
-       {&trace_.file(), &joints_.file(), &contacts_.file(), &probes_.file(), &stats_.file()}) {
+  for (OutputFile* file : {&trace_.file(), &joints_.file(), &contacts_.file(), &probes_.file(),
+                           &events_.file(), &stats_.file()}) {
     if (file->is_open() && !file->commit()) return fail(*file) == kExitGood;
   }
   if (!options_.vtk.empty() && !write_vtk(vtk_.collection("run"))) return false;

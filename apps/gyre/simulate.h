@@ -25,7 +25,7 @@ struct SimulateOptions {
   int threads = 1;
   std::string solver, integrator, broad_phase, stepping, springs;  // empty: what the scene says
   bool no_sleeping = false;
-  std::string record, trace, joints, contacts, probes, stats, final;  // paths; empty: not written
+  std::string record, trace, joints, contacts, probes, events, stats, final;  // paths; empty: not written
   std::string record_as = "all";                                      // or poses, commands
   std::uint32_t record_every = 1;
   float record_accuracy = 1.0e-4f;  // m

@@ -138,6 +138,10 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--probes", options.probes, "Write a table of gases and liquids at the scene's probes")
       ->type_name("FILE.csv");
   command
+      .add_option("--events", options.events,
+                  "Write a table of what happened: touches, sensors, sleep, fluids")
+      ->type_name("FILE.csv");
+  command
       .add_option("--trace-every", options.trace_every,
                   "Rows of --trace, --joints, --contacts and --probes only every Nth step")
       ->type_name("N")

@@ -163,7 +163,7 @@ bool ProbeTable::add_rows(const SceneRunner& runner) {
   runner.for_each_fluid([&](const SceneFluid& fluid, FluidId id) {
     for (const SceneProbe& probe : fluid.probes) {
       if (!written) return;
-      const FluidProbe found = runner.world().probe(id, probe.position);
+      const FluidProbe found = runner.world().probe(id, runner.probe_place(id, probe));
       row_ = begin;
       add_text(row_, fluid.name);
       add_text(row_, probe.name);
@@ -175,6 +175,76 @@ bool ProbeTable::add_rows(const SceneRunner& runner) {
     }
   });
   return written;
+}
+
+namespace {
+
+std::string name_of(const SceneRunner& runner, ShapeId id) {
+  return name_of(runner, runner.world().body_of(id));
+}
+std::string name_of(const SceneRunner& runner, SoftId id) {
+  std::string name = "?";
+  runner.for_each_soft([&](const SceneSoft& soft, SoftId one) {
+    if (one == id) name = soft.name;
+  });
+  return name;
+}
+std::string name_of(const SceneRunner& runner, FluidId id) {
+  std::string name = "?";
+  runner.for_each_fluid([&](const SceneFluid& fluid, FluidId one) {
+    if (one == id) name = fluid.name;
+  });
+  return name;
+}
+std::string name_of(const SceneRunner& runner, JointId id) {
+  for (std::size_t i = 0; i < runner.joints().size(); ++i) {
+    if (runner.joints()[i] != id) continue;
+    const std::string& name = runner.scene().joints[i].name;
+    return name.empty() ? "joint " + std::to_string(i) : name;
+  }
+  return "?";
+}
+
+}  // namespace
+
+bool EventTable::open(const std::string& path) {
+  return file_.open(path) && file_.write("step,time,event,first,second,value\n");
+}
+
+bool EventTable::add_rows(const SceneRunner& runner) {
+  std::string begin = std::to_string(runner.steps());
+  add_number(begin, runner.time());
+  const Events& events = runner.world().events();
+  row_.clear();
+  const auto add = [&](const char* what, const std::string& first, const std::string& second, double value) {
+    row_ += begin;
+    add_text(row_, what);
+    add_text(row_, first);
+    add_text(row_, second);
+    add_number(row_, value);
+    row_ += '\n';
+  };
+  const auto name = [&](auto id) { return name_of(runner, id); };
+  for (const ContactBegin& one : events.begins) add("contact_begin", name(one.body_a), name(one.body_b), 0.0);
+  for (const ContactEnd& one : events.ends) add("contact_end", name(one.shape_a), name(one.shape_b), 0.0);
+  for (const ContactHit& one : events.hits)
+    add("hit", name(one.body_a), name(one.body_b), double(one.approach_speed));
+  for (const SensorTouch& one : events.sensors)
+    add(one.begins ? "sensor_enter" : "sensor_leave", name(one.visitor), name(one.sensor), 0.0);
+  for (const JointBroken& one : events.broken) add("joint_break", name(one.joint), "", double(one.force));
+  for (const SleepChange& one : events.sleep_changes)
+    add(one.asleep ? "sleep" : "wake", name(one.body), "", 0.0);
+  for (const SoftContactBegin& one : events.soft_begins)
+    add("soft_contact_begin", name(one.soft), name(one.body), one.vertex);
+  for (const SoftContactEnd& one : events.soft_ends)
+    add("soft_contact_end", name(one.soft), name(one.shape), 0.0);
+  for (const SoftInverted& one : events.inverted) add("inverted", name(one.soft), "", one.tetrahedron);
+  for (const SoftTorn& one : events.torn) add("torn", name(one.soft), "", one.vertex);
+  for (const FluidTouch& one : events.fluid_touches) {
+    add(one.begins ? "fluid_enter" : "fluid_leave", one.soft ? name(one.soft) : name(one.body),
+        name(one.fluid), one.vertex);
+  }
+  return row_.empty() || file_.write(row_);
 }
 
 bool StatsTable::open(const std::string& path) {

@@ -80,6 +80,17 @@ struct SoftTorn {
   int new_vertex = 0;
 };
 
+// A body, or a rope, cloth or solid, entered or left a fluid: the room within the surface of a liquid, the box of a gas. A body is inside while
+// any point of its shapes is; sensors and fixed bodies do not count. Soft matter is inside while any vertex is. A visitor that is removed
+// leaves, and all visitors of a fluid leave when it is removed. Sorted by the index of the fluid, bodies before soft matter.
+struct FluidTouch {
+  FluidId fluid{};
+  BodyId body{};    // null: the visitor is soft matter
+  SoftId soft{};    // null: the visitor is a body
+  int vertex = -1;  // of soft matter that enters: the first vertex inside; else -1
+  bool begins = true;
+};
+
 struct Events {
   std::span<const ContactBegin> begins{};
   std::span<const ContactEnd> ends{};
@@ -91,6 +102,7 @@ struct Events {
   std::span<const SoftContactEnd> soft_ends{};
   std::span<const SoftInverted> inverted{};
   std::span<const SoftTorn> torn{};
+  std::span<const FluidTouch> fluid_touches{};
 };
 
 // How the last step was divided, if TimeStepping is not fixed.

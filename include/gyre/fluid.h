@@ -1,5 +1,6 @@
 // Fluids: gases and liquids as fields of velocities in boxes of cells. Gases carry smoke and heat; liquids have a surface. Bodies of every
-// shape push them and are pushed by them. SI units, world frame.
+// shape push them and are pushed by them. SI units. The box of a fluid may be turned and may move: all of a definition is in the axes of the
+// box, which `pose` places in the world; all readings are in the world.
 //
 //   FluidId room = world.add_gas({.lower = {-2, 0, -2}, .upper = {2, 4, 2}, .cells = {64, 64, 64},
 //                                 .emitters = {{.position = {0, 0.2, 0}, .radius = 0.3f, .temperature = 400.0f}}});
@@ -94,6 +95,8 @@ struct GasDef {
   std::optional<GasFields> fields{};  // instead of air at rest and of the initial velocity
   std::uint64_t user_data = 0;
   std::optional<Combustion> combustion{};  // without: nothing burns
+  Pose pose{};  // world from the axes of the box
+  Vec3 linear_velocity{}, angular_velocity{};  // of these axes at their origin, m/s and rad/s, in the world
 };
 
 struct FluidRegion {
@@ -123,6 +126,8 @@ struct LiquidDef {
   std::vector<FluidEmitter> emitters{};
   std::optional<LiquidParticles> particles{};  // instead of `fill`
   std::uint64_t user_data = 0;
+  Pose pose{};  // world from the axes of the box
+  Vec3 linear_velocity{}, angular_velocity{};  // of these axes at their origin, m/s and rad/s, in the world
 };
 
 // The fluid at a point, between the places of its grid linearly.
@@ -140,7 +145,7 @@ struct FluidProbe {
 struct FluidInfo {
   FluidKind kind = FluidKind::gas;
   std::array<int, 3> cells{};
-  DVec3 lower{};                // m
+  DVec3 lower{};                // m, in the axes of the box
   Vec3 cell{};                  // m, edges of a cell
   int particles = 0;            // of a liquid
   double kinetic_energy = 0.0;  // J
@@ -153,6 +158,8 @@ struct FluidInfo {
   std::uint64_t user_data = 0;
   double fuel_mass = 0.0;       // kg, of a gas with combustion
   double heat_rate = 0.0;       // W, of its combustion in the last step
+  Pose pose{};                  // world from the axes of the box
+  Vec3 linear_velocity{}, angular_velocity{};  // of these axes at their origin, m/s and rad/s
 };
 
 // The load of all fluids on a body: the force and torque of their pressure, lift included, that act through the present step.

@@ -123,8 +123,9 @@ void push_fluids_back(SoftStore& soft, FluidStore& fluids, std::vector<FluidScra
       if (impulse == DVec3{}) continue;
       const int slot = find_fluid(fluids, p.place(i));
       if (slot < 0) continue;
-      const Vec3 place = difference(p.place(i), fluids.entries[std::size_t(slot)].box().corner);
-      kicks[std::size_t(slot)].push_back({place, -to_float(impulse)});
+      const FluidEntry& fluid = fluids.entries[std::size_t(slot)];
+      const Vec3 place = difference(point_to_frame(fluid.frame(), p.place(i)), fluid.box().corner);
+      kicks[std::size_t(slot)].push_back({place, -to_float(vector_to_frame(fluid.frame(), impulse))});
       any = true;
     }
   });

@@ -164,8 +164,12 @@ float negative_part(float a, float b, float c, float d) {
 
 class FaceCutter {
  public:
-  FaceCutter(const RigidWorld& w, const GasBox& box, const GridShape& shape, FluidSolids& out)
-      : w_(w), grid_(PointGrid::of_corners(box)), shape_(shape), out_(out) {}
+  FaceCutter(const RigidWorld& w, const FluidEntry& entry, FluidSolids& out)
+      : w_(w),
+        frame_(entry.frame()),
+        grid_(PointGrid::of_corners(entry.box())),
+        shape_(entry.shape()),
+        out_(out) {}
 
   // Faces across an axis: the open part, the label and the velocity of the solid there.
   void cut(int axis, TaskSystem& tasks) {
@@ -205,17 +209,23 @@ class FaceCutter {
     const std::int16_t label = out_.label_of[body];
     out_.solids.label[axis][c] = label;
     const DVec3 half{axis == 0 ? 0.0 : 0.5, axis == 1 ? 0.0 : 0.5, axis == 2 ? 0.0 : 0.5};
-    const DVec3 at =
-        grid_.corner + DVec3{(i + half.x) * double(grid_.cell.x), (j + half.y) * double(grid_.cell.y),
-                             (k + half.z) * double(grid_.cell.z)};
-    if (!has_solid_motion(w_, body)) return;
-    const BodyMotion& motion = w_.bodies.motion[body];
-    const Vec3 arm = difference(at, w_.bodies.poses[body].center);
-    const Vec3 velocity = motion.linear_velocity + cross(motion.angular_velocity, arm);
+    const DVec3 at = point_to_world(
+        frame_, grid_.corner + DVec3{(i + half.x) * double(grid_.cell.x), (j + half.y) * double(grid_.cell.y),
+                                     (k + half.z) * double(grid_.cell.z)});
+    Vec3 velocity{};
+    if (has_solid_motion(w_, body)) {
+      const BodyMotion& motion = w_.bodies.motion[body];
+      const Vec3 arm = difference(at, w_.bodies.poses[body].center);
+      velocity = motion.linear_velocity + cross(motion.angular_velocity, arm);
+    } else if (frame_ == nullptr || !frame_->moves()) {
+      return;
+    }
+    velocity = velocity_to_frame(frame_, at, velocity);
     out_.solids.velocity[axis][c] = axis == 0 ? velocity.x : axis == 1 ? velocity.y : velocity.z;
   }
 
   const RigidWorld& w_;
+  const FluidFrame* frame_;
   PointGrid grid_;
   const GridShape& shape_;
   FluidSolids& out_;
@@ -227,7 +237,8 @@ void find_near_rows(const PointGrid& grid, TaskSystem& tasks, FluidSolids& out) 
   out.within_row.resize_uninitialized(std::size_t(rows));
   for_blocks(tasks, rows, kPointRows, [&](int first, int last, int) {
     for (int row = first; row < last; ++row) {
-      const float* const distance = out.corners.all.distance.data() + std::size_t(row) * std::size_t(grid.count[0]);
+      const float* const distance =
+          out.corners.all.distance.data() + std::size_t(row) * std::size_t(grid.count[0]);
       int any = 0;
       for (int i = 0; i < grid.count[0]; ++i) any |= distance[i] < 0.0f ? 1 : 0;
       out.within_row[row] = std::uint8_t(any);
@@ -320,8 +331,11 @@ bool do_boxes_meet(const Aabb& a, const Aabb& b) {
 
 }  // namespace
 
-void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& shape, bool is_liquid,
-                     TaskSystem& tasks, FluidSolids& out) {
+void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, TaskSystem& tasks, FluidSolids& out) {
+  const GasBox& box = entry.box();
+  const GridShape& shape = entry.shape();
+  const FluidFrame* const frame = entry.frame();
+  const bool is_liquid = entry.is_liquid();
   const PointGrid corners = PointGrid::of_corners(box), centers = PointGrid::of_centers(box);
   const double reach = double(is_liquid ? centers.reach() : corners.reach());
   const DVec3 margin{reach, reach, reach};
@@ -332,10 +346,15 @@ void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& sh
   std::uint64_t fixed_key = 1, all_key = 1;
   w.shapes.ids.for_each_live([&](std::uint32_t one) {
     const Proxy& proxy = w.shapes.proxies[one];
-    if (proxy.sensor || !do_boxes_meet(proxy.fat_box, whole)) return;
+    if (proxy.sensor || (frame == nullptr && !do_boxes_meet(proxy.fat_box, whole))) return;
     const std::uint32_t body = w.shapes.bodies[one];
-    const NearShape near{&w.shapes.colliders[one].shape, body,
-                         origin_pose(w.bodies, body) * w.shapes.body_from_shape[one], proxy.fat_box};
+    NearShape near{&w.shapes.colliders[one].shape, body,
+                   origin_pose(w.bodies, body) * w.shapes.body_from_shape[one], proxy.fat_box};
+    if (frame != nullptr) {
+      near.pose = pose_to_frame(frame, near.pose);
+      near.box = bounds(*near.shape, Transform{to_float(near.pose.position), near.pose.orientation});
+      if (!do_boxes_meet(near.box, whole)) return;
+    }
     const bool moves = has_solid_motion(w, body);
     all_key = add_shape_key(all_key, w, one, near);
     if (!moves) fixed_key = add_shape_key(fixed_key, w, one, near);
@@ -358,7 +377,7 @@ void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& sh
   clear_solids(shape, int(out.bodies.size()), out.solids);
   out.solids.revision = revision + (changed ? 1 : 0);
   find_near_rows(corners, tasks, out);
-  FaceCutter cutter(w, box, shape, out);
+  FaceCutter cutter(w, entry, out);
   for (int axis = 0; axis < 3; ++axis) cutter.cut(axis, tasks);
   mark_solid_cells(shape, tasks, out.solids);
   if (is_liquid) set_center_distances(centers, shape, out);

@@ -7,6 +7,7 @@
 
 #include "fluid/grid/gas_grid.h"
 #include "fluid/grid/gas_solids.h"
+#include "fluid/store/fluid_store.h"
 #include "rigid/store/rigid_world.h"
 #include "task/task_system.h"
 
@@ -32,8 +33,7 @@ struct FluidSolids {
   Array<std::uint8_t> within_row;   // rows of corners: 1 if one is within a solid
 };
 
-// `is_liquid`: with the distances of centres.
-void cut_fluid_cells(const RigidWorld& w, const GasBox& box, const GridShape& shape, bool is_liquid,
-                     TaskSystem& tasks, FluidSolids& out);
+// For a liquid with the distances of centres.
+void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, TaskSystem& tasks, FluidSolids& out);
 
 }  // namespace gyre

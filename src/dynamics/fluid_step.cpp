@@ -3,6 +3,7 @@
 #include "fluid/gas/gas_reading.h"
 #include "fluid/liquid/liquid_reading.h"
 #include "fluid/store/fluid_builder.h"
+#include "fluid/store/fluid_motion.h"
 #include "geometry/mass/submerged.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
@@ -69,11 +70,13 @@ void push_bodies(RigidWorld& w, FluidEntry& entry, const FluidScratch& scratch, 
     const std::uint32_t body = scratch.solids.bodies[label];
     if (w.bodies.flags[body].type != BodyType::dynamic || w.bodies.flags[body].frozen != 0) continue;
     const GasImpulse& impulse = scratch.impulses[label];
+    const FluidFrame* const frame = entry.frame();
     FluidPush push;
     push.body = body;
-    push.force = to_float((1.0 / double(seconds)) * impulse.linear);
-    const DVec3 arm = entry.box().corner - w.bodies.poses[body].center;
-    push.torque = to_float((1.0 / double(seconds)) * (impulse.angular + cross(arm, impulse.linear)));
+    push.force = to_float((1.0 / double(seconds)) * vector_to_world(frame, impulse.linear));
+    const DVec3 arm = entry.box().corner - point_to_frame(frame, w.bodies.poses[body].center);
+    push.torque = to_float((1.0 / double(seconds)) *
+                           vector_to_world(frame, impulse.angular + cross(arm, impulse.linear)));
     if (!is_finite(push.force) || !is_finite(push.torque)) continue;
     if (is_asleep(w, body)) {
       const FluidPush* const before = find_push(entry.pushes, body);
@@ -156,7 +159,7 @@ float volume_of_body(const RigidWorld& w, std::uint32_t body) {
 constexpr float kLightShare = 8.0f;
 
 // Bodies as the pressure of a fluid sees them: those that are awake and free to move yield to it; in a gas, of this density, light ones.
-void list_bodies(const RigidWorld& w, float gas_density, FluidScratch& scratch) {
+void list_bodies(const RigidWorld& w, const FluidFrame* frame, float gas_density, FluidScratch& scratch) {
   scratch.bodies.clear();
   for (const std::uint32_t body : scratch.solids.bodies) {
     FluidBody out;
@@ -183,6 +186,23 @@ void list_bodies(const RigidWorld& w, float gas_density, FluidScratch& scratch) 
     }
     scratch.bodies.push_back(out);
   }
+  if (frame == nullptr) return;
+  const Quat to_box = conjugate(frame->pose.orientation);
+  for (FluidBody& body : scratch.bodies) {
+    body.velocity = velocity_to_frame(frame, body.center, body.velocity);
+    body.angular_velocity = vector_to_frame(frame, body.angular_velocity - frame->angular_velocity);
+    body.center = point_to_frame(frame, body.center);
+    body.inverse_inertia = rotate_inertia(to_box, body.inverse_inertia);
+    body.acceleration = vector_to_frame(frame, body.acceleration);
+    body.angular_acceleration = vector_to_frame(frame, body.angular_acceleration);
+  }
+}
+
+// In the middle of the step, since the box may turn.
+Vec3 gravity_in_box(const RigidWorld& w, const FluidFrame* frame, float seconds) {
+  if (frame == nullptr) return w.settings.gravity;
+  const FluidFrame middle = advanced(*frame, 0.5f * seconds);
+  return vector_to_frame(&middle, w.settings.gravity);
 }
 
 bool touches(const RigidWorld& w, std::uint32_t body) {
@@ -225,10 +245,11 @@ void step_gas_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const G
   settings.density = def.density, settings.buoyancy = def.buoyancy;
   settings.vorticity = def.vorticity, settings.viscosity = def.viscosity;
   settings.advection = def.advection;
-  settings.gravity = w.settings.gravity;
+  settings.gravity = gravity_in_box(w, entry.frame(), seconds);
+  if (entry.frame() != nullptr && entry.frame()->moves()) settings.motion = frame_motion(entry);
   settings.combustion = def.combustion;
   settings.emitter_fuel = entry.emitter_fuel.view();
-  list_bodies(w, def.density, own);
+  list_bodies(w, entry.frame(), def.density, own);
   add_lift_to_bodies(w, entry, settings, seconds, own);
   const GasReport report = step_gas(entry.gas, own.solids.solids, own.bodies.view(), entry.emitters.view(),
                                     settings, time, seconds, own.gas, kernels, tasks, own.impulses.view());
@@ -246,7 +267,8 @@ void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, cons
   LiquidSettings settings;
   settings.density = def.density, settings.viscosity = def.viscosity;
   settings.surface_tension = def.surface_tension;
-  settings.gravity = w.settings.gravity;
+  settings.gravity = gravity_in_box(w, entry.frame(), seconds);
+  if (entry.frame() != nullptr && entry.frame()->moves()) settings.motion = frame_motion(entry);
   own.sources.clear();
   own.report.full = entry.liquid.particles() >= kMaxLiquidParticles && !entry.emitters.empty();
   if (!own.report.full) {
@@ -254,7 +276,7 @@ void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, cons
       own.sources.push_back(
           {one.position, one.radius, one.has_velocity ? one.velocity : Vec3{}, one.start, one.end});
   }
-  list_bodies(w, 0.0f, own);
+  list_bodies(w, entry.frame(), 0.0f, own);
   const LiquidReport report =
       step_liquid(entry.liquid, own.solids.solids, own.bodies.view(), own.sources.view(), settings, time,
                   seconds, own.liquid, kernels, tasks, own.impulses.view());
@@ -262,6 +284,7 @@ void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, cons
   own.report.divergence = report.divergence, own.report.residual = report.residual;
 }
 
+// Points in the axes of the box.
 bool is_in_liquid(const LiquidGrid& liquid, DVec3 point) {
   return sample_field(liquid.box, liquid.shape, liquid.surface.data(), -1,
                       difference(point, liquid.box.corner)) < 0.0f;
@@ -282,7 +305,7 @@ void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& s
     FluidEntry& entry = fluids.entries[slot];
     if (entry.def == nullptr) continue;
     FluidScratch& own = scratch[slot];
-    cut_fluid_cells(w, entry.box(), entry.shape(), entry.is_liquid(), tasks, own.solids);
+    cut_fluid_cells(w, entry, tasks, own.solids);
     own.impulses.clear();
     own.impulses.resize(own.solids.bodies.size(), GasImpulse{});
     own.report = {};
@@ -295,9 +318,11 @@ void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& s
       own.gas = {}, own.liquid = {};
       own.report = {};
       own.report.failed = true;
+      advance_frame(entry, seconds);
       continue;
     }
     push_bodies(w, entry, own, seconds);
+    advance_frame(entry, seconds);
   }
 }
 
@@ -307,11 +332,13 @@ bool find_stream(const FluidStore& fluids, DVec3 point, FluidStream& out) {
   const FluidEntry& entry = fluids.entries[std::size_t(slot)];
   const Vec3 h = entry.box().cell;
   const float edge = min(h.x, min(h.y, h.z));
+  const DVec3 in_box = point_to_frame(entry.frame(), point);
   if (entry.is_liquid())
-    out = {probe_liquid(entry.liquid, point, entry.liquid_def().density).velocity, entry.liquid_def().density,
-           true, edge};
+    out = {probe_liquid(entry.liquid, in_box, entry.liquid_def().density).velocity,
+           entry.liquid_def().density, true, edge};
   else
-    out = {gas_velocity(entry.gas, point), entry.gas_def().density, false, edge};
+    out = {gas_velocity(entry.gas, in_box), entry.gas_def().density, false, edge};
+  out.velocity = velocity_to_world(entry.frame(), point, out.velocity);
   return true;
 }
 
@@ -319,9 +346,11 @@ int find_fluid(const FluidStore& fluids, DVec3 point) {
   int found = -1;
   for (std::size_t slot = 0; slot < fluids.entries.size(); ++slot) {
     const FluidEntry& entry = fluids.entries[slot];
-    if (entry.def == nullptr || !is_within(entry.box(), point)) continue;
+    if (entry.def == nullptr) continue;
+    const DVec3 in_box = point_to_frame(entry.frame(), point);
+    if (!is_within(entry.box(), in_box)) continue;
     if (entry.is_liquid()) {
-      if (is_in_liquid(entry.liquid, point)) return int(slot);
+      if (is_in_liquid(entry.liquid, in_box)) return int(slot);
     } else if (found < 0) {
       found = int(slot);
     }

@@ -2,6 +2,7 @@
 
 #include "collision/broadphase/fat_box.h"
 #include "dynamics/soft_groups.h"
+#include "dynamics/soft_inside.h"
 #include "geometry/query/point_query.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
@@ -134,7 +135,8 @@ class ContactFinder {
       const DQuat turn = to_double(candidate.pose.orientation);
       const DVec3 local = rotate_inverse(turn, at - candidate.pose.position);
       if (!find_point_distance(w_.shapes.colliders[candidate.shape].shape, local, reach, found)) continue;
-      if (is_attached_near(i, candidate.body)) continue;
+      if (is_inside(entry_, std::uint32_t(i), candidate.body) || is_attached_near(i, candidate.body))
+        continue;
       SoftContact contact;
       contact.particle = std::uint32_t(i), contact.shape = candidate.shape;
       contact.body = std::int32_t(candidate.body);

@@ -1,7 +1,9 @@
 #include "world/fluid_commands.h"
 
 #include "dynamics/fluid_solids.h"
+#include "dynamics/fluid_visitors.h"
 #include "fluid/store/fluid_builder.h"
+#include "fluid/store/fluid_motion.h"
 #include "rigid/sleep/island.h"
 #include "world/refusal.h"
 #include "world/world_state.h"
@@ -38,6 +40,15 @@ Error check(const WorldState& s, const SetEmitters& c) {
                     *entry.def);
 }
 
+Error check(const WorldState& s, const SetFluidPose& c) {
+  const Error e = check_id(s, c.fluid, "set_fluid_pose");
+  return e ? e : check_frame(c.pose, {}, {});
+}
+Error check(const WorldState& s, const SetFluidVelocity& c) {
+  const Error e = check_id(s, c.fluid, "set_fluid_velocity");
+  return e ? e : check_frame({}, c.linear, c.angular);
+}
+
 CommandResult execute(WorldState& s, const AddFluid& c) {
   const IdPool::Slot slot = s.fluids.ids.acquire();
   if (s.fluids.entries.size() < s.fluids.ids.capacity()) s.fluids.entries.resize(s.fluids.ids.capacity());
@@ -45,7 +56,7 @@ CommandResult execute(WorldState& s, const AddFluid& c) {
   if (slot.index < s.fluid_scratch.size()) s.fluid_scratch[slot.index] = {};
   if (entry.is_liquid()) {
     FluidSolids solids;
-    cut_fluid_cells(s.rigid, entry.box(), entry.shape(), true, *s.tasks, solids);
+    cut_fluid_cells(s.rigid, entry, *s.tasks, solids);
     fill_liquid(entry, solids.solids);
   }
   CommandResult out;
@@ -54,6 +65,7 @@ CommandResult execute(WorldState& s, const AddFluid& c) {
   return out;
 }
 CommandResult execute(WorldState& s, const RemoveFluid& c) {
+  end_fluid_touches(s.rigid, s.fluids, c.fluid.index);
   // Bodies that the fluid held may fall.
   for (const FluidPush& push : s.fluids.entries[c.fluid.index].pushes)
     if (s.rigid.bodies.ids.live(push.body)) wake(s.rigid, push.body);
@@ -64,6 +76,20 @@ CommandResult execute(WorldState& s, const RemoveFluid& c) {
 }
 CommandResult execute(WorldState& s, const SetEmitters& c) {
   set_emitters(s.fluids.entries[c.fluid.index], c.emitters);
+  return {true, {}, {}, {}};
+}
+
+CommandResult execute(WorldState& s, const SetFluidPose& c) {
+  FluidEntry& entry = s.fluids.entries[c.fluid.index];
+  FluidFrame frame = entry.frame() != nullptr ? *entry.frame() : FluidFrame{};
+  frame.pose = {c.pose.position, normalized(c.pose.orientation)};
+  set_frame(entry, frame);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetFluidVelocity& c) {
+  FluidEntry& entry = s.fluids.entries[c.fluid.index];
+  FluidFrame frame = entry.frame() != nullptr ? *entry.frame() : FluidFrame{};
+  change_frame_velocity(entry, c.linear - frame.velocity, c.angular - frame.angular_velocity);
   return {true, {}, {}, {}};
 }
 
@@ -83,6 +109,11 @@ Error check_fluid_columns(const RigidWorld& w, const FluidStore& fluids) {
       if (push.body >= w.bodies.ids.capacity()) return bad("a fluid pushes a body that is not there");
       if (!is_finite(push.force) || !is_finite(push.torque))
         return bad("the force of a fluid that is not finite");
+    }
+    if (entry.frames.size() > 1) return bad("a fluid with two frames");
+    for (const FluidFrame& frame : entry.frames) {
+      if (!is_finite(frame.pose) || !is_finite(frame.velocity) || !is_finite(frame.angular_velocity))
+        return bad("the frame of a fluid that is not finite");
     }
     const std::vector<FluidEmitter> emitters = emitter_defs(entry);
     const Error e = std::visit(

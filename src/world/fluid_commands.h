@@ -10,10 +10,14 @@ namespace gyre {
 Error check(const WorldState& state, const AddFluid& c);
 Error check(const WorldState& state, const RemoveFluid& c);
 Error check(const WorldState& state, const SetEmitters& c);
+Error check(const WorldState& state, const SetFluidPose& c);
+Error check(const WorldState& state, const SetFluidVelocity& c);
 
 CommandResult execute(WorldState& state, const AddFluid& c);
 CommandResult execute(WorldState& state, const RemoveFluid& c);
 CommandResult execute(WorldState& state, const SetEmitters& c);
+CommandResult execute(WorldState& state, const SetFluidPose& c);
+CommandResult execute(WorldState& state, const SetFluidVelocity& c);
 
 // True if what the id names exists.
 bool is_fluid(const WorldState& state, FluidId id);

@@ -52,8 +52,58 @@ float value_of(const FluidEntry& entry, FluidField field, int c) {
   return 0.0f;
 }
 
+// The length of the box along an axis, m.
+double length_along(const GasBox& box, int axis) {
+  const float edge = axis == 0 ? box.cell.x : axis == 1 ? box.cell.y : box.cell.z;
+  return double(box.cells[axis]) * double(edge);
+}
+
+// The height of the highest surface above or below a point of the world, for a box that is turned: along the line through the point, from above.
+bool find_surface_along(const FluidEntry& entry, DVec3 point, double& height) {
+  const LiquidGrid& liquid = entry.liquid;
+  const DVec3 from = point_to_frame(entry.frame(), point) - liquid.box.corner;
+  const DVec3 up = vector_to_frame(entry.frame(), DVec3{0, 1, 0});
+  const double origin[3] = {from.x, from.y, from.z}, way[3] = {up.x, up.y, up.z};
+  double low = -1.0e300, high = 1.0e300;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double size = length_along(liquid.box, axis);
+    if (way[axis] == 0.0) {
+      if (origin[axis] < 0.0 || origin[axis] > size) return false;
+      continue;
+    }
+    const double a = -origin[axis] / way[axis], b = (size - origin[axis]) / way[axis];
+    low = max(low, min(a, b)), high = min(high, max(a, b));
+  }
+  if (!(low < high)) return false;
+  const auto distance_at = [&](double t) {
+    return double(sample_field(liquid.box, liquid.shape, liquid.surface.data(), -1, to_float(from + t * up)));
+  };
+  const double edge = double(min(liquid.box.cell.x, min(liquid.box.cell.y, liquid.box.cell.z)));
+  const int steps = 1 + int(2.0 * (high - low) / edge);
+  double above = distance_at(high), last = high;
+  if (above <= 0.0) return height = point.y + high, true;
+  for (int i = 1; i <= steps; ++i) {
+    const double t = high + (low - high) * (double(i) / double(steps)), here = distance_at(t);
+    if (here <= 0.0) {
+      height = point.y + t + (last - t) * (here / (here - above));
+      return true;
+    }
+    above = here, last = t;
+  }
+  return false;
+}
+
+// The height of the highest surface of a liquid in the column of a point of the world.
+bool find_level(const FluidEntry& entry, DVec3 point, double& height) {
+  if (entry.frame() != nullptr) return find_surface_along(entry, point, height);
+  const LiquidProbe probe = probe_liquid(entry.liquid, point, entry.liquid_def().density);
+  height = probe.surface;
+  return probe.has_surface;
+}
+
 // The mean level of a liquid at eight places round a box; false if there is none at any of them.
-bool level_beside(const LiquidGrid& liquid, float density, const Aabb& box, double& level) {
+bool level_beside(const FluidEntry& entry, const Aabb& box, double& level) {
+  const LiquidGrid& liquid = entry.liquid;
   const DVec3 low(box.low), high(box.high), middle = 0.5 * (low + high);
   const double edge = double(liquid.box.cell.x);
   double sum = 0.0;
@@ -64,12 +114,13 @@ bool level_beside(const LiquidGrid& liquid, float density, const Aabb& box, doub
     const DVec3 at{middle.x + x * (0.5 * (high.x - low.x) + edge), middle.y,
                    middle.z + z * (0.5 * (high.z - low.z) + edge)};
     const DVec3 inside = at - liquid.box.corner;
-    if (inside.x < 0.0 || inside.z < 0.0 || inside.x > liquid.box.cells[0] * edge ||
-        inside.z > liquid.box.cells[2] * double(liquid.box.cell.z))
+    if (entry.frame() == nullptr &&
+        (inside.x < 0.0 || inside.z < 0.0 || inside.x > liquid.box.cells[0] * edge ||
+         inside.z > liquid.box.cells[2] * double(liquid.box.cell.z)))
       continue;
-    const LiquidProbe probe = probe_liquid(liquid, at, density);
-    if (!probe.has_surface) continue;
-    sum += probe.surface;
+    double surface = 0.0;
+    if (!find_level(entry, at, surface)) continue;
+    sum += surface;
     ++found;
   }
   if (found == 0) return false;
@@ -87,6 +138,16 @@ double volume_below(const RigidWorld& w, std::uint32_t body, double level) {
     sum += submerged_part(shape, up, level - pose.position.y).volume;
   }
   return sum;
+}
+
+template <class Def>
+void put_frame(const FluidEntry& entry, Def& def) {
+  const FluidFrame frame = entry.frame() != nullptr ? *entry.frame() : FluidFrame{};
+  def.pose = frame.pose, def.linear_velocity = frame.velocity, def.angular_velocity = frame.angular_velocity;
+}
+
+LiquidTotals totals_of(const WorldState& s, const FluidEntry& entry) {
+  return liquid_totals(entry.liquid, entry.liquid_def().density, s.rigid.settings.gravity, entry.frame());
 }
 
 }  // namespace
@@ -110,8 +171,7 @@ FluidLoad World::fluid_load(BodyId body) const {
         any = true;
       }
       double level = 0.0;
-      if (any && level_beside(entry.liquid, entry.liquid_def().density, box, level))
-        load.wet_volume += volume_below(w, body.index, level);
+      if (any && level_beside(entry, box, level)) load.wet_volume += volume_below(w, body.index, level);
     }
   }
   return load;
@@ -138,13 +198,16 @@ FluidInfo World::fluid_info(FluidId fluid) const {
   const GasBox& box = entry.box();
   info.cells = {box.cells[0], box.cells[1], box.cells[2]};
   info.lower = box.corner, info.cell = box.cell;
+  if (const FluidFrame* const frame = entry.frame()) {
+    info.pose = frame->pose;
+    info.linear_velocity = frame->velocity, info.angular_velocity = frame->angular_velocity;
+  }
   info.user_data = std::visit([](const auto& def) { return def.user_data; }, *entry.def);
   const GasSolids none;
   const FluidScratch* const scratch = scratch_of(*state_, fluid.index);
   const GasSolids& solids = scratch != nullptr ? scratch->solids.solids : none;
   if (entry.is_liquid()) {
-    const LiquidTotals totals =
-        liquid_totals(entry.liquid, entry.liquid_def().density, state_->rigid.settings.gravity);
+    const LiquidTotals totals = totals_of(*state_, entry);
     info.particles = entry.liquid.particles();
     info.kinetic_energy = totals.kinetic_energy;
     info.volume = liquid_volume(entry.liquid, solids);
@@ -166,15 +229,20 @@ FluidProbe World::probe(FluidId fluid, DVec3 point) const {
   if (!exists(fluid) || !is_finite(point)) return out;
   const FloatMode mode;
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
+  const FluidFrame* const frame = entry.frame();
+  const DVec3 in_box = point_to_frame(frame, point);
   if (entry.is_liquid()) {
-    const LiquidProbe probe = probe_liquid(entry.liquid, point, entry.liquid_def().density);
-    out.velocity = probe.velocity, out.pressure = probe.pressure;
+    const LiquidProbe probe = probe_liquid(entry.liquid, in_box, entry.liquid_def().density);
+    out.velocity = velocity_to_world(frame, point, probe.velocity), out.pressure = probe.pressure;
     out.density = probe.inside ? 1.0f : 0.0f;
-    if (probe.has_surface) out.surface = float(probe.surface);
+    double surface = probe.surface;
+    if (frame != nullptr ? find_level(entry, point, surface) : probe.has_surface)
+      out.surface = float(surface);
     return out;
   }
-  const GasProbe probe = probe_gas(entry.gas, point, entry.gas_def().density, state_->rigid.settings.gravity);
-  out.velocity = probe.velocity, out.pressure = probe.pressure;
+  const GasProbe probe = probe_gas(entry.gas, in_box, entry.gas_def().density,
+                                   vector_to_frame(frame, state_->rigid.settings.gravity));
+  out.velocity = velocity_to_world(frame, point, probe.velocity), out.pressure = probe.pressure;
   out.density = probe.density, out.temperature = probe.temperature, out.fuel = probe.fuel;
   return out;
 }
@@ -184,10 +252,11 @@ void World::sample_velocity(FluidId fluid, std::span<const DVec3> points, std::s
   const FloatMode mode;
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
   for (std::size_t n = 0; n < min(points.size(), out.size()); ++n) {
-    if (entry.is_liquid())
-      out[n] = probe_liquid(entry.liquid, points[n], entry.liquid_def().density).velocity;
-    else
-      out[n] = gas_velocity(entry.gas, points[n]);
+    const DVec3 in_box = point_to_frame(entry.frame(), points[n]);
+    const Vec3 velocity = entry.is_liquid()
+                              ? probe_liquid(entry.liquid, in_box, entry.liquid_def().density).velocity
+                              : gas_velocity(entry.gas, in_box);
+    out[n] = velocity_to_world(entry.frame(), points[n], velocity);
   }
 }
 
@@ -211,6 +280,7 @@ GasDef World::gas_def(FluidId fluid) const {
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
   GasDef def = entry.gas_def();
   def.emitters = emitter_defs(entry);
+  put_frame(entry, def);
   def.fields = copy_fields(entry.gas);
   return def;
 }
@@ -219,12 +289,18 @@ std::size_t World::liquid_particles(FluidId fluid, std::span<DVec3> positions,
                                     std::span<Vec3> velocities) const {
   if (!exists(fluid) || !state_->fluids.entries[fluid.index].is_liquid()) return 0;
   const LiquidGrid& grid = state_->fluids.entries[fluid.index].liquid;
+  const FluidFrame* const frame = state_->fluids.entries[fluid.index].frame();
   const std::size_t count = std::size_t(grid.particles());
-  for (std::size_t i = 0; i < min(count, positions.size()); ++i)
-    positions[i] = grid.box.corner + DVec3{double(grid.position[0][i]), double(grid.position[1][i]),
-                                           double(grid.position[2][i])};
-  for (std::size_t i = 0; i < min(count, velocities.size()); ++i)
-    velocities[i] = {grid.motion[0][i], grid.motion[1][i], grid.motion[2][i]};
+  const auto place = [&](std::size_t i) {
+    return point_to_world(frame,
+                          grid.box.corner + DVec3{double(grid.position[0][i]), double(grid.position[1][i]),
+                                                  double(grid.position[2][i])});
+  };
+  for (std::size_t i = 0; i < min(count, positions.size()); ++i) positions[i] = place(i);
+  for (std::size_t i = 0; i < min(count, velocities.size()); ++i) {
+    const Vec3 velocity{grid.motion[0][i], grid.motion[1][i], grid.motion[2][i]};
+    velocities[i] = frame == nullptr ? velocity : velocity_to_world(frame, place(i), velocity);
+  }
   return count;
 }
 
@@ -233,11 +309,14 @@ FluidSurfaceSize World::liquid_surface(FluidId fluid, std::span<Vec3> vertices,
   if (!exists(fluid) || !state_->fluids.entries[fluid.index].is_liquid()) return {};
   const FloatMode mode;
   const LiquidGrid& grid = state_->fluids.entries[fluid.index].liquid;
+  const FluidFrame* const frame = state_->fluids.entries[fluid.index].frame();
   Array<Vec3> found;
   Array<std::uint32_t> corners;
   find_surface_mesh(grid, found, corners);
   const Vec3 corner = to_float(grid.box.corner);
-  for (std::size_t i = 0; i < min(found.size(), vertices.size()); ++i) vertices[i] = corner + found[i];
+  for (std::size_t i = 0; i < min(found.size(), vertices.size()); ++i)
+    vertices[i] = frame == nullptr ? corner + found[i]
+                                   : to_float(point_to_world(frame, grid.box.corner + DVec3(found[i])));
   for (std::size_t i = 0; i < min(corners.size(), indices.size()); ++i) indices[i] = corners[i];
   return {found.size(), corners.size()};
 }
@@ -247,6 +326,7 @@ LiquidDef World::liquid_def(FluidId fluid) const {
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
   LiquidDef def = entry.liquid_def();
   def.emitters = emitter_defs(entry);
+  put_frame(entry, def);
   // Particles may be anywhere in the whole cells of the box.
   const GasBox& box = entry.liquid.box;
   const double size = double(def.cell_size);
@@ -258,16 +338,14 @@ LiquidDef World::liquid_def(FluidId fluid) const {
 void add_fluid_energy(const WorldState& s, Energy& energy) {
   s.fluids.for_each([&](const FluidEntry& entry) {
     if (!entry.is_liquid()) return;
-    const LiquidTotals totals =
-        liquid_totals(entry.liquid, entry.liquid_def().density, s.rigid.settings.gravity);
+    const LiquidTotals totals = totals_of(s, entry);
     energy.kinetic += totals.kinetic_energy, energy.potential += totals.potential_energy;
   });
 }
 void add_fluid_momentum(const WorldState& s, Momentum& momentum) {
   s.fluids.for_each([&](const FluidEntry& entry) {
     if (!entry.is_liquid()) return;
-    const LiquidTotals totals =
-        liquid_totals(entry.liquid, entry.liquid_def().density, s.rigid.settings.gravity);
+    const LiquidTotals totals = totals_of(s, entry);
     momentum.linear += totals.momentum, momentum.angular += totals.angular_momentum;
   });
 }

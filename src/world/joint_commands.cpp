@@ -6,6 +6,7 @@
 #include "rigid/solve/hit_events.h"
 #include "solver/joint/joint_kinds.h"
 #include "solver/joint/path.h"
+#include "world/gear_housing.h"
 
 namespace gyre {
 
@@ -334,74 +335,6 @@ void fill_detail(RigidWorld& w, const JointRecord& joint, JointDetail& detail, c
   }
 }
 
-DVec3 place_of(const RigidWorld& w, std::int32_t body, Vec3 local) {
-  const BodyPose& pose = w.bodies.poses[std::size_t(body)];
-  return pose.center + rotate(pose.orientation, local);
-}
-Vec3 local_in(const RigidWorld& w, std::int32_t body, DVec3 place) {
-  const BodyPose& pose = w.bodies.poses[std::size_t(body)];
-  return rotate_inverse(pose.orientation, difference(place, pose.center));
-}
-
-// A hinge on which a shaft turns in a body that can move.
-struct Bearing {
-  std::int32_t housing = kNoBody;
-  DVec3 place;
-};
-void list_bearings(const RigidWorld& w, std::int32_t wheel, Vec3 shaft, std::vector<Bearing>& out) {
-  constexpr float kParallel = 0.999f;
-  out.clear();
-  for (const std::uint32_t slot : joints_of(w.bodies, std::uint32_t(wheel))) {
-    const JointRecord& joint = w.joints.records[slot];
-    const bool is_a = joint.body_a == wheel;
-    const std::int32_t housing = is_a ? joint.body_b : joint.body_a;
-    if (joint.kind != JointKind::hinge || housing == kNoBody ||
-        w.bodies.flags[std::size_t(housing)].type == BodyType::fixed)
-      continue;
-    const Quat orientation = w.bodies.poses[std::size_t(wheel)].orientation;
-    const Vec3 axis = rotate(orientation * (is_a ? joint.local_frame_a : joint.local_frame_b), {1, 0, 0});
-    if (absolute(dot(axis, shaft)) > kParallel)
-      out.push_back({housing, place_of(w, wheel, is_a ? joint.local_anchor_a : joint.local_anchor_b)});
-  }
-}
-
-// A gear counts turns against the body that carries both shafts on hinges, from now on, and its anchors are where the shafts are nearest.
-// Shafts on one line stay as they are: two wheels alone bear no torque against a third body.
-void find_housing(RigidWorld& w, std::uint32_t slot) {
-  constexpr float kMinSine = 0.1f, kMinDistance = 1.0e-4f;
-  JointRecord& joint = w.joints.records[slot];
-  JointDetail* const detail = detail_of(w.joints, slot);
-  if (joint.kind != JointKind::gear || joint.body_a == kNoBody || joint.body_b == kNoBody ||
-      gear_frame(*detail) != GearFrame::world)
-    return;
-  RowPose pose{{},
-               {},
-               w.bodies.poses[std::size_t(joint.body_a)].orientation * joint.local_frame_a,
-               w.bodies.poses[std::size_t(joint.body_b)].orientation * joint.local_frame_b};
-  const Vec3 a = rotate(pose.frame_a, {1, 0, 0}), b = rotate(pose.frame_b, {1, 0, 0});
-  std::vector<Bearing> of_a, of_b;
-  list_bearings(w, joint.body_a, a, of_a);
-  list_bearings(w, joint.body_b, b, of_b);
-  for (const Bearing& on_a : of_a) {
-    for (const Bearing& on_b : of_b) {
-      if (on_a.housing != on_b.housing) continue;
-      const Vec3 between = difference(on_b.place, on_a.place);
-      const float along = dot(a, b), square_sine = length_squared(cross(a, b));
-      const bool crossed = square_sine > square(kMinSine);
-      const float to_a = crossed ? (dot(between, a) - along * dot(between, b)) / square_sine : 0.0f,
-                  to_b =
-                      crossed ? (along * dot(between, a) - dot(between, b)) / square_sine : -dot(between, b);
-      pose.anchor_offset = between + to_b * b - to_a * a;
-      if (!crossed && !(length(pose.anchor_offset) > kMinDistance)) continue;
-      joint.local_anchor_a = local_in(w, joint.body_a, on_a.place + to_a * a);
-      joint.local_anchor_b = local_in(w, joint.body_b, on_b.place + to_b * b);
-      clear_impulses(joint);
-      clear_impulses(*detail);
-      return start_gear(*detail, crossed ? GearFrame::shafts : GearFrame::centres, pose);
-    }
-  }
-}
-
 }  // namespace
 
 std::uint32_t open_axes(JointKind kind) {
@@ -484,8 +417,26 @@ JointId add_joint(RigidWorld& w, const FlatJoint& def) {
   return joint_id(w, slot);
 }
 
+namespace {
+
+// A coupling goes with any of its joints; the bodies of the others wake.
+void remove_couplings_of(RigidWorld& w, std::uint32_t joint) {
+  for (CouplingRecord& coupling : w.couplings) {
+    bool has = false;
+    for (std::uint32_t i = 0; coupling.is_live() && i < coupling.count; ++i) has = has || coupling.joints[i] == joint;
+    if (!has) continue;
+    for_each_body_of_coupling(w, coupling, [&](std::uint32_t body) { wake(w, body); });
+    const std::uint32_t generation = coupling.generation + 1;
+    coupling = {};
+    coupling.generation = generation;
+  }
+}
+
+}  // namespace
+
 void remove_joint(RigidWorld& w, std::uint32_t slot) {
   const JointRecord joint = w.joints.records[slot];
+  remove_couplings_of(w, slot);
   wake_joint_bodies(w, joint);
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body != kNoBody) erase_slot(make_joints_of(w.bodies, std::uint32_t(body)), slot);
@@ -560,6 +511,19 @@ void shift_joint_ends(RigidWorld& w, std::uint32_t body, Vec3 by) {
   }
 }
 
+void forget_impulses(RigidWorld& w, std::uint32_t slot) {
+  JointRecord& joint = w.joints.records[slot];
+  const float position = joint.position;
+  clear_impulses(joint);
+  joint.position = position;
+  JointDetail* const detail = detail_of(w.joints, slot);
+  if (detail == nullptr) return;
+  float positions[kJointAxisCount];
+  for (int i = 0; i < kJointAxisCount; ++i) positions[i] = detail->axes[i].position;
+  clear_impulses(*detail);
+  for (int i = 0; i < kJointAxisCount; ++i) detail->axes[i].position = positions[i];
+}
+
 void set_joint_enabled(RigidWorld& w, std::uint32_t slot, bool enabled) {
   if (detail_of(w.joints, slot) == nullptr) {
     if (enabled) return;
@@ -573,5 +537,38 @@ void set_joint_enabled(RigidWorld& w, std::uint32_t slot, bool enabled) {
   w.joints.records[slot].position = position;
   wake_joint_bodies(w, w.joints.records[slot]);
 }
+
+// ------------------------------------------------------------------------------------------------------ flat definitions
+
+
+namespace {
+
+template <class T>
+void set_field(T& to, const T& from) {
+  to = from;
+}
+// Zero stiffness or damping means none. The check refuses other values out of range, NaN among them.
+void set_field(std::optional<float>& to, float from) {
+  if (from != 0.0f) to = from;
+}
+
+template <std::size_t n = 0>
+JointDef make_default(std::size_t index) {
+  if constexpr (n + 1 < std::variant_size_v<JointDef>) {
+    if (index != n) return make_default<n + 1>(index);
+  }
+  return JointDef(std::in_place_index<n>);
+}
+
+}  // namespace
+
+FlatJoint flatten(const JointDef& def) {
+  FlatJoint flat;
+  flat.kind = kind_of(def);
+  std::visit([&](const auto& d) { for_each_field(d, flat, [](const auto& from, auto& to) { set_field(to, from); }); }, def);
+  return flat;
+}
+
+JointDef default_joint(JointKind kind) { return make_default(std::size_t(kind)); }
 
 }  // namespace gyre

@@ -167,7 +167,10 @@ JointAxisState read_joint_axis(const RigidWorld& w, std::uint32_t slot, JointAxi
   const int i = int(axis);
   JointAxisState reading;
   reading.velocity = i < 3 ? line_speed(w, joint, detail, s, i) : turn_speed(joint, detail, s, i - 3);
-  if (joint.kind <= JointKind::distance) {
+  const float substep = w.settings.last_substep;
+  const bool in_record = joint.kind <= JointKind::distance;
+  if (substep > 0.0f) reading.motor = (in_record ? joint.motor_impulse : detail->axes[i].motor_impulse) / substep;
+  if (in_record) {
     reading.position = joint.position;
     if (seconds > 0.0f) reading.force = force_in_record(joint, s) / seconds;
     return reading;
@@ -241,7 +244,7 @@ bool read_joint_load(const RigidWorld& w, std::uint32_t slot, JointAxis axis, fl
 double spring_energy(const RigidWorld& w, std::uint32_t slot) {
   const JointRecord& joint = w.joints.records[slot];
   const JointDetail* const detail = detail_of(w.joints, slot);
-  if (detail != nullptr && detail->disabled) return 0.0;
+  if (!is_joint_enabled(w, slot)) return 0.0;
   if (joint.kind == JointKind::distance) {
     if (!joint.is_spring) return 0.0;
     const JointAnchors anchors = joint_anchors(w, joint);

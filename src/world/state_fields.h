@@ -194,6 +194,23 @@ template <Is<IgnoredPair> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.a), f(r.b);
 }
+template <Is<FieldGrid> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.first), f(r.count);
+  for (auto& points : r.points) f(points);
+}
+template <Is<FieldVector> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.value, f);
+}
+template <Is<CouplingRecord> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.generation), f(r.count);
+  for (auto& joint : r.joints) f(joint);
+  for (auto& axis : r.axes) f(axis);
+  for (auto& coefficient : r.coefficients) f(coefficient);
+  f(r.offset), f(r.impulse), f(r.total);
+}
 template <Is<BodySleepSpeed> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.speed);
@@ -205,6 +222,14 @@ void for_each_field(T& r, F&& f) {
 template <Is<SoftAttachment> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.body), for_each_field(r.place, f), for_each_field(r.local, f), for_each_field(r.impulse, f);
+}
+template <Is<SoftInside> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.particle), f(r.body);
+}
+template <Is<SoftLimit> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.target, f), f(r.distance), for_each_field(r.normal, f), f(r.backstop);
 }
 template <Is<SoftContact> T, class F>
 void for_each_field(T& r, F&& f) {
@@ -219,6 +244,15 @@ void for_each_field(T& r, F&& f) {
 template <Is<FluidPush> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.body), for_each_field(r.force, f), for_each_field(r.torque, f);
+}
+template <Is<FluidVisitor> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.index), f(r.generation), f(r.is_soft);
+}
+template <Is<FluidFrame> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.pose.position, f), for_each_field(r.pose.orientation, f);
+  for_each_field(r.velocity, f), for_each_field(r.angular_velocity, f);
 }
 template <Is<RigidSettings> T, class F>
 void for_each_field(T& r, F&& f) {

@@ -2,6 +2,7 @@
 #include "base/check.h"
 #include "dynamics/fluid_reaction.h"
 #include "dynamics/fluid_step.h"
+#include "dynamics/fluid_visitors.h"
 #include "dynamics/soft_contacts.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/integrate/spring_stability.h"
@@ -101,7 +102,7 @@ void report_stiffness(WorldState& s) {
   if (step <= longest) return;
   const JointRecord& joint = w.joints.records[mode.joint];
   const std::int32_t body = joint.body_b != kNoBody ? joint.body_b : joint.body_a;
-  constexpr double kRadiansPerTurn = 6.283185307179586;
+  constexpr double kRadiansPerTurn = 6.283185307179586;  // rad
   report_problem(s, ErrorCode::unstable, body_id(w, std::uint32_t(body)),
                  "%s cannot follow the explicit springs (%.4g Hz, most of it joint %u): it moves by %.4g s "
                  "at a time, the critical "
@@ -122,7 +123,7 @@ void report_large_islands(WorldState& s) {
 
 // Sequential impulses converge slowly where heavy bodies hang on light ones, or in loops. Joints open then.
 void report_missed_impulses(WorldState& s) {
-  constexpr double kMissed = 2.0;
+  constexpr double kMissed = 2.0;  // times the speed of a fall for a sub-step
   const RowStats& rows = s.solve.rows;
   if (!(rows.missed_share > kMissed)) return;
   report_problem(s, ErrorCode::unstable, {},
@@ -338,9 +339,14 @@ void end_step(WorldState& s, float seconds) {
   clocks.broken.trim(next.broken, s.published_events.broken);
   clocks.sleep_changes.trim(next.sleep_changes, s.published_events.sleep_changes);
   report_soft_events(s);
+  if (!s.fluids.entries.empty()) {
+    update_fluid_visitors(s.rigid, s.soft, s.fluids);
+    std::swap(s.published_fluid_touches, s.fluids.events);
+    s.fluids.events.clear();
+  }
   const SoftEvents& soft = s.published_soft_events;
   s.events = {e.begins,        e.ends,      e.hits,    e.sensors,     e.broken,
-              e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn};
+              e.sleep_changes, soft.begins, soft.ends, soft.inverted, soft.torn, s.published_fluid_touches};
   s.stepping = false;
 }
 

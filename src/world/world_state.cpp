@@ -69,6 +69,9 @@ class HashVisitor {
         add_word(array.size());
         for (const auto& record : array) add_record(record);
       });
+      for_each_later_fluid_array(entry, [&](const auto& array) {
+        for (const auto& record : array) add_record(record);
+      });
     });
   }
   void operator()(const char*, const std::vector<AnyShape>& geometry) {

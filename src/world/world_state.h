@@ -81,7 +81,8 @@ struct WorldState {
   Array<std::uint32_t> frozen;
   RigidEvents published_events;  // events of the last step; rigid.events collects those of the next
   SoftEvents published_soft_events;  // soft.events collects those of the next step
-  Events events;                 // spans of both
+  Array<FluidTouch> published_fluid_touches;  // fluids.events collects those of commands for the next step
+  Events events;                 // spans of all
   Array<std::uint8_t> soft_touch_mark;  // by shape; 0 but while shapes are listed
   Array<SoftTouch> soft_touching;
   Array<std::uint8_t> soft_inverted;
@@ -129,7 +130,9 @@ constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || s
                                  std::is_same_v<Column, Array<MotionSettings>> || std::is_same_v<Column, Array<LastMove>> ||
                                  std::is_same_v<Column, Array<SolverSettings>> || std::is_same_v<Column, SoftStore> ||
                                  std::is_same_v<Column, FluidStore> || std::is_same_v<Column, Array<SleepSettings>> ||
-                                 std::is_same_v<Column, Array<BodySleepSpeed>> || std::is_same_v<Column, Array<IgnoredPair>>;
+                                 std::is_same_v<Column, Array<BodySleepSpeed>> || std::is_same_v<Column, Array<IgnoredPair>> ||
+                                 std::is_same_v<Column, Array<CouplingRecord>> || std::is_same_v<Column, Array<FieldGrid>> ||
+                                 std::is_same_v<Column, Array<FieldVector>>;
 
 // Calls visit(name, column) for every state column, in a fixed order. A column is an Array or an IsColumn of records
 // that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
@@ -145,6 +148,8 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("ignored_pairs", s.rigid.ignored_pairs);
   visit("surface_rules", s.rigid.surface_rules);
   visit("fields", s.rigid.fields);
+  visit("field_grids", s.rigid.field_grids);
+  visit("field_vectors", s.rigid.field_vectors);
   visit("body_ids", s.rigid.bodies.ids);
   visit("body_motion", s.rigid.bodies.motion);
   visit("body_last_moves", s.rigid.bodies.last_moves);
@@ -168,6 +173,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("joints", s.rigid.joints.records);
   visit("joint_details", s.rigid.joints.details);
   visit("path_points", s.rigid.joints.path_points);
+  visit("couplings", s.rigid.couplings);
   visit("contacts", s.rigid.contacts.contacts);
   visit("manifolds", s.rigid.contacts.manifolds);
   visit("soft", s.soft);

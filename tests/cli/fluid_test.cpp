@@ -93,6 +93,20 @@ TEST_F(FluidCommandLine, ProbedVorticesDecayAsTheyShould) {
   EXPECT_EQ(seen, 51);
 }
 
+TEST_F(FluidCommandLine, EventsTellWhatEntersAGas) {
+  write("e.gyre.json",
+        R"({"gyre_scene": 1, "name": "events", "world": {"time_step": 0.01, "gravity": [0, 0, 0]},
+    "bodies": [{"name": "ball", "position": [-0.25, 0.5, 0.5], "linear_velocity": [10, 0, 0],
+                "shapes": [{"type": "sphere", "radius": 0.1, "density": 1000}]}],
+    "gases": [{"name": "air", "bounds": [[0, 0, 0], [1, 1, 1]], "cells": [4, 4, 4]}]})");
+  ASSERT_EQ(gyre({"simulate", "e.gyre.json", "--steps", "20", "--events", "e.csv"}).code, 0);
+  const std::vector<std::string> rows = lines_of(read("e.csv"));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0], "step,time,event,first,second,value");
+  EXPECT_EQ(rows[1], "2,0.02,fluid_enter,ball,air,-1");
+  EXPECT_EQ(rows[2], "14,0.14,fluid_leave,ball,air,-1");
+}
+
 TEST_F(FluidCommandLine, FiguresCountSmokeAndDivergence) {
   ASSERT_EQ(gyre({"simulate", "g.gyre.json", "--steps", "5", "--stats", "u.csv"}).code, 0);
   const std::vector<std::string> rows = lines_of(read("u.csv"));

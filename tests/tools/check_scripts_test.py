@@ -171,10 +171,44 @@ class Tree(unittest.TestCase):
         self.write_decision(good, "No list.\n")
         self.assert_fails("docs", "lists it 0 times")
 
-    def list_units(self, *options):
-        done = subprocess.run([sys.executable, str(self.root / "tools" / "list_units.py"), *options], capture_output=True,
+    def run_list(self, name, *options):
+        done = subprocess.run([sys.executable, str(self.root / "tools" / f"list_{name}.py"), *options], capture_output=True,
                               text=True, check=False)
         return done.returncode, done.stdout + done.stderr
+
+    def list_units(self, *options):
+        return self.run_list("units", *options)
+
+    def write_constants(self):
+        self.write("docs/tuning.md", "<!-- constants: written by tools/list_constants.py -->\n<!-- end of constants -->\n")
+        self.write("src/rigid/sleep/island.h", "// Time until a body sleeps.\nconstexpr float kTimeToSleep = 0.5f;  // s\n\n"
+                                               "// Shares of the speed of a fall.\nconstexpr int kRounds = 2;\n"
+                                               "constexpr double kSlow = 0.1, kFast = 2.0 * kSlow;\n")
+
+    def test_constants_are_listed(self):
+        self.write_constants()
+        code, output = self.run_list("constants", "--check")
+        self.assertEqual(code, 1, output)
+        self.assertIn("run python3 tools/list_constants.py", output)
+        code, output = self.run_list("constants")
+        self.assertEqual(code, 0, output)
+        page = (self.root / "docs" / "tuning.md").read_text(encoding="utf-8")
+        self.assertIn("| `kTimeToSleep` | `0.5` | Time until a body sleeps. s | island.h |", page)
+        self.assertIn("| `kFast` | `2.0 * kSlow` | Shares of the speed of a fall. | island.h |", page)
+        self.assertNotIn("kRounds", page)
+        code, output = self.run_list("constants", "--check")
+        self.assertEqual(code, 0, output)
+
+    def test_constants_without_meaning_or_twice(self):
+        self.write_constants()
+        self.write("src/soft/store/soft.h", "#pragma once\n\nconstexpr float kStiff = 2.0f;\n")
+        code, output = self.run_list("constants")
+        self.assertEqual(code, 1, output)
+        self.assertIn("src/soft/store/soft.h: kStiff has no comment", output)
+        self.write("src/soft/store/soft.h", "constexpr float kTimeToSleep = 0.5f;  // s\n")
+        code, output = self.run_list("constants")
+        self.assertEqual(code, 1, output)
+        self.assertIn("kTimeToSleep = 0.5 is defined in src/rigid/sleep/island.h too", output)
 
     def write_units(self):
         """A tree of two units in rooms, with a page that lists them."""

@@ -46,7 +46,10 @@ void add_picture(const SeenFluid& fluid, const Subject& subject, DrawList& list)
       along[b] = place(row, rows);
       const Voxel& voxel = fluid.voxels[std::size_t(column) + std::size_t(columns) * std::size_t(row)];
       const Rgb3 color = voxel_color(fluid, voxel);
-      list.vertices.push_back({lower + multiply_each(fluid.cell, Vec3{along[0], along[1], along[2]}),
+      const Vec3 in_box = multiply_each(fluid.cell, Vec3{along[0], along[1], along[2]});
+      list.vertices.push_back({fluid.pose == Pose{}
+                                   ? lower + in_box
+                                   : difference(fluid.pose * (to_float(fluid.lower) + in_box), subject.origin),
                                {0, 0, 1},
                                {std::uint8_t(color[0]), std::uint8_t(color[1]), std::uint8_t(color[2])},
                                Paint::picture});

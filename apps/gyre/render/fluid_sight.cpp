@@ -25,8 +25,8 @@ VoxelScales scales_of(const GasDef& gas) {
     const float fuel = gas.combustion ? emitter.fuel : 0.0f;
     const Combustion burning = gas.combustion.value_or(Combustion{});
     out.smoke = max(out.smoke, emitter.density + burning.smoke_yield * fuel);
-    hottest = max(hottest, emitter.temperature +
-                               burning.heat_release * fuel / (gas.density * burning.heat_capacity));
+    hottest = max(hottest,
+                  emitter.temperature + burning.heat_release * fuel / (gas.density * burning.heat_capacity));
   }
   if (gas.fields) {
     for (const float density : gas.fields->density) out.smoke = max(out.smoke, density);
@@ -63,6 +63,56 @@ void look_at_gas(const World& world, FluidId id, const VoxelScales& scales, Seen
   float fastest = 1e-6f;
   for (const float speed : speeds) fastest = max(fastest, speed);
   put_field(speeds, 0.0f, fastest, &Voxel::speed, out.voxels);
+}
+
+DVec3 place_of(const Pose& pose, DVec3 in_box) {
+  const Quat& q = pose.orientation;
+  const DVec3 u{double(q.x), double(q.y), double(q.z)}, t = 2.0 * cross(u, in_box);
+  return pose.position + in_box + double(q.w) * t + cross(u, t);
+}
+
+// A box that is turned, in an upright one around it, whose cells have what is at their centres.
+void set_upright(const Pose& pose, SeenFluid& out) {
+  const DVec3 size = out.upper() - out.lower;
+  DVec3 low{}, high{};
+  for (int corner = 0; corner < 8; ++corner) {
+    const DVec3 at =
+        place_of(pose, out.lower + DVec3{(corner & 1) != 0 ? size.x : 0.0, (corner & 2) != 0 ? size.y : 0.0,
+                                         (corner & 4) != 0 ? size.z : 0.0});
+    if (corner == 0) low = high = at;
+    low = {min(low.x, at.x), min(low.y, at.y), min(low.z, at.z)};
+    high = {max(high.x, at.x), max(high.y, at.y), max(high.z, at.z)};
+  }
+  const SeenFluid from = out;
+  const float edge = min(from.cell.x, min(from.cell.y, from.cell.z));
+  const double extent[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) out.cells[axis] = 1 + int(extent[axis] / double(edge));
+  out.lower = low;
+  out.cell = {float(extent[0]) / float(out.cells[0]), float(extent[1]) / float(out.cells[1]),
+              float(extent[2]) / float(out.cells[2])};
+  if (from.voxels.empty()) return;
+  out.voxels.assign(std::size_t(out.cells[0]) * std::size_t(out.cells[1]) * std::size_t(out.cells[2]),
+                    Voxel{});
+  const Quat back = conjugate(pose.orientation);
+  std::size_t n = 0;
+  for (int k = 0; k < out.cells[2]; ++k) {
+    for (int j = 0; j < out.cells[1]; ++j) {
+      for (int i = 0; i < out.cells[0]; ++i, ++n) {
+        const DVec3 at =
+            low + multiply_each(out.cell, Vec3{float(i) + 0.5f, float(j) + 0.5f, float(k) + 0.5f});
+        const Vec3 local = difference(place_of({{}, back}, at - pose.position), from.lower);
+        const float along[3] = {local.x / from.cell.x, local.y / from.cell.y, local.z / from.cell.z};
+        bool inside = true;
+        for (int axis = 0; axis < 3; ++axis)
+          inside = inside && along[axis] >= 0.0f && along[axis] < float(from.cells[std::size_t(axis)]);
+        if (!inside) continue;
+        out.voxels[n] =
+            from.voxels[std::size_t(along[0]) +
+                        std::size_t(from.cells[0]) *
+                            (std::size_t(along[1]) + std::size_t(from.cells[1]) * std::size_t(along[2]))];
+      }
+    }
+  }
 }
 
 void look_at_liquid(const World& world, FluidId id, SeenFluid& out) {
@@ -102,6 +152,11 @@ std::vector<SeenFluid> look_at_fluids(const World& world, const Scene* scene) {
       seen.color = known ? resolved_fluid_color(scene->liquids[index], info.kind) : kWaterColor;
       look_at_liquid(world, id, seen);
     }
+    if (info.pose == Pose{}) continue;
+    if (seen.kind == FluidKind::gas && seen.flat_axis() >= 0)
+      seen.pose = info.pose;
+    else
+      set_upright(info.pose, seen);
   }
   return out;
 }

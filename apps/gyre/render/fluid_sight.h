@@ -22,8 +22,9 @@ struct Voxel {
 struct SeenFluid {
   FluidKind kind = FluidKind::gas;
   std::array<int, 3> cells{};
-  DVec3 lower{};  // m
+  DVec3 lower{};  // m, in the axes of `pose`
   Vec3 cell{};    // m, edges of a cell
+  Pose pose{};    // of a flat gas; boxes of others stand upright in the world
   SceneColor color{};
   bool smoky = false;                    // there may be smoke or heat
   std::vector<Voxel> voxels{};           // of a gas, x fastest, then y, then z

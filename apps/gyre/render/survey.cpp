@@ -128,10 +128,11 @@ void Survey::look_at_soft(const SeenSoft& soft, std::span<const DVec3> vertices)
 void Survey::look_at_fluid(const SeenFluid& fluid) {
   const DVec3 low = fluid.lower, high = fluid.upper();
   for (int corner = 0; corner < 8; ++corner) {
-    moving_.push_back(
-        {{corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z}, 0.0f});
+    const DVec3 in_box{corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z};
+    const DVec3 at = fluid.pose == Pose{} ? in_box : fluid.pose * to_float(in_box);
+    moving_.push_back({at, 0.0f});
+    lowest_ = min(lowest_, at.y);
   }
-  lowest_ = min(lowest_, low.y);
 }
 
 // Every other moment goes.

@@ -9,8 +9,8 @@ namespace {
 // A fat box extends ahead by the translation of one more step, but at most by this many sizes.
 constexpr float kMaxAhead = 2.0f;
 static_assert(kTooLarge > 2.0f * kFatShare + kMaxAhead);
-constexpr float kMinNormal = 1.17549435e-38f;
-constexpr float kMaxFloat = 3.402823466e38f;
+constexpr float kMinNormal = 1.17549435e-38f;  // the smallest normal float
+constexpr float kMaxFloat = 3.402823466e38f;  // the largest float
 
 float next_up(float a) {
   if (absolute(a) < kMinNormal) return kMinNormal;

@@ -122,6 +122,7 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
   fill_solid_cells(pass, grid.density.data(), 0.0f);
   fill_solid_cells(pass, grid.temperature.data(), grid.ambient_temperature);
   add_buoyancy(pass, settings.gravity, settings.buoyancy);
+  if (pass.motion.turns()) add_turning(pass);
   if (settings.vorticity != 0.0f) add_confinement(pass, settings.vorticity);
   if (settings.viscosity > 0.0f) add_viscosity(pass, settings.viscosity / settings.density);
   set_walls(pass);
@@ -138,7 +139,7 @@ GasReport step_gas(GasGrid& grid, const GasSolids& solids, std::span<const Fluid
                    std::span<GasImpulse> impulses) {
   const TaskSystem::Busy busy(tasks);
   prepare_memory(grid, solids, memory, kernels, tasks);
-  GasPass pass{grid, solids, memory, kernels, tasks, step, bodies, settings.density};
+  GasPass pass{grid, solids, memory, kernels, tasks, step, bodies, settings.density, settings.motion};
   begin_bodies(pass);
   GasReport report;
   const float cells = max_displacement(pass);

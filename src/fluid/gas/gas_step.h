@@ -18,6 +18,7 @@ struct GasSettings {
   float viscosity = 0.0f;  // Pa s
   Advection advection = Advection::maccormack;
   Vec3 gravity{0.0f, -9.81f, 0.0f};
+  FrameMotion motion{};
   float max_cells = 4.0f;  // of displacement in a sub-step
   int max_substeps = 32;
   ProjectionSettings projection{};

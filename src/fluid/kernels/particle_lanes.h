@@ -10,7 +10,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-constexpr float kLargestFloat = 3.40282347e38f;
+constexpr float kLargestFloat = 3.40282347e38f;  // the largest float
 
 // W numbers of a column from `at` on, of which `count` exist; the others are zero.
 template <int W>

@@ -35,13 +35,17 @@ double liquid_volume(const LiquidGrid& grid, const GasSolids& solids) {
   return cell * sum;
 }
 
-LiquidTotals liquid_totals(const LiquidGrid& grid, float density, Vec3 gravity) {
+LiquidTotals liquid_totals(const LiquidGrid& grid, float density, Vec3 gravity, const FluidFrame* frame) {
   LiquidTotals totals;
   const DVec3 g{double(gravity.x), double(gravity.y), double(gravity.z)};
   for (int p = 0; p < grid.particles(); ++p) {
     const double mass = double(density) * double(grid.volume[p]);
-    const DVec3 at = grid.box.corner + Vec3{grid.position[0][p], grid.position[1][p], grid.position[2][p]};
-    const DVec3 velocity{double(grid.motion[0][p]), double(grid.motion[1][p]), double(grid.motion[2][p])};
+    DVec3 at = grid.box.corner + Vec3{grid.position[0][p], grid.position[1][p], grid.position[2][p]};
+    DVec3 velocity{double(grid.motion[0][p]), double(grid.motion[1][p]), double(grid.motion[2][p])};
+    if (frame != nullptr) {
+      at = point_to_world(frame, at);
+      velocity = DVec3(velocity_to_world(frame, at, to_float(velocity)));
+    }
     totals.mass += mass;
     totals.kinetic_energy += 0.5 * mass * dot(velocity, velocity);
     totals.potential_energy -= mass * dot(g, at);

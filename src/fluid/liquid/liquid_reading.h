@@ -1,6 +1,7 @@
 // Readings of a liquid.
 #pragma once
 
+#include "fluid/grid/fluid_frame.h"
 #include "fluid/liquid/liquid_grid.h"
 
 namespace gyre {
@@ -16,16 +17,18 @@ struct LiquidTotals {
   DVec3 momentum{};               // kg m/s
   DVec3 angular_momentum{};       // kg m^2/s, about the origin of the world
 };
-LiquidTotals liquid_totals(const LiquidGrid& grid, float density, Vec3 gravity);
+// Relative to the box and in its axes without a frame.
+LiquidTotals liquid_totals(const LiquidGrid& grid, float density, Vec3 gravity,
+                           const FluidFrame* frame = nullptr);
 
 struct LiquidProbe {
   Vec3 velocity{};
   float pressure = 0.0f;  // Pa, relative to the open surface; 0 outside
   bool inside = false;
   bool has_surface = false;  // in the column of the point
-  double surface = 0.0;      // m, height in the world of the highest surface in the column
+  double surface = 0.0;      // m, height in the axes of the box of the highest surface in the column
 };
-// At a point of the world.
+// At a point in the axes of the box.
 LiquidProbe probe_liquid(const LiquidGrid& grid, DVec3 point, float density);
 
 }  // namespace gyre

@@ -4,7 +4,6 @@
 #include "fluid/liquid/extrapolation.h"
 #include "fluid/liquid/liquid_cells.h"
 #include "fluid/liquid/liquid_pressure.h"
-#include "fluid/liquid/liquid_reading.h"
 #include "fluid/liquid/liquid_viscosity.h"
 #include "fluid/liquid/particle_transfer.h"
 #include "fluid/liquid/surface_tension.h"
@@ -161,15 +160,46 @@ void hold_sources(const LiquidPass& pass, std::span<const LiquidEmitter> emitter
   }
 }
 
-void add_gravity(const LiquidPass& pass, Vec3 gravity) {
+// Half of it where the other half follows at the end of the sub-step, see lead_velocity.
+void add_gravity(const LiquidPass& pass, const LiquidSettings& settings) {
   for (int axis = 0; axis < 3; ++axis) {
-    const float change = part_along(gravity, axis) * pass.step;
+    const float change = part_along(settings.gravity, axis) * pass.step;
     if (pass.flat(axis) || change == 0.0f) continue;
     float* const velocity = pass.grid.velocity[axis].data();
+    const float* const open = pass.memory.open[axis].data();
+    const float part = leads(pass, settings) ? 0.5f * change : change;
     each_row(pass, axis, [&](int c, int, int) {
-      for (int f = c; f < c + pass.shape().cells[0] + (axis == 0 ? 1 : 0); ++f) velocity[f] += change;
+      for (int f = c; f < c + pass.shape().cells[0] + (axis == 0 ? 1 : 0); ++f)
+        velocity[f] += open[f] > 0.0f ? part : change;
     });
   }
+}
+
+// What a box that turns adds to particles: their velocity turns against it by twice its angle, and they are drawn away from its axis.
+void turn_particles(const LiquidPass& pass, const FrameMotion& motion) {
+  constexpr int kBlock = 1024;
+  LiquidGrid& grid = pass.grid;
+  const Quat back = from_rotation_vector(-2.0f * pass.step * motion.spin);
+  const float s[3] = {motion.spin.x, motion.spin.y, motion.spin.z};
+  const float square = dot(motion.spin, motion.spin);
+  for_blocks(pass.tasks, grid.particles(), kBlock, [&](int begin, int end, int) {
+    for (int p = begin; p < end; ++p) {
+      const Vec3 place{grid.position[0][p], grid.position[1][p], grid.position[2][p]};
+      const Vec3 velocity{grid.motion[0][p], grid.motion[1][p], grid.motion[2][p]};
+      const Vec3 changed = rotate(back, velocity) + pass.step * motion.outward(place);
+      for (int axis = 0; axis < 3; ++axis)
+        if (!pass.flat(axis)) grid.motion[axis][p] = part_along(changed, axis);
+      for (int b = 0; b < 3; ++b) {
+        if (pass.flat(b)) continue;
+        const Vec3 column =
+            rotate(back, Vec3{grid.affine[b][p], grid.affine[3 + b][p], grid.affine[6 + b][p]});
+        for (int a = 0; a < 3; ++a) {
+          const float outward = (a == b ? square : 0.0f) - s[a] * s[b];
+          if (!pass.flat(a)) grid.affine[3 * a + b][p] = part_along(column, a) + pass.step * outward;
+        }
+      }
+    }
+  });
 }
 
 void save_velocity(const LiquidPass& pass) {
@@ -184,11 +214,12 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
                  std::span<const LiquidEmitter> emitters, double time, LiquidReport& report,
                  std::span<GasImpulse> impulses) {
   sort_particles(pass);
+  if (settings.motion.turns()) turn_particles(pass, settings.motion);
   transfer_to_grid(pass);
   find_surface(pass);
   build_liquid_matrix(pass);
   if (settings.blend < 1.0f) save_velocity(pass);
-  add_gravity(pass, settings.gravity);
+  add_gravity(pass, settings);
   if (settings.viscosity > 0.0f) add_liquid_viscosity(pass, settings.viscosity / settings.density);
   if (settings.surface_tension > 0.0f)
     set_surface_pressure(pass, settings.surface_tension / settings.density);
@@ -198,6 +229,7 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
   report.divergence = largest_liquid_divergence(pass);
   const int layers = 2 + int(settings.max_cells + 0.999f);
   report.iterations += find_carrier(pass).iterations;
+  lead_velocity(pass, settings);
   find_layers(pass, layers);
   extrapolate(pass, pass.grid.velocity, pass.memory.drift);
   hold_sources(pass, emitters, time);
@@ -231,7 +263,6 @@ LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, std::span<co
     run_substep(pass, settings, emitters, time, report, impulses);
   }
   if (grid.box.any_open()) sort_particles(pass);
-  report.volume = liquid_volume(grid, solids);
   return report;
 }
 

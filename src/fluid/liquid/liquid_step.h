@@ -30,7 +30,6 @@ struct LiquidReport {
   float divergence =
       0.0f;  // 1/s: largest net outflow of a liquid cell over its volume after the last projection
   float residual = 0.0f;  // 1: of the last solve, over its right side
-  double volume = 0.0;    // m^3, within the surface at the beginning of the last sub-step
 };
 
 // `bodies` and `impulses`: one for each label of the solids, or none. Impulses are added to. Without bodies, solids move as told.

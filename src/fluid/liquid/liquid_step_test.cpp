@@ -19,8 +19,7 @@ TEST(LiquidRest, a_tank_stays_still_with_the_pressure_of_its_depth) {
     LiquidGrid grid = make_liquid_grid(box_of(10, 14, 8, 0.0625f, GasBoundary::closed));
     Bench bench;
     fill_liquid_box(grid, {0, 0, 0}, {0.625, double(height), 0.5}, {}, bench.solids);
-    LiquidReport report;
-    for (int i = 0; i < 60; ++i) report = bench.step(grid);
+    for (int i = 0; i < 60; ++i) bench.step(grid);
     EXPECT_LT(fastest_particle(grid), 1.0e-3f * std::sqrt(9.81f * height));
     for (const double y : {0.05, 0.2, 0.4}) {
       const LiquidProbe probe = probe_liquid(grid, {0.37, y, 0.26}, 1000.0f);
@@ -31,7 +30,7 @@ TEST(LiquidRest, a_tank_stays_still_with_the_pressure_of_its_depth) {
     }
     EXPECT_FALSE(probe_liquid(grid, {0.37, 0.6, 0.26}, 1000.0f).inside);
     const double volume = 0.625 * 0.5 * double(height);
-    EXPECT_NEAR(report.volume, volume, 1.0e-3 * volume);
+    EXPECT_NEAR(liquid_volume(grid, bench.solids), volume, 1.0e-3 * volume);
     EXPECT_NEAR(liquid_totals(grid, 1000.0f, {}).mass, 1000.0 * volume, 1.0e-5 * 1000.0 * volume);
   }
 }
@@ -107,7 +106,7 @@ TEST(LiquidVolume, sloshing_and_splashing_keep_the_volume) {
     report = bench.step(grid);
     EXPECT_LT(report.divergence / 60.0f, 1.0e-3f);
   }
-  EXPECT_NEAR(report.volume, 0.48 * 0.8 * 0.04, 0.01 * 0.48 * 0.8 * 0.04);
+  EXPECT_NEAR(liquid_volume(grid, bench.solids), 0.48 * 0.8 * 0.04, 0.01 * 0.48 * 0.8 * 0.04);
   EXPECT_EQ(grid.particles(), 24 * 40);
 }
 

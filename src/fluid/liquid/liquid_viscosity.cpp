@@ -7,7 +7,7 @@ namespace {
 
 constexpr float kMinWeight =
     0.05f;  // of a face that has liquid beside it: less would make its equation stand apart from the others
-constexpr float kTolerance = 1.0e-3f;
+constexpr float kTolerance = 1.0e-3f;  // of the first residual
 constexpr int kMaxIterations = 200;
 
 struct Viscosity {

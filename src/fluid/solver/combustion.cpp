@@ -6,7 +6,7 @@ namespace {
 
 // 1 - exp(-x) of x >= 0: the Taylor series of exp(x / 32) five times squared. Its error is below 1e-9.
 double burned_share(double x) {
-  constexpr double kAllBurns = 40.0;
+  constexpr double kAllBurns = 40.0;  // exp(-40) is below the rounding of double
   if (!(x < kAllBurns)) return 1.0;
   const double y = x / 32.0;
   double growth =

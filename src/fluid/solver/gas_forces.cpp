@@ -102,6 +102,50 @@ void add_buoyancy(const GasPass& pass, Vec3 gravity, float buoyancy) {
   }
 }
 
+void add_turning(const GasPass& pass) {
+  const GridShape& shape = pass.shape();
+  const FrameMotion& motion = pass.motion;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* const from = pass.grid.velocity[axis].data();
+    float* const to = pass.scratch(axis);
+    each_row(pass, axis, [&](int c, int, int) {
+      for (int i = c; i < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++i) to[i] = from[i];
+    });
+  }
+  const Quat back = from_rotation_vector(-2.0f * pass.step * motion.spin);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    float* const velocity = pass.grid.velocity[axis].data();
+    const float* const face = pass.memory.matrix.levels[0].face[axis].data();
+    const int stride = shape.stride(axis), last = shape.cells[axis];
+    each_row(pass, axis, [&](int c, int j, int k) {
+      for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+        if (!(face[c + i] > 0.0f)) continue;
+        const int index[3] = {i, j, k};
+        float parts[3], place[3];
+        for (int other = 0; other < 3; ++other) {
+          const float offset = other == axis ? 0.0f : 0.5f;
+          place[other] = (float(index[other]) + offset) * pass.edge(other);
+          const float* const from = pass.scratch(other) + c + i;
+          if (other == axis) {
+            parts[other] = from[0];
+            continue;
+          }
+          // The mean of the four faces around, or of two at a side of the box.
+          const int step = shape.stride(other);
+          const float here = from[0] + from[step], beside = from[-stride] + from[step - stride];
+          parts[other] = index[axis] == 0      ? 0.5f * here
+                         : index[axis] == last ? 0.5f * beside
+                                               : 0.25f * (here + beside);
+        }
+        const Vec3 turned = rotate(back, Vec3{parts[0], parts[1], parts[2]});
+        const Vec3 outward = motion.outward({place[0], place[1], place[2]});
+        velocity[c + i] = part_of(turned, axis) + pass.step * part_of(outward, axis);
+      }
+    });
+  }
+}
+
 void add_confinement(const GasPass& pass, float strength) {
   const GridShape& shape = pass.shape();
   const FieldRows cells = rows_of(shape, -1);

@@ -1,6 +1,7 @@
 // GasPass: the data of the stages of a step of a gas. Each stage is a function from these arrays to these arrays.
 #pragma once
 
+#include "fluid/grid/frame_motion.h"
 #include "fluid/solver/body_coupling.h"
 #include "fluid/solver/pressure_matrix.h"
 #include "task/parallel.h"
@@ -29,6 +30,7 @@ struct GasPass {
   float step = 0.0f;                    // s
   std::span<const FluidBody> bodies{};  // by label; those that are free to move do so by the pressure
   float density = 1.0f;                 // kg/m^3, of the gas
+  FrameMotion motion{};
 
   bool couples() const { return solids.present() && memory.coupling.any_moves; }
   const float* solid_velocity(int axis) const {

@@ -26,22 +26,39 @@ void limit_samples(const GasBox& box, const GridShape& shape, bool outside, int 
   }
 }
 
-// Calls fn(place) for each place of the layer at `index` along an axis, with the ghosts of the other axes.
+// Calls fn(place, i, j) for each place of the layer at `index` along an axis, with the ghosts of the other axes.
 template <class Fn>
 void for_layer(const GridShape& shape, int axis, int index, Fn&& fn) {
   const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
   const int first = shape.first + index * shape.stride(axis);
   for (int j = -1; j <= shape.cells[b]; ++j) {
-    for (int i = -1; i <= shape.cells[a]; ++i) fn(first + i * shape.stride(a) + j * shape.stride(b));
+    for (int i = -1; i <= shape.cells[a]; ++i) fn(first + i * shape.stride(a) + j * shape.stride(b), i, j);
   }
 }
 
+// The velocity across `faces` of air at rest in the world, for places of the layer at `index` along an axis.
+float rest_velocity(const GasPass& pass, int faces, int axis, int index, int i, int j) {
+  const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
+  int at[3];
+  at[axis] = index, at[a] = i, at[b] = j;
+  float place[3];
+  for (int n = 0; n < 3; ++n) place[n] = (float(at[n]) + (n == faces ? 0.0f : 0.5f)) * pass.edge(n);
+  const Vec3 rest = pass.motion.rest_at({place[0], place[1], place[2]});
+  return faces == 0 ? rest.x : faces == 1 ? rest.y : rest.z;
+}
+
 // Air at rest beyond open sides: ghosts of the velocity across faces, but along their own axis, where there are none.
-void still_ghosts(const GasBox& box, const GridShape& shape, int faces, float* field) {
+void still_ghosts(const GasPass& pass, int faces, float* field) {
+  const GasBox& box = pass.box();
+  const GridShape& shape = pass.shape();
+  const bool moves = pass.motion.moves();
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2;
     if (axis == faces || !box.open(side)) continue;
-    for_layer(shape, axis, side % 2 == 0 ? -1 : shape.cells[axis], [&](int c) { field[c] = 0.0f; });
+    const int index = side % 2 == 0 ? -1 : shape.cells[axis];
+    for_layer(shape, axis, index, [&](int c, int i, int j) {
+      field[c] = moves ? rest_velocity(pass, faces, axis, index, i, j) : 0.0f;
+    });
   }
 }
 
@@ -66,7 +83,7 @@ void transport(const GasPass& pass, Advection advection, int faces, const float*
   const auto fill = [&](float* of) {
     if (faces < 0) return fill_ghosts(box, shape, of, outside);
     wrap_ghosts(shape, periodic, of);
-    still_ghosts(box, shape, faces, of);
+    still_ghosts(pass, faces, of);
   };
   const auto run = [&](void (*kernel)(const TransportPass&, int, int)) {
     for_blocks(pass.tasks, work.points[1] * work.points[2], kGridRows,
@@ -130,9 +147,16 @@ void slow_inflow(const GasPass& pass, int axis) {
   const float scale = pass.step / pass.edge(axis);
   for (int side = 0; side < 2; ++side) {
     if (!pass.box().open(2 * axis + side)) continue;
-    for_layer(shape, axis, side * shape.cells[axis], [&](int c) {
+    const int index = side * shape.cells[axis];
+    for_layer(shape, axis, index, [&](int c, int i, int j) {
       const float in = side == 0 ? velocity[c] : -velocity[c];
-      if (in > 0.0f) velocity[c] /= 1.0f + scale * in;
+      if (!(in > 0.0f)) return;
+      if (!pass.motion.moves()) {
+        velocity[c] /= 1.0f + scale * in;
+        return;
+      }
+      const float rest = rest_velocity(pass, axis, axis, index, i, j);
+      velocity[c] = rest + (velocity[c] - rest) / (1.0f + scale * in);
     });
   }
 }

@@ -1,5 +1,6 @@
 #include "fluid/store/fluid_builder.h"
 
+#include "fluid/store/fluid_motion.h"
 #include "math/trig.h"
 
 #include <cmath>
@@ -93,7 +94,7 @@ Error check_combustion(const Combustion& combustion) {
     const Error e = check_range(name, double(value), low, bound);
     return e ? refuse("combustion.%s", e.message) : e;
   };
-  constexpr double kMinPositive = 1.0e-30;
+  constexpr double kMinPositive = 1.0e-30;  // in the units of each setting: not zero
   if (const Error e = check("ignition_temperature", combustion.ignition_temperature, 0.0, "at least 0"))
     return e;
   if (const Error e = check("burn_rate", combustion.burn_rate, 0.0, "at least 0")) return e;
@@ -275,8 +276,22 @@ Error check_emitters(std::span<const FluidEmitter> emitters, DVec3 lower, DVec3 
   return {};
 }
 
+Error check_frame(const Pose& pose, Vec3 linear_velocity, Vec3 angular_velocity) {
+  if (!is_good_place(pose.position)) return refuse("%s", "pose.position must be finite and within 1e12 m");
+  const Quat& q = pose.orientation;
+  const double square = double(q.x) * double(q.x) + double(q.y) * double(q.y) + double(q.z) * double(q.z) +
+                        double(q.w) * double(q.w);
+  if (!(square > 1.0e-12) || !(square < 1.0e12))
+    return refuse("pose.orientation is (%g, %g, %g, %g); it must be a rotation", double(q.x), double(q.y),
+                  double(q.z), double(q.w));
+  if (!is_finite(linear_velocity)) return refuse("%s", "linear_velocity is not finite");
+  if (!is_finite(angular_velocity)) return refuse("%s", "angular_velocity is not finite");
+  return {};
+}
+
 Error check_fluid(const GasDef& def) {
   if (const Error e = check_box(def.lower, def.upper)) return e;
+  if (const Error e = check_frame(def.pose, def.linear_velocity, def.angular_velocity)) return e;
   std::int64_t cells = 1;
   for (const int count : def.cells) {
     if (count < 1 || count > kMaxFluidCells) return refuse("cells has %d; each must be at least 1", count);
@@ -309,6 +324,7 @@ Error check_fluid(const GasDef& def) {
 
 Error check_fluid(const LiquidDef& def) {
   if (const Error e = check_box(def.lower, def.upper)) return e;
+  if (const Error e = check_frame(def.pose, def.linear_velocity, def.angular_velocity)) return e;
   if (const Error e = check_range("cell_size", double(def.cell_size), 1.0e-9, "above 0")) return e;
   const std::array<int, 3> cells = liquid_cells(def);
   if (double(cells[0]) * double(cells[1]) * double(cells[2]) > double(kMaxFluidCells))
@@ -367,6 +383,9 @@ FluidEntry build_fluid(std::shared_ptr<const FluidDef> def) {
       [&](const auto& one) {
         build(one, entry);
         set_emitters(entry, one.emitters);
+        set_frame(entry, {{one.pose.position, normalized(one.pose.orientation)},
+                          one.linear_velocity,
+                          one.angular_velocity});
       },
       *entry.def);
   return entry;
@@ -406,7 +425,7 @@ bool fits_definition(const FluidEntry& entry) {
   const LiquidGrid& liquid = entry.liquid;
   const std::size_t count = liquid.volume.size();
   bool good = count <= std::size_t(kMaxLiquidParticles) && liquid.surface.size() == size &&
-              liquid.pressure.size() == size;
+              liquid.pressure.size() == size && (liquid.lead.empty() || liquid.lead.size() == size);
   for (const Array<float>& faces : liquid.velocity) good = good && faces.size() == size;
   for (const Array<float>& column : liquid.motion) good = good && column.size() == count;
   for (const Array<float>& column : liquid.affine) good = good && column.size() == count;

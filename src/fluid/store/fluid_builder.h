@@ -15,6 +15,7 @@ constexpr int kMaxLiquidParticles = 1 << 22;      // of one liquid
 // Says why a definition is refused; code none if it is not. The message names the field, what was found and what is expected.
 Error check_fluid(const GasDef& def);
 Error check_fluid(const LiquidDef& def);
+Error check_frame(const Pose& pose, Vec3 linear_velocity, Vec3 angular_velocity);
 Error check_emitters(std::span<const FluidEmitter> emitters, DVec3 lower, DVec3 upper);
 
 // Cells of its box. The definition must have passed its check.

@@ -5,8 +5,10 @@
 #include "base/container/array.h"
 #include "base/container/slot_map.h"
 #include "fluid/gas/gas_step.h"
+#include "fluid/grid/fluid_frame.h"
 #include "fluid/liquid/liquid_step.h"
 
+#include <gyre/events.h>
 #include <gyre/fluid.h>
 
 #include <memory>
@@ -23,14 +25,23 @@ struct FluidPush {
   Vec3 force{}, torque{};  // N, N m about the centre of mass
 };
 
+// A body or a piece of soft matter that was inside a fluid at the end of the last step.
+struct FluidVisitor {
+  std::uint32_t index = 0, generation = 0;
+  std::uint32_t is_soft = 0;
+};
+
 struct FluidEntry {
   std::shared_ptr<const FluidDef> def;  // null: the slot is free
   GasGrid gas;                          // of a gas, else empty
   LiquidGrid liquid;                    // of a liquid, else empty
   Array<GasEmitter> emitters;
-  Array<float> emitter_fuel;  // kg/m^3, one for each emitter of a gas with combustion, else empty
-  Array<FluidPush> pushes;  // ascending by body
+  Array<float> emitter_fuel;     // kg/m^3, one for each emitter of a gas with combustion, else empty
+  Array<FluidPush> pushes;       // ascending by body
+  Array<FluidVisitor> visitors;  // bodies, then soft matter, each ascending by index
+  Array<FluidFrame> frames;      // none: the axes of the world; or one
 
+  const FluidFrame* frame() const { return frames.empty() ? nullptr : frames.data(); }
   FluidKind kind() const { return FluidKind(def->index()); }
   bool is_liquid() const { return kind() == FluidKind::liquid; }
   bool burns() const { return !is_liquid() && gas_def().combustion.has_value(); }
@@ -43,11 +54,13 @@ struct FluidEntry {
 struct FluidStore {
   IdPool ids;
   std::vector<FluidEntry> entries;
+  Array<FluidTouch> events;  // collected for the end of the step; no state
 
   bool empty() const { return ids.size() == 0; }
   void clear() {
     ids = {};
     entries.clear();
+    events.clear();
   }
   template <class Fn>
   void for_each(Fn&& fn) const {
@@ -70,6 +83,12 @@ void for_each_fluid_array(Entry& entry, Visitor&& visit) {
   visit(entry.emitters);
   visit(entry.pushes);
   if (entry.burns()) visit(entry.gas.fuel), visit(entry.emitter_fuel);
+}
+
+// State that files of older versions lack, and which then is as in a new fluid.
+template <class Entry, class Visitor>
+void for_each_later_fluid_array(Entry& entry, Visitor&& visit) {
+  visit(entry.visitors), visit(entry.frames), visit(entry.liquid.lead);
 }
 
 }  // namespace gyre

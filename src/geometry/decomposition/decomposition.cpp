@@ -60,7 +60,7 @@ void prepare(const DecompositionDef& def, TaskSystem& tasks, Prepared& out) {
   out.solid.model = &model;
   out.solid.field = out.field.get();
   out.solid.tolerance = double(def.concavity) * model.size;
-  constexpr double kMinSamples = 4000.0, kMaxSamples = 60000.0;
+  constexpr double kMinSamples = 4000.0, kMaxSamples = 60000.0;  // on the whole surface
   out.solid.spacing = min(max(0.4 * out.solid.tolerance, std::sqrt(model.area / kMaxSamples)),
                           std::sqrt(model.area / kMinSamples));
   sample_surface(tasks, out.solid);

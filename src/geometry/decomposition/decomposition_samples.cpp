@@ -23,7 +23,7 @@ double fraction(double x) { return x - double(std::int64_t(x)); }
 // One sample for each spacing * spacing of area, spread by a sequence that fills triangles evenly. M. Roberts, "The
 // Unreasonable Effectiveness of Quasirandom Sequences", 2018 (the plastic number's powers).
 std::vector<SampleCandidate> spread_points(const Model& model, double spacing) {
-  constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
+  constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;  // 1/p and 1/p^2 of the plastic number p
   std::vector<SampleCandidate> out;
   double area_left = 0.5;
   for (std::size_t t = 0; t < model.triangle_count(); ++t) {

@@ -87,7 +87,6 @@ SimplexPoint closest_on_sliver(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
 // True if the plane of the triangle is certainly farther away than a distance. False if the triangle has no reliable
 // plane.
 bool has_plane_beyond(DVec3 p, DVec3 a, DVec3 b, DVec3 c, double squared) {
-  constexpr double kSurelyFarther = 1.001;
   const DVec3 ab = b - a, ac = c - a, normal = cross(ab, ac);
   const double nn = dot(normal, normal);
   const double longest = max(dot(ab, ab), max(dot(ac, ac), length_squared(c - b)));

@@ -12,6 +12,9 @@
 
 namespace gyre {
 
+// Factor on a squared distance that no rounding error reaches.
+constexpr double kSurelyFarther = 1.001;
+
 struct SegmentPoint {
   DVec3 point;
   double t;  // 0 at a, 1 at b

@@ -31,9 +31,6 @@ constexpr double kSameSide = 0.999;
 // Cosine between the best normal and the normals of faces that are still expanded when memory runs short.
 constexpr double kNearBest = 0.9;
 
-// Factor on a squared distance that no rounding error reaches.
-constexpr double kSurelyFarther = 1.001;
-
 // Distance of a face without area. Such a face closes the surface and says nothing about the distance.
 constexpr double kNoDistance = 1.0e300;
 

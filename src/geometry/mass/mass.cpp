@@ -314,7 +314,7 @@ Error check_inertia(const Sym3& inertia) {
     const double x = absolute(a.x), y = absolute(a.y), z = absolute(a.z);
     return x >= y && x >= z ? 'x' : y >= z ? 'y' : 'z';
   };
-  constexpr double kSlack = 1.0e-4;
+  constexpr double kSlack = 1.0e-4;  // of the largest moment: rounding of given inertias
   if (!(moments[0] > 0.0)) {
     const DVec3 a = axis(0);
     return make_error(ErrorCode::invalid_argument,

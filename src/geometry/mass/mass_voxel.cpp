@@ -53,7 +53,7 @@ VoxelGrid make_grid(const TriangleSurface& surface, int resolution) {
 struct PlanePoint {
   double u, v;
 };
-constexpr double kOffsetU = 1.3127e-3, kOffsetV = 0.9241e-3;
+constexpr double kOffsetU = 1.3127e-3, kOffsetV = 0.9241e-3;  // of a voxel: lines pass beside edges of round coordinates
 
 bool comes_before(PlanePoint a, PlanePoint b) { return a.u != b.u ? a.u < b.u : a.v < b.v; }
 

@@ -64,7 +64,7 @@ struct MovingShape {
 // are kCastTolerance of the moving shape's size apart, and then moves the hit to where they meet.
 bool cast_shape(const Shape& target, const MovingShape& moving, double max_fraction, bool back_faces,
                 LocalHit& hit);
-constexpr double kCastTolerance = 1.0e-6;
+constexpr double kCastTolerance = 1.0e-6;  // of the moving shape's size
 // The same against a triangle whose surface is rounded by `radius`, hit from its front or from both sides. The hit names no triangle.
 bool cast_shape_at_triangle(const DVec3 (&triangle)[3], double radius, const MovingShape& moving, double max_fraction,
                             bool both_sides, LocalHit& hit);

@@ -10,7 +10,7 @@
 namespace gyre {
 namespace {
 
-constexpr float kRelativeTolerance = 1.0e-6f;
+constexpr float kRelativeTolerance = 1.0e-6f;  // of the mesh's size: nearer vertices are one
 
 struct SortedKeys {
   std::vector<std::uint64_t> keys;

@@ -33,8 +33,8 @@ Shape make_shape(const AnyShape& shape);
 // The error of an unusable shape (radius not positive, not finite, zero normal, empty Geometry ...); code none if it is
 // valid. Lengths that must not be zero are within kMinLength .. kMaxLength.
 Error check_shape(const AnyShape& shape);
-constexpr float kMinLength = 1.0e-9f;
-constexpr float kMaxLength = 1.0e9f;
+constexpr float kMinLength = 1.0e-9f;  // m
+constexpr float kMaxLength = 1.0e9f;  // m
 
 // True if the kind is convex and bounded: all but plane, mesh and height field.
 constexpr bool is_convex(ShapeKind kind) { return kind <= ShapeKind::hull; }
@@ -42,7 +42,7 @@ constexpr bool is_convex(ShapeKind kind) { return kind <= ShapeKind::hull; }
 // The tight axis-aligned box of the shape at pose `t`, in the outer frame of `t`. A plane's box is +-kUnbounded along
 // each axis that it does not bound.
 Aabb bounds(const Shape& shape, const Transform& t);
-constexpr float kUnbounded = 1.0e18f;
+constexpr float kUnbounded = 1.0e18f;  // m
 // How much too tight the box may be, relative to outer_radius(): the box of a disc seen edge-on loses half of the
 // digits of a float.
 constexpr float kBoundsSlack = 1.0e-3f;

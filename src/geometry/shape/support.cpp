@@ -8,7 +8,7 @@ namespace {
 
 // Corners of the polygon that represents a round cap, without the lowest point.
 constexpr int kRimVertices = 8;
-constexpr float kHalfSqrt2 = 0.70710678f;
+constexpr float kHalfSqrt2 = 0.70710678f;  // half of the square root of two
 constexpr float kRimX[kRimVertices] = {1, kHalfSqrt2, 0, -kHalfSqrt2, -1, -kHalfSqrt2, 0, kHalfSqrt2};
 constexpr float kRimZ[kRimVertices] = {0, kHalfSqrt2, 1, kHalfSqrt2, 0, -kHalfSqrt2, -1, -kHalfSqrt2};
 // rad, the lean below which the lowest point of a rim is noise. The eight corners are then at most 8 % of r * lean too

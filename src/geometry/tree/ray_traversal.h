@@ -27,7 +27,7 @@ struct BoxRay {
   bool negative[3];  // the high plane of a box is met first
 
   static constexpr double kSlack = 4.0e-7;  // six roundings of float
-  static constexpr double kStill = 1.0e-30;
+  static constexpr double kStill = 1.0e-30;  // components of a direction below this count as zero
 
   // A box of half size `half` that moves from `origin` by the translation. Boxes with coordinates much larger than all
   // three are met early or late by no more than their own rounding.

@@ -38,6 +38,7 @@ void clear_reports(WorldState& state) {
   note_change(state);
   clear_events(state.published_events);
   state.published_soft_events.clear();
+  state.published_fluid_touches.clear();
   state.events = {};
   state.problems.clear();
   state.frozen.clear();

@@ -116,7 +116,14 @@ std::vector<Command> all_commands() {
           SetBodyUserData{body, 1234567890123},
           SetShapeUserData{shape, 1234567890124},
           SetBreakLoad{joint, 1.5f, 2.5f},
-          SetPairIgnored{body, BodyId{4, 6, kWorld}, true}};
+          SetPairIgnored{body, BodyId{4, 6, kWorld}, true},
+          SetEnabled{body, false},
+          AddCoupling{{.terms = {{joint, JointAxis::linear_y, 2.5f}, {JointId{1, 2, kWorld}, JointAxis::angular_z, -3.0f}},
+                       .offset = 0.75f}},
+          RemoveCoupling{CouplingId{4, 3, kWorld}},
+          SetFluidPose{FluidId{2, 1, kWorld}, Pose{{1, 2, 3}, {0, 1, 0, 0}}},
+          SetFluidVelocity{FluidId{2, 1, kWorld}, {1, 2, 3}, {4, 5, 6}},
+          SetVertexLimits{SoftId{3, 1, kWorld}, {{1, 2, 3}}, {0.5f}, {{0, 1, 0}}, {0.25f}}};
 }
 
 // Fields of certain kinds of joints are restored as well.
@@ -162,6 +169,26 @@ TEST(CommandCodec, AGasThatBurnsComesBack) {
   EXPECT_EQ(read.fields->fuel, (std::vector<float>{3, 4}));
   EXPECT_EQ(read.emitters[1].fuel, 0.5f);
   EXPECT_EQ(read.emitters[0].velocity->z, 3.0f);
+}
+
+// The box of a fluid in axes of its own, which came later still.
+TEST(CommandCodec, AFluidInAxesOfItsOwnComesBack) {
+  const Pose pose{{1, 2, 3}, {0.6f, 0, 0.8f, 0}};
+  for (const FluidDef& def :
+       {FluidDef(GasDef{.combustion = Combustion{}, .pose = pose, .angular_velocity = {1, 2, 3}}),
+        FluidDef(LiquidDef{.pose = pose, .angular_velocity = {1, 2, 3}})}) {
+    const std::vector<std::byte> bytes = bytes_of(AddFluid{std::make_shared<const FluidDef>(def)});
+    ByteReader in(bytes);
+    const Command back = read_command(in, {}, kWorld);
+    EXPECT_TRUE(in.finished());
+    EXPECT_EQ(bytes_of(back), bytes);
+    std::visit(
+        [&](const auto& one) {
+          EXPECT_EQ(one.pose, pose);
+          EXPECT_EQ(one.angular_velocity, (Vec3{1, 2, 3}));
+        },
+        *std::get<AddFluid>(back).def);
+  }
 }
 
 TEST(CommandCodec, EveryCommandComesBack) {

@@ -12,6 +12,15 @@ void write_fluids(ByteWriter& out, const FluidStore& fluids) {
     write_fluid_def(out, *entry.def);
     for_each_fluid_array(entry, [&](const auto& array) { write_array(out, array); });
   });
+  // What came later stands behind all fluids, and only where there is some of it.
+  bool any = false;
+  fluids.for_each([&](const FluidEntry& entry) {
+    for_each_later_fluid_array(entry, [&](const auto& array) { any = any || !array.empty(); });
+  });
+  if (!any) return;
+  fluids.for_each([&](const FluidEntry& entry) {
+    for_each_later_fluid_array(entry, [&](const auto& array) { write_array(out, array); });
+  });
 }
 
 bool read_fluids(ByteReader& in, FluidStore& fluids) {
@@ -28,6 +37,13 @@ bool read_fluids(ByteReader& in, FluidStore& fluids) {
     FluidEntry& entry = fluids.entries[slot] = build_fluid(std::move(def));
     bool good = true;
     for_each_fluid_array(entry, [&](auto& array) { good = good && read_array(in, array); });
+    if (!good || !fits_definition(entry)) return false;
+  }
+  if (in.left() == 0) return true;
+  for (FluidEntry& entry : fluids.entries) {
+    if (entry.def == nullptr) continue;
+    bool good = true;
+    for_each_later_fluid_array(entry, [&](auto& array) { good = good && read_array(in, array); });
     if (!good || !fits_definition(entry)) return false;
   }
   return true;

@@ -1,4 +1,5 @@
-// Gases and liquids as bytes: generations of ids, then for each of them its definition and the arrays that a step changes. A reader checks the
+// Gases and liquids as bytes: generations of ids, then for each of them its definition and the arrays that a step changes,
+// then the arrays that older versions lacked. A reader checks the
 // definition as a command does, builds it, and checks that the arrays fit.
 #pragma once
 

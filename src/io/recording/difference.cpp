@@ -66,6 +66,7 @@ struct Tracer {
       };
       for_each_damage_array(entry, add_array);
       for_each_soft_array(entry, add_array);
+      for_each_rare_array(entry, add_array);
       out.rows.push_back(hash);
     });
   }
@@ -74,9 +75,11 @@ struct Tracer {
     StateTrace::Column& out = add(name);
     fluids.for_each([&](const FluidEntry& entry) {
       std::uint64_t hash = std::uint64_t(entry.shape().count());
-      for_each_fluid_array(entry, [&](const auto& array) {
+      const auto add_array = [&](const auto& array) {
         for (const auto& record : array) hash = mix_bits(hash + hash_record(record));
-      });
+      };
+      for_each_fluid_array(entry, add_array);
+      for_each_later_fluid_array(entry, add_array);
       out.rows.push_back(hash);
     });
   }

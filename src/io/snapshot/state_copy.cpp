@@ -198,11 +198,13 @@ struct OtherSize {
     soft.for_each([&](const SoftEntry& entry) {
       for_each_damage_array(entry, [&](const auto& array) { bytes += array.bytes(); });
       for_each_soft_array(entry, [&](const auto& array) { bytes += array.bytes(); });
+      for_each_rare_array(entry, [&](const auto& array) { bytes += array.bytes(); });
     });
   }
   void operator()(const char*, const FluidStore& fluids) {
     fluids.for_each([&](const FluidEntry& entry) {
       for_each_fluid_array(entry, [&](const auto& array) { bytes += array.bytes(); });
+      for_each_later_fluid_array(entry, [&](const auto& array) { bytes += array.bytes(); });
     });
   }
   void operator()(const char*, const std::vector<AnyShape>& shapes) { bytes += shapes.capacity() * sizeof(AnyShape); }

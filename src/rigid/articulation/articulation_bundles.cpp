@@ -63,7 +63,7 @@ float mobility(const BodyMass& mass, Vec3 arm) {
 // True if a joint couples bodies whose effective masses differ by more than 50, one of them with another
 // joint too. Such links may get any speed from a solve, since their second-order bias is not resolved.
 bool has_extreme_mass_ratio(const RigidWorld& w, const JointRecord& joint) {
-  constexpr float kLighter = 3.0f, kMoreMobile = 50.0f;
+  constexpr float kLighter = 3.0f, kMoreMobile = 50.0f;  // ratios of mass, and of inverse effective mass
   if (joint.body_a == kNoBody || joint.body_b == kNoBody) return false;
   const auto is_light = [&](std::int32_t body, Vec3 arm, std::int32_t other, Vec3 other_arm) {
     const BodyMass &own = w.bodies.masses[std::size_t(body)], &others = w.bodies.masses[std::size_t(other)];

@@ -120,7 +120,7 @@ double first_impact_time(const RigidWorld& w, const StepCheckpoint& before, cons
   const double end = pair.gap(1.0, 4.0 * tolerance).distance;
   if (impact.time >= 1.0 || absolute(end) <= tolerance) return kNoImpact;  // touches just at the end
   const DVec3 off = acceleration_offset(w, before, contact, impact.time, seconds);
-  constexpr double kTimeStep = 1.0e-3;
+  constexpr double kTimeStep = 1.0e-3;  // of the step: of the difference quotient of the gap
   const double dt = min(kTimeStep, 0.5 * impact.time);
   const Gap at_impact = pair.gap(impact.time, 4.0 * tolerance),
             before_impact = pair.gap(impact.time - dt, 1.0e30);

@@ -8,8 +8,8 @@ namespace gyre {
 
 namespace {
 
-constexpr float kRadiusOfHeight = 1.0f / 3.0f;
-constexpr float kNoFloat = __builtin_nanf("");
+constexpr float kRadiusOfHeight = 1.0f / 3.0f;  // of a triangle's lowest height: neighbours stay apart
+constexpr float kNoFloat = __builtin_nanf("");  // marks an absent number
 
 Aabb box_of(std::span<const DVec3> places, const std::uint32_t* corner, DVec3 origin) {
   const Vec3 a = difference(places[corner[0]], origin), b = difference(places[corner[1]], origin),

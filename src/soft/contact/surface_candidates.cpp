@@ -137,7 +137,7 @@ std::span<float> spread_over_features(std::span<const PlacedSurface> surfaces, s
 
 void fill_filter(std::span<const DVec3> positions, std::span<const float> reach, DVec3 origin,
                  std::span<FilterVertex> out) {
-  constexpr float kRounding = 0x1p-20f;
+  constexpr float kRounding = 0x1p-20f;  // of the coordinates: their rounding to float
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const Vec3 p = difference(positions[v], origin);
     const Vec3 size = absolute(p);

@@ -33,6 +33,7 @@ class CutLattice {
  public:
   static constexpr int kDirections = 14;
   static constexpr std::uint32_t kNoPoint = 0xffffffffu;
+  // The nearest that a cut may be to a point, as a share of a long and of a short edge.
   static constexpr double kLongShare = 0.24999, kShortShare = 0.41189;
 
   // `size`: of the surface's box, which begins at zero.

@@ -54,7 +54,7 @@ GYRE_INLINE Wide<W> bias_fade(Wide<W> angle_squared, float max_angle) {
 // 1/s, with a minus sign: the rate of error removal; up to the whole error at once where the bias fades.
 template <int W>
 GYRE_INLINE Wide<W> remove_error(Wide<W> angle_squared, float rate, float per_substep) {
-  constexpr float kFastSquare = kFastErrorAngle * kFastErrorAngle;
+  constexpr float kFastSquare = kFastErrorAngle * kFastErrorAngle;  // rad^2
   const Mask<W> fast = angle_squared > kFastSquare;
   const Wide<W> error_rate(-rate);
   if (none(fast)) return error_rate;

@@ -19,7 +19,7 @@ GYRE_INLINE void mark_uneven_points(ContactBlock<W>& block) {
 // missing points are those of the identity in Cholesky's factor, and 0 after.
 template <int W, int Count>
 GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
-  constexpr float kRegular = 0.02f;
+  constexpr float kRegular = 0.02f;  // of the diagonal, added to it: points in line or on one spot stay solvable
   const Wide<W> zero(0.0f), one(1.0f);
   Wide<W> inverse_masses = block.inverse_mass_a + block.inverse_mass_b;
   if (block.locked != 0)

@@ -33,7 +33,7 @@ struct Cardan {
   // d angle / dt = dual . (w_b - w_a); the dual vector is normal to the other two axes. It stays finite where
   // x and z nearly coincide.
   Vec3 dual(int i) const {
-    constexpr float kMinDot = 0.05f;
+    constexpr float kMinDot = 0.05f;  // sine of the middle angle's distance from 90 degrees
     const Vec3 across = cross(axes[(i + 1) % 3], axes[(i + 2) % 3]);
     return across / max(dot(axes[i], across), kMinDot);
   }
@@ -274,7 +274,7 @@ Vec3 angle_axis(Quat frame_a, Quat frame_b, int angle) { return cardan_of(frame_
 
 // Half-way between the axes of a and b.
 Vec3 twist_axis(Quat frame_a, Quat frame_b) {
-  constexpr float kMinDot = 0.05f;
+  constexpr float kMinDot = 0.05f;  // of 1 + cos(swing): 162 degrees
   const Vec3 x_a = rotate(frame_a, {1, 0, 0}), x_b = rotate(frame_b, {1, 0, 0});
   return (x_a + x_b) / max(1.0f + dot(x_a, x_b), kMinDot);
 }

@@ -19,7 +19,7 @@ constexpr std::uint64_t kMaxWork = 6'000'000;
 // Above this number of multiplications a round must achieve more: a stable structure converges at once.
 constexpr std::uint64_t kExpensiveWork = 250'000;
 constexpr int kMaxStuckIfExpensive = 2;  // successive rounds that left more than this share of the residual
-constexpr double kProgressIfExpensive = 0.7;
+constexpr double kProgressIfExpensive = 0.7;  // share of the residual that a round may leave
 constexpr int kMaxRoundsIfNew =
     2;  // new and expensive: a structure put in place converges at once, one that has yet to settle does not
 // Share of its stiffness that an inactive point keeps in the second derivative, but not in its impulse.

@@ -9,7 +9,7 @@ namespace gyre {
 
 namespace {
 
-constexpr double kNearlyAll = 1.0 - 1.0e-6;
+constexpr double kNearlyAll = 1.0 - 1.0e-6;  // of the friction cone
 
 bool has_friction(const ContactConstraint& c) {
   return c.static_friction > 0.0f || c.dynamic_friction > 0.0f;

@@ -7,7 +7,7 @@
 namespace gyre {
 
 namespace {
-constexpr double kPiD = 3.14159265358979323846;
+constexpr double kPiD = 3.14159265358979323846;  // pi
 }
 
 FrictionSet make_friction_set(int sides) {

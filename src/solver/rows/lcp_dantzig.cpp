@@ -3,7 +3,7 @@
 namespace gyre {
 
 namespace {
-constexpr double kNever = 1.0e301;
+constexpr double kNever = 1.0e301;  // a step length that no row reaches; above kNoLimit
 }
 
 // The tableau is y = T u + qt: in the basis u is w and y is x, outside it u is x and y is w.

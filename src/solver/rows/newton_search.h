@@ -39,8 +39,8 @@ constexpr std::size_t newton_search_room(std::size_t size) { return 6 * size; }
 template <class Problem>
 NewtonResult newton_search(Problem& problem, double tolerance, int max_steps, std::span<double> x,
                            NumberRoom& room) {
-  constexpr double kFirstDamping = 1.0e-4, kMaxDamping = 1.0e-3, kMinDamping = 1.0e-10;
-  constexpr double kGood = 0.3, kSlow = 0.1, kBad = 10.0;
+  constexpr double kFirstDamping = 1.0e-4, kMaxDamping = 1.0e-3, kMinDamping = 1.0e-10;  // MapPoint::damping
+  constexpr double kGood = 0.3, kSlow = 0.1, kBad = 10.0;  // factors on the damping after a step
   constexpr double kFall = 0.1;  // required relative fall of the sum of squares, for a whole step
   constexpr double kShares[] = {1.0, 0.5, 0.25, 0.1, 0.03};
   // Steps without progress before the search ends.

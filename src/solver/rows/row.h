@@ -22,7 +22,7 @@
 
 namespace gyre {
 
-constexpr double kNoLimit = 1.0e300;
+constexpr double kNoLimit = 1.0e300;  // N s; of rows without a bound
 
 enum class RowKind : std::uint8_t {
   box,          // low <= x <= high; without either bound it is an equation
