@@ -44,14 +44,19 @@ class StubWriter(PythonWriter):
 
     # ------------------------------------------------------------------------------------------------------- types
 
-    def given(self, kind):
-        m = self.model
+    @staticmethod
+    def number(kind):
+        """Python's type of a number; None for other kinds."""
         if kind in ("float", "double"):
             return "float"
         if kind == "bool":
             return "bool"
-        if kind in KINDS:
-            return "int"
+        return "int" if kind in KINDS else None
+
+    def given(self, kind):
+        m = self.model
+        if number := self.number(kind):
+            return number
         if kind in VECTORS:
             return "ArrayLike"
         if kind in m.ids:
@@ -73,12 +78,8 @@ class StubWriter(PythonWriter):
 
     def taken(self, kind):
         m = self.model
-        if kind in ("float", "double"):
-            return "float"
-        if kind == "bool":
-            return "bool"
-        if kind in KINDS:
-            return "int"
+        if number := self.number(kind):
+            return number
         if kind in VECTORS:
             return f"NDArray[np.float{64 if kind == 'DVec3' else 32}]"
         if kind in ("char*", "string_view") or kind.startswith("char["):

@@ -12,11 +12,12 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/gyre
   FILES_MATCHING PATTERN "*.h")
 
 if(TARGET gyre_c)
-  install(TARGETS gyre_c EXPORT gyreTargets
+  install(TARGETS gyre_c gyre_c_formats EXPORT gyreTargets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(FILES ${PROJECT_BINARY_DIR}/capi/include/gyre/c/gyre.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gyre/c)
+  install(FILES ${PROJECT_BINARY_DIR}/capi/include/gyre/c/gyre.h ${PROJECT_BINARY_DIR}/capi/include/gyre/c/load.h
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gyre/c)
 endif()
 if(TARGET gyre_c AND GYRE_BUILD_PYTHON)
   # The package finds the library, the gyre program and the scenes of the same prefix.
@@ -59,7 +60,9 @@ if(TARGET gyre_c)
     set(gyre_c_name gyre_c)
   endif()
   configure_file(${PROJECT_SOURCE_DIR}/cmake/gyre-c.pc.in ${PROJECT_BINARY_DIR}/package/gyre-c.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/package/gyre-c.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/gyre-formats.pc.in ${PROJECT_BINARY_DIR}/package/gyre-formats.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/package/gyre-c.pc ${PROJECT_BINARY_DIR}/package/gyre-formats.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endif()
 
 if(TARGET gyre_mpi)

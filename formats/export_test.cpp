@@ -327,5 +327,33 @@ TEST(ExportVtk, FilesHoldTheStateOfEveryKind) {
       << list;
 }
 
+TEST(ExportVtk, SolidsMadeFromBoxesHaveCells) {
+  SceneResult<Scene> scene = read_scene(R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0]}, "soft_bodies": [
+    {"name": "jelly", "box": {"half_extents": [1, 0.5, 0.5], "cells": [2, 1, 1]}, "young_modulus": 1e5}]})");
+  ASSERT_TRUE(scene) << scene.error().text();
+  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), "test");
+  ASSERT_TRUE(runner) << runner.error().text();
+  VtkSeries series;
+  const std::vector<VtkFile> files = series.add_state(*runner);
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_EQ(files[0].name, "jelly_0_000000.vtu");
+  const auto points = vtk_array<double>(files[0].bytes, "Points");
+  const auto corners = vtk_array<std::int64_t>(files[0].bytes, "connectivity");
+  ASSERT_EQ(corners.size() % 4, 0u);
+  EXPECT_EQ(vtk_array<std::uint8_t>(files[0].bytes, "types").size(), corners.size() / 4);
+  const auto point = [&](std::int64_t i) {
+    return DVec3{points[std::size_t(3 * i)], points[std::size_t(3 * i + 1)], points[std::size_t(3 * i + 2)]};
+  };
+  double volume = 0.0;
+  for (std::size_t i = 0; i < corners.size(); i += 4) {
+    const DVec3 o = point(corners[i]);
+    const double six =
+        dot(point(corners[i + 1]) - o, cross(point(corners[i + 2]) - o, point(corners[i + 3]) - o));
+    EXPECT_GT(six, 0.0) << i;
+    volume += six / 6.0;
+  }
+  EXPECT_NEAR(volume, 2.0, 1.0e-6);
+}
+
 }  // namespace
 }  // namespace gyre::export_test

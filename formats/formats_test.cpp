@@ -260,6 +260,40 @@ TEST(Urdf, AMimicJointTurnsInItsRatio) {
   EXPECT_NEAR(runner.world().angular_velocity(follower).y, -2 * leading, 1e-3f);
 }
 
+// Slides and hinges on bodies that move, with an offset; and a tendon that keeps the sum of two hinges.
+TEST(Couplings, OfRobotsHoldBetweenMovingBodies) {
+  const char* const link = R"(<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)";
+  const std::string urdf = std::string(R"(<robot name="r"><link name="a"/><link name="hand">)") + link +
+                           R"(</link><link name="left">)" + link + R"(</link><link name="right">)" + link +
+                           R"(</link><joint name="wrist" type="continuous"><parent link="a"/><child link="hand"/></joint>
+    <joint name="left" type="prismatic"><parent link="hand"/><child link="left"/><axis xyz="0 1 0"/><limit lower="-1" upper="1"/></joint>
+    <joint name="right" type="prismatic"><parent link="hand"/><child link="right"/><axis xyz="0 -1 0"/><limit lower="-1" upper="1"/>
+      <mimic joint="left" multiplier="0.5" offset="0.1"/></joint></robot>)";
+  const SceneResult<Scene> scene = import_scene(urdf, FileFormat::urdf, "a.urdf");
+  ASSERT_TRUE(scene) << scene.error().text();
+  ASSERT_EQ(scene->couplings.size(), 1u);
+  EXPECT_EQ(scene->couplings[0].terms[1].coefficient, -0.5f);
+  EXPECT_EQ(scene->couplings[0].offset, 0.1f);
+  SceneRunner runner = run_scene(*scene, 0.005);
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(runner.step());
+  const auto place = [&](std::size_t joint) {
+    return double(runner.world().joint_axis_state(runner.joints()[joint], JointAxis::linear_x).position);
+  };
+  EXPECT_NEAR(place(2), 0.5 * place(1) + 0.1, 1e-3);
+  const SceneResult<Scene> model = import_scene(
+      R"(<mujoco><worldbody><body><joint name="a" axis="0 1 0"/><geom size="0.1"/><body pos="0 0 1"><joint name="b" axis="0 1 0"/>
+        <geom size="0.1" pos="0 0 0.5"/></body></body></worldbody>
+        <tendon><fixed name="sum"><joint joint="a" coef="1"/><joint joint="b" coef="2"/></fixed></tendon>
+        <equality><tendon tendon1="sum"/><joint joint1="b" joint2="a" polycoef="0.2 -0.5 0 0 0"/></equality></mujoco>)",
+      FileFormat::mjcf, "a.xml");
+  ASSERT_TRUE(model) << model.error().text();
+  ASSERT_EQ(model->couplings.size(), 2u);
+  EXPECT_EQ(model->couplings[0].terms[1].coefficient, 2.0f);
+  EXPECT_EQ(model->couplings[0].offset, 0.0f);
+  EXPECT_EQ(model->couplings[1].terms[1].coefficient, 0.5f);
+  EXPECT_EQ(model->couplings[1].offset, 0.2f);
+}
+
 TEST(Urdf, OptionsFreeTheBaseAndKeepFixedJoints) {
   ImportOptions options;
   options.free_base = true;
@@ -393,6 +427,50 @@ TEST(Mjcf, AngleUnitsOrientationsAndContactBitsAreRead) {
   EXPECT_FALSE(collide(world.filter, b.filter));
   EXPECT_FALSE(collide(a.filter, b.filter));
   EXPECT_EQ(scene->notes[0], "a.xml: not simulated: sensor <gyro> (2)");
+}
+
+// An arm of 1 kg at the end of 0.3 m, which is level, and a wheel that turns about the same axis.
+std::string coupled_by(const std::string& more) {
+  return R"(<mujoco><compiler angle="radian"/><worldbody>
+    <body name="arm" pos="0 0 1"><joint name="p" axis="0 1 0"/><geom type="sphere" size="0.05" pos="0.3 0 0" mass="1"/></body>
+    <body name="wheel" pos="2 0 1"><joint name="q" axis="0 1 0"/><geom type="sphere" size="0.1" mass="1"/></body></worldbody>)" +
+         more + "</mujoco>";
+}
+
+TEST(Mjcf, AFixedTendonThatAnEqualityHoldsCouplesTwoHinges) {
+  const std::string tendon =
+      "<tendon><fixed name='t'><joint joint='p' coef='1'/><joint joint='q' coef='-0.5'/></fixed></tendon>";
+  const SceneResult<Scene> scene = import_scene(
+      coupled_by(tendon + "<equality><tendon tendon1='t'/></equality>"), FileFormat::mjcf, "a.xml");
+  ASSERT_TRUE(scene) << scene.error().text();
+  EXPECT_TRUE(scene->notes.empty()) << scene->notes[0];
+  SceneRunner runner = run_scene(*scene, 0.002);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(runner.step());
+  const double arm = runner.world().angular_velocity(body_in(runner, "arm")).z;
+  EXPECT_GT(std::abs(arm), 0.5);  // it falls
+  EXPECT_NEAR(runner.world().angular_velocity(body_in(runner, "wheel")).z, 2 * arm, 1e-3);
+}
+
+TEST(Mjcf, TendonsThatExertNothingAreNoNoteAndOthersAreCounted) {
+  const SceneResult<Scene> idle = import_scene(
+      coupled_by(
+          "<tendon><fixed name='t'><joint joint='p' coef='1'/><joint joint='q' coef='1'/></fixed></tendon>"),
+      FileFormat::mjcf, "a.xml");
+  ASSERT_TRUE(idle) << idle.error().text();
+  EXPECT_TRUE(idle->notes.empty());
+  const SceneResult<Scene> others = import_scene(
+      coupled_by("<tendon><fixed name='t' stiffness='3' range='0 1'><joint joint='p' coef='1'/></fixed>"
+                 "<spatial/></tendon><equality><tendon tendon1='t'/></equality>"),
+      FileFormat::mjcf, "a.xml");
+  ASSERT_TRUE(others) << others.error().text();
+  EXPECT_EQ(others->notes[0],
+            "a.xml: not simulated: equality <tendon> (1), limits of a fixed tendon (1), stiffness of a fixed "
+            "tendon (1), tendon <spatial> (1)");
+  const SceneResult<Scene> wrong =
+      import_scene(coupled_by("<tendon><fixed name='t'><joint joint='r' coef='1'/></fixed></tendon>"),
+                   FileFormat::mjcf, "a.xml");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().text().find("found joint \"r\""), std::string::npos) << wrong.error().text();
 }
 
 TEST(Mjcf, JointsWithoutACounterpartGetALightBodyBetween) {

@@ -8,7 +8,9 @@
 namespace gyre {
 namespace {
 
-constexpr double kLargest = 1.0e12;
+// "1e12"
+std::string power_of_ten(double value) { return "1e" + std::to_string(std::lround(std::log10(value))); }
+
 constexpr std::size_t kMaxNodes = 1'000'000;
 
 std::uint32_t u32_at(std::string_view bytes, std::size_t at) {
@@ -123,11 +125,12 @@ std::int64_t json_integer(const Json& object, const char* key, std::int64_t othe
   return value->is_number_integer() ? value->get<std::int64_t>() : -1;
 }
 
-double json_number(const Json& object, const char* key, double otherwise) {
+double json_number(const Json& object, const char* key, double otherwise, double most) {
   const Json* const value = json_member(object, key);
   if (value == nullptr) return otherwise;
-  if (!value->is_number() || !(absolute(value->get<double>()) <= kLargest))
-    throw SceneError{"", 0, 0, std::string("/") + key, "expected a finite number of at most 1e12"};
+  if (!value->is_number() || !(absolute(value->get<double>()) <= most))
+    throw SceneError{"", 0, 0, std::string("/") + key,
+                     "expected a finite number of at most " + power_of_ten(most)};
   return value->get<double>();
 }
 
@@ -141,18 +144,19 @@ std::string json_text(const Json& object, const char* key, const std::string& ot
   return value == nullptr || !value->is_string() ? otherwise : value->get<std::string>();
 }
 
-std::vector<double> json_numbers(const Json& object, const char* key, std::size_t count) {
+std::vector<double> json_numbers(const Json& object, const char* key, std::size_t count, double most) {
   const Json* const value = json_member(object, key);
   if (value == nullptr) return {};
   std::vector<double> out;
   if (value->is_array() && value->size() == count) {
     for (const Json& part : *value) {
-      if (part.is_number() && absolute(part.get<double>()) <= kLargest) out.push_back(part.get<double>());
+      if (part.is_number() && absolute(part.get<double>()) <= most) out.push_back(part.get<double>());
     }
   }
   if (out.size() != count)
-    throw SceneError{"", 0, 0, std::string("/") + key,
-                     "expected " + std::to_string(count) + " finite numbers of at most 1e12"};
+    throw SceneError{
+        "", 0, 0, std::string("/") + key,
+        "expected " + std::to_string(count) + " finite numbers of at most " + power_of_ten(most)};
   return out;
 }
 

@@ -63,10 +63,15 @@ class GltfDocument {
 
 // Members of objects that may be absent.
 std::int64_t json_integer(const Json& object, const char* key, std::int64_t otherwise);
-double json_number(const Json& object, const char* key, double otherwise);
+// Finite numbers, in size at most `most`.
+constexpr double kLargestGltfNumber = 1.0e12;
+constexpr double kLargestGltfMass =
+    1.0e37;  // kg; also of moments of inertia, stiffness, damping and forces, which scale with masses
+double json_number(const Json& object, const char* key, double otherwise, double most = kLargestGltfNumber);
 bool json_flag(const Json& object, const char* key, bool otherwise);
 std::string json_text(const Json& object, const char* key, const std::string& otherwise);
-std::vector<double> json_numbers(const Json& object, const char* key, std::size_t count);
+std::vector<double> json_numbers(const Json& object, const char* key, std::size_t count,
+                                 double most = kLargestGltfNumber);
 const Json* json_member(const Json& object, const char* key);
 
 }  // namespace gyre

@@ -153,8 +153,8 @@ std::optional<SceneColor> GltfReader::color_below(int node) const {
 }
 
 void GltfReader::set_motion(SceneBody& body, const Json& motion) {
-  const auto vector = [&](const char* key) {
-    const auto v = json_numbers(motion, key, 3);
+  const auto vector = [&](const char* key, double most = kLargestGltfNumber) {
+    const auto v = json_numbers(motion, key, 3, most);
     return v.empty() ? Vec3{} : Vec3{float(v[0]), float(v[1]), float(v[2])};
   };
   body.def.type = json_flag(motion, "isKinematic", false) ? BodyType::kinematic : BodyType::dynamic;
@@ -163,13 +163,13 @@ void GltfReader::set_motion(SceneBody& body, const Json& motion) {
   body.def.gravity_scale = float(json_number(motion, "gravityFactor", 1));
   if (body.def.type != BodyType::dynamic) return;
   if (json_member(motion, "centerOfMass") != nullptr) body.def.center_of_mass = vector("centerOfMass");
-  const double mass = json_number(motion, "mass", -1);
+  const double mass = json_number(motion, "mass", -1, kLargestGltfMass);
   if (mass == 0) {
     body.def.type = BodyType::kinematic;  // an infinite mass
     return;
   }
   if (mass > 0) body.def.mass = float(mass);
-  const Vec3 moments = vector("inertiaDiagonal");
+  const Vec3 moments = vector("inertiaDiagonal", kLargestGltfMass);
   if (moments == Vec3{}) return;
   if (smallest(moments) <= 0.0f || mass < 0)
     return import_.findings.left_out("inertiaDiagonal that is infinite or without a mass");
@@ -354,9 +354,10 @@ void GltfReader::add_drives(const Json& joint, std::vector<JointAxisDef>& axes, 
     if (axis < 0 || axis > 2 || (type != "linear" && type != "angular"))
       document_.fail(pointer, "has a drive of no type or axis of glTF");
     JointAxisDef& out = axes[std::size_t(axis) + (type == "angular" ? 3 : 0)];
-    const double stiffness = json_number(drive, "stiffness", 0), damping = json_number(drive, "damping", 0);
+    const double stiffness = json_number(drive, "stiffness", 0, kLargestGltfMass),
+                 damping = json_number(drive, "damping", 0, kLargestGltfMass);
     const double velocity = json_number(drive, "velocityTarget", 0),
-                 force = json_number(drive, "maxForce", kUnlimitedForce);
+                 force = json_number(drive, "maxForce", kUnlimitedForce, kLargestGltfMass);
     if (stiffness < 0 || damping < 0 || force < 0)
       document_.fail(pointer, "has a drive with a number below 0");
     const bool by_force = json_text(drive, "mode", "force") == "force";
@@ -416,9 +417,13 @@ bool GltfReader::take_exact_joint(int node, int other, const Json& joint, const 
     return false;
   const auto anchor = json_numbers(*exact, "anchor", 3);
   if (anchor.size() != 3) return false;
+  // The file has places with respect to the body, in floats: those of an anchor far from its body are as coarse as it is far.
   const auto apart = [&](int at, const std::vector<double>& point) {
-    const DVec3 place = document_.nodes()[std::size_t(at)].translation;
-    return length(place - DVec3{point[0], point[1], point[2]}) > 1.0e-5 * (1.0 + length(place));
+    const GltfNode& frame = document_.nodes()[std::size_t(at)];
+    const DVec3 place = frame.translation;
+    const DVec3 above = frame.parent < 0 ? DVec3{} : document_.nodes()[std::size_t(frame.parent)].translation;
+    return length(place - DVec3{point[0], point[1], point[2]}) >
+           1.0e-5 * (1.0 + length(place) + length(place - above));
   };
   const Json* const anchor_b = json_member(*exact, "anchor_b");
   const bool is_distance = json_text(*exact, "type", "") == "distance";

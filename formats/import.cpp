@@ -1,6 +1,7 @@
 // Opens files of every format and checks the scenes made from them. See import.h.
 #include "formats/import.h"
 
+#include "formats/xml_collada.h"
 #include "formats/import_parts.h"
 #include "scene/decomposition_folder.h"
 #include "scene/scene_reader.h"
@@ -56,7 +57,18 @@ Scene checked(Import& import) {
   return *std::move(scene);
 }
 
+SceneResult<MeshData> collada_mesh([[maybe_unused]] const Import& import,
+                                   [[maybe_unused]] std::string_view bytes, const std::string& file) {
+#ifdef GYRE_WITH_XML
+  return read_collada(import, bytes, file);
+#else
+  return SceneError{file, 0, 0, "", "COLLADA is not read by a gyre that was built without tinyxml2"};
+#endif
+}
+
 }  // namespace
+
+bool is_collada(std::string_view path) { return ends_with(path, ".dae"); }
 
 FileFormat format_of(std::string_view path) {
   if (ends_with(path, ".urdf")) return FileFormat::urdf;
@@ -93,6 +105,7 @@ std::string Import::unique(std::set<std::string>& names, std::string name, const
 }
 
 std::string Import::read_file(const std::string& uri, const std::string& base, int line) {
+  if (const auto given = options.files.find(uri); given != options.files.end()) return given->second;
   if (!options.open_files) fail("names the file \"" + uri + "\", but no files can be opened here", line);
   if (uri.empty() || uri.size() > 1024)
     fail("found a file name that is empty or longer than 1024 bytes", line);
@@ -164,7 +177,9 @@ int Import::mesh_index(const std::string& uri, const std::string& base, Vec3 sca
                           " " + std::to_string(scale.z);
   const auto found = meshes.find(key);
   if (found != meshes.end()) return found->second;
-  SceneResult<MeshData> mesh = parse_mesh(read_file(uri, base, line), uri, options.limits);
+  const std::string file_bytes = read_file(uri, base, line);
+  SceneResult<MeshData> mesh =
+      is_collada(uri) ? collada_mesh(*this, file_bytes, uri) : parse_mesh(file_bytes, uri, options.limits);
   if (!mesh) throw mesh.error();
   for (Vec3& vertex : mesh->vertices) {
     vertex = multiply_each(scale, vertex);

@@ -9,6 +9,7 @@
 #include "scene/scene_error.h"
 #include "scene/scene_limits.h"
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,7 +27,9 @@ struct ImportOptions {
       false;  // concave meshes of moving bodies become several hulls; otherwise each becomes one hull
   // Folders that may be read beside the folder of the file. NAME=FOLDER is the folder of the package NAME.
   std::vector<std::string> packages;
-  bool open_files = true;  // false: only the bytes themselves are read
+  bool open_files = true;  // false: only the bytes themselves are read, and those of `files`
+  // Bytes of files by the name that the imported one gives them, used before anything is opened: for where there is no disk.
+  std::map<std::string, std::string, std::less<>> files{};
   SceneLimits limits;
 };
 

@@ -46,6 +46,8 @@ class MjcfReader {
   void connect(int parent, int child, const std::vector<MjcfJoint>& joints);
   void read_equalities();
   void couple_joints(const XmlElement& equality);
+  void couple_tendons(const XmlElement& equality);
+  void read_tendons();
   void read_excludes();
   void set_filters();
   int body_named(const XmlElement& element, const char* attribute, bool required) const;
@@ -55,7 +57,21 @@ class MjcfReader {
     int parent = -1, child = -1;
     ModelAxis axis;
     bool alone = false;  // the only joint of its body
+    int made = -1;       // the hinge or slider of the scene, if it is alone
   };
+  static SceneCouplingTerm term_of(const JointPlace& place, double coefficient) {
+    return {place.made, place.axis.slide ? JointAxis::linear_x : JointAxis::angular_x, float(coefficient)};
+  }
+  static std::vector<double> polynomial_of(const XmlElement& equality) {
+    std::vector<double> poly = equality.numbers("polycoef", 1, 5);
+    if (poly.empty()) poly = {0, 1};
+    poly.resize(5);
+    return poly;
+  }
+  static bool is_linear(const std::vector<double>& poly) { return poly[2] == 0 && poly[3] == 0 && poly[4] == 0; }
+  // A length of a fixed tendon: the sum of joint coordinates, each times a coefficient.
+  using TendonTerms = std::map<std::string, double>;
+  void add_terms(const XmlElement& equality, const char* attribute, double factor, TendonTerms& terms) const;
 
   Import& import_;
   const XmlElement& root_;
@@ -67,6 +83,7 @@ class MjcfReader {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> contact_bits_;  // of each link
   std::map<std::string, int> link_names_;
   std::map<std::string, JointPlace> joint_places_;
+  std::map<std::string, TendonTerms> tendons_;
   std::vector<int> body_of_;
 };
 
@@ -314,11 +331,13 @@ void MjcfReader::connect(int parent, int child, const std::vector<MjcfJoint>& jo
     axes.push_back(joint.axis);
     has_ball = has_ball || joint.ball;
     if (!joint.name.empty())
-      joint_places_[joint.name] = {parent, child, joint.axis, joints.size() == 1 && !joint.ball};
+      joint_places_[joint.name] = {parent, child, joint.axis, joints.size() == 1 && !joint.ball, -1};
   }
   std::optional<JointDef> whole;
   if (!has_ball) whole = joint_of_axes(axes);
   if (has_ball && joints.size() == 1) whole = ball_of(joints[0]);
+  if (whole && joints.size() == 1 && !joints[0].name.empty())
+    joint_places_[joints[0].name].made = int(import_.scene.joints.size());
   if (whole) return add(joints[0].name, parent, child, *whole);
   int from = parent;
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -358,30 +377,80 @@ int MjcfReader::body_named(const XmlElement& element, const char* attribute, boo
   return body_of_[std::size_t(found->second)];
 }
 
-// A gear measures rotations against the world, so that a coupling holds if both hinges have a static parent.
+// Positions are measured from the pose of the file, as its polynomials are.
 void MjcfReader::couple_joints(const XmlElement& equality) {
   const auto first = joint_places_.find(equality.need_text("joint1"));
   if (first == joint_places_.end())
     equality.fail("found joint1 \"" + equality.text("joint1") + "\", expected the name of a joint");
   const auto second = joint_places_.find(equality.text("joint2"));
-  std::vector<double> poly = equality.numbers("polycoef", 1, 5);
-  if (poly.empty()) poly = {0, 1};
-  poly.resize(5);
-  const auto is_still = [&](const JointPlace& place) {
-    return place.alone && import_.scene.bodies[std::size_t(place.parent)].def.type == BodyType::fixed;
-  };
-  const bool is_linear = poly[0] == 0 && poly[1] != 0 && poly[2] == 0 && poly[3] == 0 && poly[4] == 0;
-  if (second == joint_places_.end() || !is_linear || !is_still(first->second) || !is_still(second->second) ||
-      second->second.axis.slide || first->second.axis.slide) {
+  const std::vector<double> poly = polynomial_of(equality);
+  if (second == joint_places_.end() || !is_linear(poly) || poly[1] == 0 || !first->second.alone || !second->second.alone) {
     import_.findings.left_out("equality <joint>");
     return;
   }
-  GearDef gear;
-  gear.anchor = first->second.axis.anchor;
-  gear.axis = second->second.axis.axis;
-  gear.axis_b = first->second.axis.axis;
-  gear.ratio = float(-1.0 / poly[1]);
-  add_joint(import_, equality.text("name", "coupling"), second->second.child, first->second.child, gear);
+  SceneCoupling coupling;
+  coupling.terms = {term_of(first->second, 1), term_of(second->second, -poly[1])};
+  coupling.offset = float(poly[0]);
+  import_.scene.couplings.push_back(std::move(coupling));
+}
+
+// Fixed tendons by name. Without a spring, limit or friction of its own a tendon exerts nothing until an equality holds it.
+void MjcfReader::read_tendons() {
+  for (const XmlElement& section : root_.children("tendon")) {
+    for (const XmlElement& tendon : section.children()) {
+      if (tendon.name() != "fixed") {
+        import_.findings.left_out("tendon <" + tendon.name() + ">");
+        continue;
+      }
+      TendonTerms terms;
+      for (const XmlElement& term : tendon.children("joint")) {
+        const std::string joint = term.need_text("joint");
+        if (joint_places_.count(joint) == 0)
+          term.fail("found joint \"" + joint + "\", expected the name of a joint");
+        terms[joint] += term.need_number("coef");
+      }
+      if (tendon.has("name")) tendons_[tendon.text("name")] = std::move(terms);
+      for (const char* force : {"stiffness", "damping", "frictionloss"}) {
+        if (tendon.has(force) && !(tendon.number(force, 0) == 0))
+          import_.findings.left_out(std::string(force) + " of a fixed tendon");
+      }
+      const bool is_limited = tendon.text("limited", "auto") == "auto"
+                                  ? tendon.has("range") && compiler_.auto_limits
+                                  : tendon.text("limited") == "true";
+      if (is_limited) import_.findings.left_out("limits of a fixed tendon");
+    }
+  }
+}
+
+void MjcfReader::add_terms(const XmlElement& equality, const char* attribute, double factor,
+                           TendonTerms& terms) const {
+  const auto tendon = tendons_.find(equality.text(attribute));
+  if (tendon == tendons_.end()) {
+    equality.fail("found " + std::string(attribute) + " \"" + equality.text(attribute) +
+                  "\", expected the name of a fixed tendon");
+  }
+  for (const auto& [joint, coefficient] : tendon->second) terms[joint] += factor * coefficient;
+}
+
+// The length of one tendon stays, or is a multiple of another's.
+void MjcfReader::couple_tendons(const XmlElement& equality) {
+  const std::vector<double> poly = polynomial_of(equality);
+  TendonTerms terms;
+  add_terms(equality, "tendon1", 1, terms);
+  if (equality.has("tendon2")) add_terms(equality, "tendon2", -poly[1], terms);
+  SceneCoupling coupling;
+  bool alone = true;
+  for (const auto& [joint, coefficient] : terms) {
+    if (coefficient == 0) continue;
+    const JointPlace& place = joint_places_.at(joint);
+    alone = alone && place.alone;
+    coupling.terms.push_back(term_of(place, coefficient));
+  }
+  const std::size_t count = coupling.terms.size();
+  if (!alone || count < 2 || count > std::size_t(kMaxCouplingTerms) || !is_linear(poly))
+    return import_.findings.left_out("equality <tendon>");
+  coupling.offset = float(poly[0]);
+  import_.scene.couplings.push_back(std::move(coupling));
 }
 
 void MjcfReader::read_equalities() {
@@ -391,6 +460,10 @@ void MjcfReader::read_equalities() {
       if (!equality.flag("active", true)) continue;
       if (kind == "joint") {
         couple_joints(equality);
+        continue;
+      }
+      if (kind == "tendon" && tendons_.count(equality.text("tendon1")) != 0) {
+        couple_tendons(equality);
         continue;
       }
       if ((kind != "connect" && kind != "weld") || !equality.has("body1")) {
@@ -461,7 +534,7 @@ void MjcfReader::set_filters() {
 
 void MjcfReader::count_unknown() const {
   constexpr const char* kKnown[] = {"compiler", "option",    "size",     "visual",   "statistic", "default",
-                                    "asset",    "worldbody", "actuator", "equality", "contact"};
+                                    "asset",    "worldbody", "actuator", "equality", "contact",   "tendon"};
   for (const XmlElement& section : root_.children()) {
     const std::string name = section.name();
     if (std::any_of(std::begin(kKnown), std::end(kKnown), [&](const char* known) { return name == known; }))
@@ -481,6 +554,7 @@ void MjcfReader::read() {
   set_filters();
   body_of_ = build_bodies(import_, tree_);
   make_joints();
+  read_tendons();
   read_equalities();
   read_excludes();
   count_unknown();

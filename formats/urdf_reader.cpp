@@ -1,5 +1,6 @@
 // URDF robots to scenes. The format: Open Robotics, "XML Robot Description Format", http://wiki.ros.org/urdf/XML. z is up there; the
 // robot's frame is turned so that y is up. See import.h.
+#include "formats/xml_collada.h"
 #include "formats/model_tree.h"
 #include "formats/xml_robots.h"
 
@@ -17,6 +18,8 @@ struct UrdfJoint {
   int parent = -1, child = -1;
   Transform origin{};  // parent_from_child
   Vec3 axis{1, 0, 0};  // in the frame of the child
+  int made = -1;       // the hinge or slider of the scene
+  JointAxis axis_made = JointAxis::angular_x;
 };
 
 struct UrdfLink {
@@ -42,7 +45,7 @@ class UrdfReader {
   MassProperties inertial_of(const XmlElement& inertial) const;
   std::optional<SceneColor> color_in(const XmlElement& link) const;
   std::optional<SceneShape> shape_of(const XmlElement& collision);
-  void add_urdf_joint(const UrdfJoint& joint);
+  void add_urdf_joint(UrdfJoint& joint);
   void add_mimics();
   ModelAxis axis_of(const UrdfJoint& joint);
   void count_unknown() const;
@@ -195,8 +198,8 @@ std::optional<SceneShape> UrdfReader::shape_of(const XmlElement& collision) {
     shape.local.orientation = shape.local.orientation * z_from_y;
   } else if (kind.name() == "mesh") {
     const std::string file = kind.need_text("filename");
-    if (mesh_format_of(file) == MeshFormat::none) {
-      import_.findings.left_out("collision mesh that is not .stl, .obj or .ply");
+    if (mesh_format_of(file) == MeshFormat::none && !is_collada(file)) {
+      import_.findings.left_out("collision mesh that is not .stl, .obj, .ply or .dae");
       return std::nullopt;
     }
     const Vec3 scale = kind.vec3("scale", {1, 1, 1});
@@ -265,7 +268,7 @@ JointDef planar_joint(DVec3 anchor, Vec3 normal) {
   return def;
 }
 
-void UrdfReader::add_urdf_joint(const UrdfJoint& joint) {
+void UrdfReader::add_urdf_joint(UrdfJoint& joint) {
   const int a = body_of_[std::size_t(links_[std::size_t(joint.parent)].place)];
   const int b = body_of_[std::size_t(links_[std::size_t(joint.child)].place)];
   if (joint.type == "floating") return;
@@ -288,10 +291,12 @@ void UrdfReader::add_urdf_joint(const UrdfJoint& joint) {
   if (joint.type != "revolute" && joint.type != "continuous" && joint.type != "prismatic")
     joint.element.fail("found the type \"" + joint.type +
                        "\", expected revolute, continuous, prismatic, fixed, floating or planar");
+  joint.made = int(import_.scene.joints.size());
+  joint.axis_made = joint.type == "prismatic" ? JointAxis::linear_x : JointAxis::angular_x;
   add_joint(import_, joint.name, a, b, *joint_of_axes({axis_of(joint)}));
 }
 
-// A gear measures rotations against the world, so that a coupling holds if both joints have a parent that does not move.
+// The joints of the scene have the names of those of the file, made unique; both are counted from the same places.
 void UrdfReader::add_mimics() {
   for (const UrdfJoint& joint : joints_) {
     const XmlElement mimic = joint.element.child("mimic");
@@ -301,34 +306,14 @@ void UrdfReader::add_mimics() {
       mimic.fail("found \"" + mimic.text("joint") + "\", expected the name of a joint");
     const UrdfJoint& leader = joints_[std::size_t(found->second)];
     const double ratio = mimic.number("multiplier", 1);
-    const auto is_hinge = [](const UrdfJoint& j) { return j.type == "revolute" || j.type == "continuous"; };
-    const auto body = [&](int link) { return body_of_[std::size_t(links_[std::size_t(link)].place)]; };
-    const auto is_still = [&](int link) {
-      return import_.scene.bodies[std::size_t(body(link))].def.type == BodyType::fixed;
-    };
-    if (&leader == &joint || ratio == 0 || mimic.number("offset", 0) != 0 || !is_still(joint.parent) ||
-        !is_still(leader.parent) || !is_hinge(leader) || (!is_hinge(joint) && joint.type != "prismatic")) {
+    if (&leader == &joint || ratio == 0 || leader.made < 0 || joint.made < 0) {
       import_.findings.left_out("<mimic>");
       continue;
     }
-    const ModelAxis first = axis_of(leader), second = axis_of(joint);
-    if (is_hinge(joint)) {
-      GearDef gear;
-      gear.anchor = first.anchor;
-      gear.axis = first.axis;
-      gear.axis_b = second.axis;
-      gear.ratio = float(-1.0 / ratio);  // the leader turns -gear.ratio times the follower
-      add_joint(import_, joint.name + "_mimic", body(leader.child), body(joint.child), gear);
-    } else if (absolute(dot(first.axis, second.axis)) < 1.0e-3f) {
-      RackAndPinionDef rack;
-      rack.anchor = first.anchor;
-      rack.axis = first.axis;
-      rack.axis_b = second.axis;
-      rack.ratio = float(ratio);
-      add_joint(import_, joint.name + "_mimic", body(leader.child), body(joint.child), rack);
-    } else {
-      import_.findings.left_out("<mimic>");
-    }
+    SceneCoupling coupling;
+    coupling.terms = {{joint.made, joint.axis_made, 1.0f}, {leader.made, leader.axis_made, float(-ratio)}};
+    coupling.offset = float(mimic.number("offset", 0));
+    import_.scene.couplings.push_back(std::move(coupling));
   }
 }
 
@@ -370,7 +355,7 @@ void UrdfReader::read() {
   read_joints();
   order_from(find_root());
   body_of_ = build_bodies(import_, tree_);
-  for (const UrdfJoint& joint : joints_) add_urdf_joint(joint);
+  for (UrdfJoint& joint : joints_) add_urdf_joint(joint);
   add_mimics();
   count_unknown();
 }

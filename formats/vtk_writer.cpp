@@ -135,13 +135,11 @@ const char* soft_file(const World& world, SoftId soft, std::string& bytes) {
   };
   const SoftKind kind = world.soft_info(soft).kind;
   if (kind == SoftKind::solid) {
-    const SolidDef def = world.solid_def(soft);
-    const auto within = [&](std::uint32_t corner) { return corner < vertices.size(); };
-    if (!def.tetrahedra.empty() && std::all_of(def.tetrahedra.begin(), def.tetrahedra.end(), within)) {
-      add_cells(def.tetrahedra, 4);
-      bytes = tetrahedra(piece);
-      return ".vtu";
-    }
+    std::vector<std::uint32_t> corners(world.solid_tetrahedra(soft, {}));
+    (void)world.solid_tetrahedra(soft, corners);
+    add_cells(corners, 4);
+    bytes = tetrahedra(piece);
+    return ".vtu";
   }
   if (kind == SoftKind::rope) {
     for (std::size_t i = 0; i < vertices.size(); ++i) piece.connectivity.push_back(std::int64_t(i));

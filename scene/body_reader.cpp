@@ -69,6 +69,7 @@ void read_motion(Members& members, BodyDef& def) {
   members.read("continuous", def.continuous);
   members.read("can_sleep", def.can_sleep);
   members.read("sleep_speed", def.sleep_speed, Range::between(0, kMaxSurface));
+  members.read("enabled", def.enabled);
   if (const auto locked = members.find("locked")) read_locked(*locked, def.locked);
   members.read("mass", def.mass, Range::above(0));
   if (const auto center = members.find_value("center_of_mass")) def.center_of_mass = center->vec3();

@@ -5,12 +5,15 @@
 namespace gyre {
 namespace {
 
-enum class FieldType { wind, radial, vortex, drag, buoyancy, explosion };
+// In the order of FieldKind.
+enum class FieldType { wind, radial, vortex, drag, buoyancy, magnetic, magnetic_dipole, stokes, grid, explosion };
 
 constexpr unsigned bit(FieldType type) { return 1u << unsigned(type); }
 constexpr unsigned kMedia =
     bit(FieldType::wind) | bit(FieldType::vortex) | bit(FieldType::drag) | bit(FieldType::buoyancy);
-constexpr unsigned kCentered = bit(FieldType::radial) | bit(FieldType::vortex) | bit(FieldType::explosion);
+constexpr unsigned kMagnetic = bit(FieldType::magnetic) | bit(FieldType::magnetic_dipole);
+constexpr unsigned kPointed = bit(FieldType::radial) | bit(FieldType::vortex) | bit(FieldType::magnetic_dipole);
+constexpr unsigned kCentered = kPointed | bit(FieldType::explosion);
 
 // Which types have a member.
 struct MemberTypes {
@@ -20,18 +23,21 @@ struct MemberTypes {
 };
 constexpr MemberTypes kMembers[] = {
     {"bounds", ~bit(FieldType::explosion), "an explosion has a radius"},
-    {"velocity", kMedia, "only wind, vortex, drag and buoyancy are media"},
+    {"velocity", kMedia | bit(FieldType::stokes), "only wind, vortex, drag, buoyancy and stokes are media"},
     {"density", kMedia, "only wind, vortex, drag and buoyancy are media"},
     {"drag_coefficient", kMedia, "only wind, vortex, drag and buoyancy are media"},
     {"linear_drag", kMedia, "only wind, vortex, drag and buoyancy are media"},
     {"turbulence", bit(FieldType::wind), "only wind has gusts"},
     {"turbulence_length", bit(FieldType::wind), "only wind has gusts"},
-    {"center", kCentered, "only radial, vortex and explosion have a center"},
-    {"strength", bit(FieldType::radial) | bit(FieldType::vortex), "only radial and vortex have a strength"},
-    {"radius", kCentered, "only radial, vortex and explosion have a radius"},
+    {"center", kCentered, "only radial, vortex, magnetic_dipole and explosion have a center"},
+    {"strength", kPointed | kMagnetic | bit(FieldType::stokes),
+     "only radial, vortex, magnetic, magnetic_dipole and stokes have a strength"},
+    {"radius", kCentered, "only radial, vortex, magnetic_dipole and explosion have a radius"},
     {"falloff", bit(FieldType::radial) | bit(FieldType::explosion), "only radial and explosion fall off"},
-    {"core", bit(FieldType::radial), "only radial has a core"},
-    {"axis", bit(FieldType::vortex), "only a vortex has an axis"},
+    {"core", bit(FieldType::radial) | bit(FieldType::magnetic_dipole), "only radial and magnetic_dipole have a core"},
+    {"axis", bit(FieldType::vortex) | kMagnetic, "only vortex, magnetic and magnetic_dipole have an axis"},
+    {"points", bit(FieldType::grid), "only a grid has points"},
+    {"vectors", bit(FieldType::grid), "only a grid has vectors"},
     {"normal", bit(FieldType::buoyancy), "only buoyancy has a surface"},
     {"offset", bit(FieldType::buoyancy), "only buoyancy has a surface"},
     {"pressure", bit(FieldType::explosion), "only an explosion has this"},
@@ -59,6 +65,18 @@ void read_number(Members& members, const char* key, float& out, Range range) {
   if (const auto field = members.find_value(key)) out = field->real(range);
 }
 
+void read_grid(const Field& points, const Field& vectors, FieldDef& def) {
+  points.array("the numbers of points along x, y and z", 3);
+  std::size_t count = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    def.points[i] = int(points.element(i).integer(2, 1024));
+    count *= std::size_t(def.points[i]);
+  }
+  const std::size_t given = vectors.array("an array of vectors");
+  if (given != count) vectors.expected(std::to_string(count) + " vectors, one for each point");
+  for (std::size_t i = 0; i < count; ++i) def.vectors.push_back(vectors.element(i).vec3(Range::between(-1.0e9, 1.0e9)));
+}
+
 void read_field_members(Members& members, FieldDef& def) {
   if (const auto bounds = members.find_value("bounds")) def.bounds = read_bounds(*bounds);
   if (const auto velocity = members.find_value("velocity"))
@@ -75,6 +93,7 @@ void read_field_members(Members& members, FieldDef& def) {
   read_number(members, "core", def.core, Range::between(0, 1.0e9));
   read_direction(members, "axis", def.axis);
   read_direction(members, "normal", def.normal);
+  if (const auto points = members.find("points")) read_grid(*points, members.need("vectors"), def);
   if (const auto offset = members.find_value("offset"))
     def.offset = offset->number(Range::between(-kFarthest, kFarthest));
 }
@@ -108,6 +127,10 @@ void read_field(SceneReading& reading, const Field& field) {
                                                                  {"vortex", FieldType::vortex},
                                                                  {"drag", FieldType::drag},
                                                                  {"buoyancy", FieldType::buoyancy},
+                                                                 {"magnetic", FieldType::magnetic},
+                                                                 {"magnetic_dipole", FieldType::magnetic_dipole},
+                                                                 {"stokes", FieldType::stokes},
+                                                                 {"grid", FieldType::grid},
                                                                  {"explosion", FieldType::explosion}});
   for (const MemberTypes& member : kMembers) {
     if ((member.types & bit(type)) == 0) members.refuse(member.key, member.why);
@@ -122,6 +145,7 @@ void read_field(SceneReading& reading, const Field& field) {
   }
   FieldDef def;
   def.kind = FieldKind(type);
+  if (type == FieldType::grid) members.need("points"), members.need("bounds");
   read_field_members(members, def);
   read_layers(members, def.layers);
   members.finish();

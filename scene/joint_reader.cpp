@@ -2,6 +2,8 @@
 // says nothing and is allowed anywhere. See scene_parts.h.
 #include "scene/scene_parts.h"
 
+#include <gyre/coupling.h>
+
 #include <cmath>
 #include <type_traits>
 #include <variant>
@@ -324,6 +326,43 @@ void read_joint(SceneReading& reading, const Field& field) {
   std::visit([&](auto& def) { read_definition(reading, members, joint, def); }, joint.def);
   members.finish();
   reading.scene.joints.push_back(std::move(joint));
+}
+
+namespace {
+
+JointAxis main_axis_of(const JointDef& def) {
+  return std::holds_alternative<SliderDef>(def) ? JointAxis::linear_x : JointAxis::angular_x;
+}
+
+}  // namespace
+
+void read_coupling(SceneReading& reading, const Field& field) {
+  Members members(field, "a coupling");
+  SceneCoupling coupling;
+  const Field terms = members.need("terms");
+  const std::size_t count = terms.array("an array of terms");
+  if (count < 2 || count > std::size_t(kMaxCouplingTerms)) terms.expected("2 to 8 terms");
+  for (std::size_t i = 0; i < count; ++i) {
+    const Field element = terms.element(i);
+    Members own(element, "a term");
+    SceneCouplingTerm term;
+    term.joint = find_name(reading.joints, own.need("joint"), "a joint");
+    term.axis = main_axis_of(reading.scene.joints[std::size_t(term.joint)].def);
+    if (const auto axis = own.find("axis")) {
+      term.axis = axis->choice<JointAxis>({{"linear_x", JointAxis::linear_x},
+                                           {"linear_y", JointAxis::linear_y},
+                                           {"linear_z", JointAxis::linear_z},
+                                           {"angular_x", JointAxis::angular_x},
+                                           {"angular_y", JointAxis::angular_y},
+                                           {"angular_z", JointAxis::angular_z}});
+    }
+    own.read("coefficient", term.coefficient, Range::between(-kMaxSurface, kMaxSurface));
+    own.finish();
+    coupling.terms.push_back(term);
+  }
+  if (const auto offset = members.find_value("offset")) coupling.offset = offset->real(Range::between(-1.0e9, 1.0e9));
+  members.finish();
+  reading.scene.couplings.push_back(std::move(coupling));
 }
 
 }  // namespace gyre

@@ -4,6 +4,7 @@
 // Materials, meshes and bodies are referred to by their index in the scene.
 #pragma once
 
+#include <gyre/coupling.h>
 #include <gyre/decomposition.h>
 #include <gyre/defs.h>
 #include <gyre/fields.h>
@@ -159,6 +160,17 @@ struct SceneJoint {
   int a = -1, b = -1;  // bodies; -1 is the world
 };
 
+// An axis of a joint in a coupling.
+struct SceneCouplingTerm {
+  int joint = 0;
+  JointAxis axis = JointAxis::angular_x;
+  float coefficient = 1.0f;
+};
+struct SceneCoupling {
+  std::vector<SceneCouplingTerm> terms;
+  std::optional<float> offset;
+};
+
 // A vertex that keeps its place in the frame of a body, or in the world.
 struct SceneHold {
   int vertex = 0;
@@ -220,6 +232,8 @@ struct Scene {
   std::vector<SceneMesh> meshes;
   std::vector<SceneBody> bodies;
   std::vector<SceneJoint> joints;
+  std::vector<SceneCoupling> couplings;
+  std::vector<std::pair<int, int>> ignored_pairs;  // bodies
   std::vector<SceneRope> ropes;
   std::vector<SceneCloth> cloths;
   std::vector<SceneSoftBody> soft_bodies;

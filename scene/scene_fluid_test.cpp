@@ -3,6 +3,7 @@
 #include "scene/scene_reader.h"
 #include "scene/scene_runner.h"
 #include "scene/scene_schema.h"
+#include "scene/scene_test_kit.h"
 #include "scene/scene_writer.h"
 
 #include <gtest/gtest.h>
@@ -16,6 +17,8 @@
 namespace gyre::scene_fluid_test {
 namespace {
 
+using namespace scene_test;
+
 const std::string kStart = R"({"gyre_scene": 1, "bodies": [{"name": "hull"}], )";
 
 std::string gas_of(const std::string& entry) { return kStart + R"("gases": [)" + entry + "]}"; }
@@ -28,38 +31,9 @@ std::string liquid_with(const std::string& members) {
                    "}");
 }
 
-// The reader's refusal, or that of the world which is made of what it read.
-SceneError fluid_refusal(const std::string& text) {
-  SceneResult<Scene> scene = read_scene(text);
-  if (!scene) return scene.error();
-  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), "scene");
-  EXPECT_FALSE(runner) << text;
-  return runner ? SceneError{} : runner.error();
-}
-
-struct RefusedFluid {
-  std::string text, pointer, found, expected;
-};
-void expect_fluid_refused(const RefusedFluid& bad) {
-  const SceneError error = fluid_refusal(bad.text);
-  EXPECT_EQ(error.pointer, bad.pointer) << bad.text << "\n" << error.message;
-  for (const std::string& words : {bad.found, bad.expected})
-    EXPECT_NE(error.message.find(words), std::string::npos)
-        << bad.text << "\nsays: " << error.message << "\nlacks: " << words;
-}
-
-SceneRunner run_fluids(const std::string& text, int steps = 0) {
-  SceneResult<Scene> scene = read_scene(text);
-  EXPECT_TRUE(scene) << scene.error().text();
-  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), "scene");
-  EXPECT_TRUE(runner) << runner.error().text();
-  for (int i = 0; i < steps; ++i) EXPECT_TRUE(runner->step()) << runner->problem();
-  return *std::move(runner);
-}
-
 TEST(SceneFluid, RefusesBadGases) {
   const std::string at = "/gases/0";
-  const RefusedFluid table[] = {
+  const Refused table[] = {
       {gas_of(R"({"bounds": [[0,0,0],[1,1,1]], "cells": [1,1,1]})"), at + "/name", "found nothing",
        "\"name\""},
       {gas_of(R"({"name": "g", "cells": [1,1,1]})"), at + "/bounds", "found nothing", "\"bounds\""},
@@ -126,12 +100,12 @@ TEST(SceneFluid, RefusesBadGases) {
       {gas_with(R"("bouyancy": 1)"), at + "/bouyancy", "unknown field", "\"buoyancy\""},
       {gas_with(R"("cell_size": 1)"), at + "/cell_size", "unknown field in a gas", "cells"},
   };
-  for (const RefusedFluid& bad : table) expect_fluid_refused(bad);
+  for (const Refused& bad : table) expect_refused(bad);
 }
 
 TEST(SceneFluid, RefusesBadLiquids) {
   const std::string at = "/liquids/0";
-  const RefusedFluid table[] = {
+  const Refused table[] = {
       {liquid_of(R"({"name": "l", "bounds": [[0,0,0],[1,1,1]]})"), at + "/cell_size", "found nothing",
        "\"cell_size\""},
       {liquid_of(R"({"name": "l", "bounds": [[0,0,0],[1,1,1]], "cell_size": 0})"), at + "/cell_size",
@@ -158,7 +132,7 @@ TEST(SceneFluid, RefusesBadLiquids) {
        "an array of 1", "9 numbers"},
       {liquid_with(R"("buoyancy": 1)"), at + "/buoyancy", "unknown field in a liquid", "fill"},
   };
-  for (const RefusedFluid& bad : table) expect_fluid_refused(bad);
+  for (const Refused& bad : table) expect_refused(bad);
 }
 
 TEST(SceneFluid, NamesAreUniqueOverAllKindsOfMatter) {
@@ -334,7 +308,7 @@ TEST(SceneFluid, WritesTheLiquidsThatItRead) {
 }
 
 TEST(SceneFluid, AGasBecomesWhatItSaysInTheWorld) {
-  const SceneRunner runner = run_fluids(kAllGases);
+  const SceneRunner runner = run(kAllGases);
   ASSERT_EQ(runner.gases().size(), 3u);
   const World& world = runner.world();
   const FluidInfo info = world.fluid_info(runner.gases()[0]);
@@ -363,7 +337,7 @@ std::string taylor_green(double viscosity) {
 // u = exp(-2 nu k^2 t) sin(kx) cos(ky), the middle of a vortex is at rest, and the pressure is lowest there.
 TEST(SceneFluid, ProbesOfVorticesFollowTheExactSolution) {
   const double viscosity = 0.01, nu = viscosity / 2, k = 2 * std::numbers::pi;
-  SceneRunner runner = run_fluids(taylor_green(viscosity));
+  SceneRunner runner = run(taylor_green(viscosity));
   const SceneGas& gas = runner.scene().gases[0];
   for (int step = 0; step <= 60; ++step) {
     const double exact = std::exp(-2 * nu * k * k * runner.time());
@@ -380,9 +354,9 @@ TEST(SceneFluid, ProbesOfVorticesFollowTheExactSolution) {
 
 // Two runs of 10 steps, the second from the final scene of the first, against one of 20.
 TEST(SceneFluid, AGasGoesOnFromAFinalScene) {
-  const SceneRunner whole = run_fluids(kAllGases, 20), half = run_fluids(kAllGases, 10);
+  const SceneRunner whole = run(kAllGases, 20), half = run(kAllGases, 10);
   const std::string text = write_scene(half.final_scene());
-  const SceneRunner rest = run_fluids(text, 10);
+  const SceneRunner rest = run(text, 10);
   ASSERT_EQ(rest.gases().size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const GasFields a = *whole.world().gas_def(whole.gases()[i]).fields,
@@ -403,7 +377,7 @@ TEST(SceneFluid, AFinalSceneKeepsWhatIsLeftOfEmitters) {
   const std::string text = gas_with(
       R"("emitters": [{"position": [1, 0.5, 0.5], "start": 0.5, "end": 2}, {"position": [1, 0.5, 0.5], "end": 0.1},
                       {"position": [1, 0.5, 0.5]}])");
-  const SceneRunner runner = run_fluids(text, 15);
+  const SceneRunner runner = run(text, 15);
   const Scene left = runner.final_scene();
   const std::vector<FluidEmitter>& emitters = left.gases[0].def.emitters;
   ASSERT_EQ(emitters.size(), 2u);
@@ -414,7 +388,7 @@ TEST(SceneFluid, AFinalSceneKeepsWhatIsLeftOfEmitters) {
 }
 
 TEST(SceneFluid, AFluidThatIsRemovedIsLeftOutOfTheFinalScene) {
-  SceneRunner runner = run_fluids(kAllGases, 1);
+  SceneRunner runner = run(kAllGases, 1);
   ASSERT_TRUE(runner.world().remove_fluid(runner.gases()[0]));
   const Scene left = runner.final_scene();
   ASSERT_EQ(left.gases.size(), 2u);
@@ -423,7 +397,7 @@ TEST(SceneFluid, AFluidThatIsRemovedIsLeftOutOfTheFinalScene) {
 }
 
 TEST(SceneFluid, ALiquidBecomesWhatItSaysInTheWorld) {
-  const SceneRunner runner = run_fluids(kAllLiquids);
+  const SceneRunner runner = run(kAllLiquids);
   ASSERT_EQ(runner.liquids().size(), 2u);
   const World& world = runner.world();
   const FluidInfo a = world.fluid_info(runner.liquids()[0]);
@@ -447,7 +421,7 @@ const std::string kTank =
     {"name": "air", "position": [0.3, 0.8, 0.025]}]}]})";
 
 TEST(SceneFluid, ProbesOfStillWaterKnowItsDepth) {
-  const SceneRunner runner = run_fluids(kTank, 30);
+  const SceneRunner runner = run(kTank, 30);
   const SceneLiquid& water = runner.scene().liquids[0];
   const FluidProbe deep = runner.world().probe(runner.liquids()[0], water.probes[0].position);
   const FluidProbe air = runner.world().probe(runner.liquids()[0], water.probes[1].position);
@@ -462,8 +436,8 @@ TEST(SceneFluid, ProbesOfStillWaterKnowItsDepth) {
 TEST(SceneFluid, ALiquidGoesOnFromAFinalScene) {
   std::string text = kTank;
   text.replace(text.find("[2, 0.5,"), 8, "[0.4, 0.9,");
-  const SceneRunner whole = run_fluids(text, 20), half = run_fluids(text, 10);
-  const SceneRunner rest = run_fluids(write_scene(half.final_scene()), 10);
+  const SceneRunner whole = run(text, 20), half = run(text, 10);
+  const SceneRunner rest = run(write_scene(half.final_scene()), 10);
   EXPECT_EQ(rest.world().fluid_info(rest.liquids()[0]).cells,
             whole.world().fluid_info(whole.liquids()[0]).cells);
   const auto positions = [](const SceneRunner& runner) {
@@ -489,7 +463,7 @@ TEST(SceneFluid, ALidDrivesTheGasInABox) {
   const std::string text =
       R"({"gyre_scene": 1, "world": {"time_step": 0.05, "gravity": [0, 0, 0]}, "gases": [{"name": "air", "bounds": [[0,0,0],[1,1,0.1]], "cells": [24, 24, 1],
          "density": 1, "viscosity": 0.01, "boundary": {"x": "no_slip", "y": "no_slip"}, "walls": {"+y": {"velocity": [1, 0, 0]}}}]})";
-  const SceneRunner runner = run_fluids(text, 300);
+  const SceneRunner runner = run(text, 300);
   EXPECT_NEAR(runner.world().probe(runner.gases()[0], {0.5, 0.4531, 0.05}).velocity.x, -0.2109, 0.01);
   EXPECT_NEAR(runner.world().probe(runner.gases()[0], {0.8047, 0.5, 0.05}).velocity.y, -0.2453, 0.012);
 }

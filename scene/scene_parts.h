@@ -30,6 +30,7 @@ void read_mesh(SceneReading& reading, const Field& field, const std::string& nam
 void read_shape(SceneReading& reading, const Field& field, SceneBody& body);
 void read_body(SceneReading& reading, const Field& field);
 void read_joint(SceneReading& reading, const Field& field);
+void read_coupling(SceneReading& reading, const Field& field);
 void read_field(SceneReading& reading, const Field& field);
 void read_rope(SceneReading& reading, const Field& field);
 void read_cloth(SceneReading& reading, const Field& field);

@@ -181,6 +181,14 @@ void read_each(SceneReading& reading, Members& members, const char* key, const c
   for (std::size_t i = 0; i < count; ++i) read(reading, section->element(i));
 }
 
+void read_ignored_pair(SceneReading& reading, const Field& field) {
+  field.array("the names of 2 bodies", 2);
+  const std::pair<int, int> pair{find_name(reading.bodies, field.element(0), "a body"),
+                                 find_name(reading.bodies, field.element(1), "a body")};
+  if (pair.first == pair.second) field.fail("found the same body twice, expected two bodies");
+  reading.scene.ignored_pairs.push_back(pair);
+}
+
 void check_world_name(const SceneReading& reading, const Field& joints) {
   const auto named_world = reading.bodies.find("world");
   if (named_world == reading.bodies.end()) return;
@@ -228,6 +236,8 @@ void read_scene_object(SceneReading& reading, const Field& root) {
     for (std::size_t i = 0; i < count; ++i) read_joint(reading, joints->element(i));
     check_world_name(reading, *joints);
   }
+  read_each(reading, members, "couplings", "an array of couplings", read_coupling);
+  read_each(reading, members, "ignored_pairs", "an array of pairs of bodies", read_ignored_pair);
   read_each(reading, members, "ropes", "an array of ropes", read_rope);
   read_each(reading, members, "cloths", "an array of cloths", read_cloth);
   read_each(reading, members, "soft_bodies", "an array of soft bodies", read_soft_body);

@@ -31,6 +31,7 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
   if (!builder.build()) return builder.error();
   runner.bodies_ = builder.take_bodies();
   runner.joints_ = builder.take_joints();
+  runner.couplings_ = builder.take_couplings();
   runner.ropes_ = builder.take_ropes();
   runner.cloths_ = builder.take_cloths();
   runner.soft_bodies_ = builder.take_soft_bodies();
@@ -191,6 +192,7 @@ SceneJoint SceneRunner::final_joint(std::size_t index) const {
 }
 
 void SceneRunner::put_present_state(SceneBody& body, BodyId id) const {
+  put_present_settings(body, id);
   body.def.pose = world_.pose(id);
   body.def.linear_velocity = world_.linear_velocity(id);
   body.def.angular_velocity = world_.angular_velocity(id);
@@ -201,6 +203,29 @@ void SceneRunner::put_present_state(SceneBody& body, BodyId id) const {
     if (force.end > 0.0) left.push_back(force);
   }
   body.forces = std::move(left);
+}
+
+// What the program may have changed since.
+void SceneRunner::put_present_settings(SceneBody& body, BodyId id) const {
+  BodyDef& def = body.def;
+  def.linear_damping = world_.linear_damping(id), def.angular_damping = world_.angular_damping(id);
+  def.gravity_scale = world_.gravity_scale(id);
+  def.sleep_speed = world_.sleep_speed(id);
+  def.continuous = world_.continuous(id), def.can_sleep = world_.can_sleep(id);
+  def.locked = world_.locked_axes(id);
+  def.enabled = world_.enabled(id);
+}
+
+// Couplings whose joints are left. All positions are zero in the poses in which joints are made anew.
+void SceneRunner::put_present_couplings(Scene& out, const std::vector<int>& places) const {
+  out.couplings.clear();
+  for (std::size_t i = 0; i < couplings_.size(); ++i) {
+    if (!world_.exists(couplings_[i])) continue;
+    SceneCoupling coupling = scene_.couplings[i];
+    coupling.offset = -world_.coupling_state(couplings_[i]).error;
+    for (SceneCouplingTerm& term : coupling.terms) term.joint = places[std::size_t(term.joint)];
+    out.couplings.push_back(std::move(coupling));
+  }
 }
 
 // The shape at rest stays; where the vertices are is the state.
@@ -331,12 +356,20 @@ Scene SceneRunner::final_scene() const {
     put_present_state(out.bodies.back(), bodies_[i]);
   }
   out.joints.clear();
+  std::vector<int> joint_places(joints_.size(), -1);
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     if (!world_.exists(joints_[i])) continue;
     SceneJoint joint = final_joint(i);
     if (joint.a >= 0) joint.a = places[std::size_t(joint.a)];
     if (joint.b >= 0) joint.b = places[std::size_t(joint.b)];
+    joint_places[i] = int(out.joints.size());
     out.joints.push_back(std::move(joint));
+  }
+  put_present_couplings(out, joint_places);
+  out.ignored_pairs.clear();
+  for (const auto& [a, b] : scene_.ignored_pairs) {
+    if (world_.pair_ignored(bodies_[std::size_t(a)], bodies_[std::size_t(b)]))
+      out.ignored_pairs.push_back({places[std::size_t(a)], places[std::size_t(b)]});
   }
   put_present_softs(out, places);
   put_present_fluids(out);

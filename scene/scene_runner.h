@@ -36,6 +36,7 @@ class SceneRunner {
   // In the order of the scene.
   std::span<const BodyId> bodies() const { return bodies_; }
   std::span<const JointId> joints() const { return joints_; }
+  std::span<const CouplingId> couplings() const { return couplings_; }
   std::span<const SoftId> ropes() const { return ropes_; }
   std::span<const SoftId> cloths() const { return cloths_; }
   std::span<const SoftId> soft_bodies() const { return soft_bodies_; }
@@ -79,6 +80,8 @@ class SceneRunner {
   void apply_forces();
   bool find_problem();
   bool find_soft_problem();
+  void put_present_settings(SceneBody& body, BodyId id) const;
+  void put_present_couplings(Scene& out, const std::vector<int>& places) const;
   void put_present_state(SceneSoft& soft, SoftSettings& settings, SoftId id,
                          const std::vector<int>& places) const;
   void put_present_softs(Scene& out, const std::vector<int>& places) const;
@@ -92,6 +95,7 @@ class SceneRunner {
   World world_;
   std::vector<BodyId> bodies_;
   std::vector<JointId> joints_;
+  std::vector<CouplingId> couplings_;
   std::vector<SoftId> ropes_, cloths_, soft_bodies_;
   std::vector<FluidId> gases_, liquids_;
   std::vector<std::vector<int>> region_pins_;  // of each soft body: vertices that its region alone pins

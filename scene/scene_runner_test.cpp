@@ -256,6 +256,36 @@ TEST(SceneRunner, AFinalSceneIsAScene) {
   run(saved, 10);
 }
 
+// Fingers that one motor closes, a pair that passes through each other, a body that waits, and a push from a grid.
+TEST(SceneRunner, CouplingsPairsAndDisabledBodiesGoOnInTheFinalScene) {
+  const std::string text = R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0]},
+    "bodies": [{"name": "hand", "type": "static"},
+               {"name": "left", "position": [-1, 0, 0], "mass": 1, "shapes": [{"type": "box", "half_extents": [0.1, 0.3, 0.1]}]},
+               {"name": "right", "position": [1, 0, 0], "mass": 1, "shapes": [{"type": "box", "half_extents": [0.1, 0.3, 0.1]}]},
+               {"name": "spare", "enabled": false, "linear_velocity": [1, 0, 0], "position": [0, 5, 0], "shapes": [{"type": "sphere", "radius": 0.1}]},
+               {"name": "leaf", "position": [9, 0, 0], "shapes": [{"type": "sphere", "radius": 0.1}]}],
+    "joints": [{"type": "slider", "name": "l", "a": "hand", "b": "left", "axis": [1, 0, 0], "motor": {"target_velocity": 1, "max_force": 50}},
+               {"type": "slider", "name": "r", "a": "hand", "b": "right", "axis": [-1, 0, 0]}],
+    "couplings": [{"terms": [{"joint": "l"}, {"joint": "r", "coefficient": -1}]}],
+    "ignored_pairs": [["left", "right"]],
+    "force_fields": [{"type": "grid", "bounds": [[8, -1, -1], [10, 1, 1]], "points": [2, 2, 2],
+                      "vectors": [[0,2,0],[0,2,0],[0,2,0],[0,2,0],[0,2,0],[0,2,0],[0,2,0],[0,2,0]]}]})";
+  SceneRunner runner = run(text, 30);
+  const auto place = [](const SceneRunner& of, std::size_t body) { return of.world().pose(of.bodies()[body]).position; };
+  EXPECT_NEAR(place(runner, 2).x, -place(runner, 1).x, 1e-3);
+  EXPECT_GT(place(runner, 1).x, -0.6);
+  EXPECT_EQ(place(runner, 3).x, 0);
+  EXPECT_GT(place(runner, 4).y, 0.2);
+  const std::string saved = write_scene(runner.final_scene());
+  SceneRunner rest = run(saved, 60);
+  EXPECT_GT(place(rest, 1).x, 0.2) << "they passed through each other";
+  EXPECT_NEAR(place(rest, 2).x, -place(rest, 1).x, 1e-3);
+  EXPECT_FALSE(rest.world().enabled(rest.bodies()[3]));
+  const SceneResult<Scene> wrong = read_scene(R"({"gyre_scene": 1, "couplings": [{"terms": [{"joint": "a"}, {"joint": "b"}]}]})");
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().pointer, "/couplings/0/terms/0/joint");
+}
+
 TEST(SceneRunner, RestoringASnapshotRestoresTheTimeOfForces) {
   const std::string text = pushed(R"({"force": [4, 0, 0], "start": 0.05, "end": 0.15})");
   SceneRunner runner = run(text, 8);

@@ -26,6 +26,8 @@ constexpr char kPart0[] = R"json({
     "meshes": { "type": "object", "propertyNames": { "$ref": "#/$defs/name" }, "additionalProperties": { "$ref": "#/$defs/mesh" } },
     "bodies": { "type": "array", "items": { "$ref": "#/$defs/body" } },
     "joints": { "type": "array", "items": { "$ref": "#/$defs/joint" } },
+    "couplings": { "type": "array", "items": { "$ref": "#/$defs/coupling" } },
+    "ignored_pairs": { "type": "array", "items": { "type": "array", "items": { "$ref": "#/$defs/name" }, "minItems": 2, "maxItems": 2 }, "description": "pairs of bodies that have no contacts with each other" },
     "cloths": { "type": "array", "items": { "$ref": "#/$defs/cloth" } },
     "ropes": { "type": "array", "items": { "$ref": "#/$defs/rope" } },
     "soft_bodies": { "type": "array", "items": { "$ref": "#/$defs/soft_body" } },
@@ -196,6 +198,7 @@ constexpr char kPart0[] = R"json({
         "continuous": { "type": "boolean", "default": false, "description": "swept against moving bodies too" },
         "can_sleep": { "type": "boolean", "default": true },
         "sleep_speed": { "type": "number", "minimum": 0, "maximum": 1e6, "default": 0, "description": "m/s below which the body is still; 0: by the world's sleep_share" },
+        "enabled": { "type": "boolean", "default": true, "description": "false: the body is out of the simulation, until the program enables it" },
         "locked": {
           "type": "object",
           "additionalProperties": false,
@@ -366,26 +369,52 @@ constexpr char kPart1[] = R"json(            "group": { "type": "integer", "mini
     },
 )json";
 
-constexpr char kPart2[] = R"json(    "force_field": {
+constexpr char kPart2[] = R"json(    "coupling": {
+      "type": "object",
+      "required": ["terms"],
+      "additionalProperties": false,
+      "description": "the sum of coefficient times position of some axes of joints stays",
+      "properties": {
+        "terms": {
+          "type": "array",
+          "minItems": 2,
+          "maxItems": 8,
+          "items": {
+            "type": "object",
+            "required": ["joint"],
+            "additionalProperties": false,
+            "properties": {
+              "joint": { "$ref": "#/$defs/name", "description": "a hinge, slider, universal, wheel or six_dof with a name" },
+              "axis": { "enum": ["linear_x", "linear_y", "linear_z", "angular_x", "angular_y", "angular_z"], "description": "default: linear_x of a slider, else angular_x" },
+              "coefficient": { "type": "number", "minimum": -1e6, "maximum": 1e6, "default": 1, "description": "not 0; per rad or m" }
+            }
+          }
+        },
+        "offset": { "type": ["number", "null"], "default": null, "description": "of the sum; null: the sum at the start" }
+      }
+    },
+    "force_field": {
       "type": "object",
       "required": ["type"],
       "additionalProperties": false,
       "properties": {
-        "type": { "enum": ["wind", "radial", "vortex", "drag", "buoyancy", "explosion"] },
+        "type": { "enum": ["wind", "radial", "vortex", "drag", "buoyancy", "magnetic", "magnetic_dipole", "stokes", "grid", "explosion"] },
         "bounds": { "anyOf": [{ "type": "null" }, { "$ref": "#/$defs/box" }], "description": "where it acts, by centre of mass; null: everywhere" },
         "layers": { "type": ["integer", "null"], "minimum": 0, "maximum": 4294967295, "default": 4294967295, "description": "bodies with a shape in one of these layers" },
-        "velocity": { "$ref": "#/$defs/vector_or_null", "default": [0, 0, 0], "description": "m/s, of the medium (wind, vortex, drag, buoyancy)" },
+        "velocity": { "$ref": "#/$defs/vector_or_null", "default": [0, 0, 0], "description": "m/s, of the medium (wind, vortex, drag, buoyancy, stokes)" },
         "density": { "$ref": "#/$defs/not_negative_or_null", "description": "kg/m^3, of the medium; default 1.2, of buoyancy 1000" },
         "drag_coefficient": { "$ref": "#/$defs/not_negative_or_null", "default": 1, "description": "of the drag by shape, with the square of the speed" },
         "linear_drag": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "1/s: velocity and spin against the medium die away at this rate besides" },
         "turbulence": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "wind: root mean square of the gusts over the mean speed" },
         "turbulence_length": { "$ref": "#/$defs/positive_or_null", "default": 10, "description": "wind: m, size of the gusts" },
-        "center": { "$ref": "#/$defs/vector_or_null", "default": [0, 0, 0], "description": "radial, vortex, explosion" },
-        "strength": { "type": ["number", "null"], "default": 0, "description": "at the radius: radial m/s^2 towards the center, vortex m/s about the axis" },
+        "center": { "$ref": "#/$defs/vector_or_null", "default": [0, 0, 0], "description": "radial, vortex, magnetic_dipole, explosion" },
+        "strength": { "type": ["number", "null"], "default": 0, "description": "at the radius: radial m/s^2 towards the center, vortex m/s about the axis, magnetic_dipole 1/s at right angles to the axis; magnetic: 1/s, charge over mass times flux density; stokes: Pa s, the viscosity" },
         "radius": { "$ref": "#/$defs/not_negative_or_null", "default": 1, "description": "m; explosion: nothing farther away is hit, default 10" },
         "falloff": { "type": ["number", "null"], "minimum": -4, "maximum": 4, "default": 2, "description": "radial, explosion: power of the distance" },
-        "core": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "radial: m, within which it weakens" },
-        "axis": { "$ref": "#/$defs/vector_or_null", "default": [0, 1, 0], "description": "vortex" },
+        "core": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "radial, magnetic_dipole: m, within which it weakens" },
+        "axis": { "$ref": "#/$defs/vector_or_null", "default": [0, 1, 0], "description": "vortex; magnetic: the direction of the field; magnetic_dipole: of the moment" },
+        "points": { "type": "array", "items": { "type": "integer", "minimum": 2, "maximum": 1024 }, "minItems": 3, "maxItems": 3, "description": "grid: points along x, y and z, from the lowest corner of the bounds to the highest" },
+        "vectors": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "minItems": 8, "maxItems": 4194304, "description": "grid: m/s^2 at each point, x fastest, then y, then z" },
         "normal": { "$ref": "#/$defs/vector_or_null", "default": [0, 1, 0], "description": "buoyancy: up from the surface" },
         "offset": { "type": ["number", "null"], "default": 0, "description": "buoyancy: m, the surface is where dot(normal, p) = offset" },
         "pressure": { "type": ["number", "null"], "default": 100, "description": "explosion: Pa s at the reference distance" },

@@ -7,7 +7,7 @@ inline constexpr char kSchemaOfRopes[] = R"json(    "factor_or_null": { "type": 
     "stiffness": { "type": "number", "minimum": 0, "maximum": 1e12 },
     "amount": { "type": "number", "exclusiveMinimum": 0, "maximum": 1e12 },
     "soft_integrator": {
-      "enum": ["implicit", "explicit_euler", "semi_implicit_euler", "rk4", "verlet"],
+      "enum": ["implicit", "explicit_euler", "semi_implicit_euler", "rk4", "verlet", "sdirk2", "visual"],
       "default": "implicit",
       "description": "of its own vertices; that of the world is of bodies"
     },

@@ -3,6 +3,7 @@
 #include "scene/scene_reader.h"
 #include "scene/scene_runner.h"
 #include "scene/scene_schema.h"
+#include "scene/scene_test_kit.h"
 #include "scene/scene_writer.h"
 
 #include <gtest/gtest.h>
@@ -14,6 +15,8 @@
 
 namespace gyre::scene_soft_test {
 namespace {
+
+using namespace scene_test;
 
 const std::string kMeshes =
     R"("meshes": {"sheet": {"vertices": [[0,0,0],[1,0,0],[1,0,1],[0,0,1]], "triangles": [[0,2,1],[0,3,2]]},)"
@@ -43,35 +46,6 @@ std::string box_with(const std::string& members) {
 }
 std::string tets_with(const std::string& tetrahedra) {
   return solid_with(R"("vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,0]], "tetrahedra": )" + tetrahedra);
-}
-
-// The reader's refusal, or that of the world which is made of what it read.
-SceneError refusal(const std::string& text) {
-  SceneResult<Scene> scene = read_scene(text);
-  if (!scene) return scene.error();
-  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), "scene");
-  EXPECT_FALSE(runner) << text;
-  return runner ? SceneError{} : runner.error();
-}
-
-struct Refused {
-  std::string text, pointer, found, expected;
-};
-void expect_refused(const Refused& bad) {
-  const SceneError error = refusal(bad.text);
-  EXPECT_EQ(error.pointer, bad.pointer) << bad.text << "\n" << error.message;
-  for (const std::string& words : {bad.found, bad.expected})
-    EXPECT_NE(error.message.find(words), std::string::npos)
-        << bad.text << "\nsays: " << error.message << "\nlacks: " << words;
-}
-
-SceneRunner run(const std::string& text, int steps = 0) {
-  SceneResult<Scene> scene = read_scene(text);
-  EXPECT_TRUE(scene) << scene.error().text();
-  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), "scene");
-  EXPECT_TRUE(runner) << runner.error().text();
-  for (int i = 0; i < steps; ++i) EXPECT_TRUE(runner->step()) << runner->problem();
-  return *std::move(runner);
 }
 
 TEST(SceneSoft, RefusesBadRopes) {
@@ -351,7 +325,8 @@ TEST(SceneSoft, WhatWasTornIsWrittenAsItIs) {
     "soft_bodies": [{"name": "b", "box": {"half_extents": [0.5, 0.1, 0.1], "cells": [8, 2, 2]}, "position": [0, 5, 0], "young_modulus": 20000,
                      "fracture_stress": 1000, "yield_stress": 800, "creep_time": 0.5, "pinned_region": {"box": [[-1, 4, -1], [-0.4, 6, 1]]}}]})";
   const SceneRunner runner = run(text, 60);
-  const int torn = runner.world().soft_info(runner.cloths()[0]).vertices, broken = runner.world().soft_info(runner.soft_bodies()[0]).vertices;
+  const int torn = runner.world().soft_info(runner.cloths()[0]).vertices,
+            broken = runner.world().soft_info(runner.soft_bodies()[0]).vertices;
   EXPECT_GT(torn, 49);
   EXPECT_GT(broken, 81);
   const std::string left = write_scene(runner.final_scene());
@@ -361,7 +336,8 @@ TEST(SceneSoft, WhatWasTornIsWrittenAsItIs) {
   EXPECT_EQ(on.world().soft_info(on.cloths()[0]).vertices, torn);
   EXPECT_EQ(on.world().soft_info(on.soft_bodies()[0]).vertices, broken);
   EXPECT_NEAR(on.world().soft_info(on.cloths()[0]).mass, 0.2, 1e-6);
-  const SoftVertices was = runner.world().vertices(runner.cloths()[0]), is = on.world().vertices(on.cloths()[0]);
+  const SoftVertices was = runner.world().vertices(runner.cloths()[0]),
+                     is = on.world().vertices(on.cloths()[0]);
   for (std::size_t i = 0; i < was.size(); ++i) EXPECT_EQ(was.position(i), is.position(i)) << i;
 }
 

@@ -194,6 +194,7 @@ void write_motion(JsonWriter& json, const BodyDef& def) {
   unless_default(json, "continuous", def.continuous, false);
   unless_default(json, "can_sleep", def.can_sleep, true);
   unless_default(json, "sleep_speed", def.sleep_speed, 0.0f);
+  unless_default(json, "enabled", def.enabled, true);
   if (!(def.locked == LockedAxes{})) {
     json.key("locked").begin_object(kOneLine);
     write_axes(json, "linear", def.locked.linear);
@@ -404,12 +405,65 @@ void write_bounds(JsonWriter& json, const FieldBounds& bounds) {
   json.end_array();
 }
 
+void write_coupling(JsonWriter& json, const Scene& scene, const SceneCoupling& coupling) {
+  json.begin_object(kOneLine);
+  json.key("terms").begin_array();
+  for (const SceneCouplingTerm& term : coupling.terms) {
+    json.begin_object(kOneLine);
+    json.field("joint", scene.joints[std::size_t(term.joint)].name);
+    json.field("axis", to_string(term.axis));
+    json.field("coefficient", term.coefficient);
+    json.end_object();
+  }
+  json.end_array();
+  if_given(json, "offset", coupling.offset);
+  json.end_object();
+}
+
+void write_pairs_and_couplings(JsonWriter& json, const Scene& scene) {
+  if (!scene.couplings.empty()) {
+    json.key("couplings").begin_array();
+    for (const SceneCoupling& coupling : scene.couplings) write_coupling(json, scene, coupling);
+    json.end_array();
+  }
+  if (scene.ignored_pairs.empty()) return;
+  json.key("ignored_pairs").begin_array();
+  for (const auto& [a, b] : scene.ignored_pairs) {
+    json.begin_array(kOneLine);
+    json.value(scene.bodies[std::size_t(a)].name);
+    json.value(scene.bodies[std::size_t(b)].name);
+    json.end_array();
+  }
+  json.end_array();
+}
+
 void write_medium(JsonWriter& json, const FieldDef& def) {
   const FieldDef none;
   unless_default(json, "velocity", def.velocity, none.velocity);
   if_given(json, "density", def.density);
   unless_default(json, "drag_coefficient", def.drag_coefficient, none.drag_coefficient);
   unless_default(json, "linear_drag", def.linear_drag, none.linear_drag);
+}
+
+// Magnetic fields, Stokes drag, grids.
+void write_named_law(JsonWriter& json, const FieldDef& def) {
+  const FieldDef none;
+  if (def.kind == FieldKind::grid) {
+    json.key("points").begin_array(kOneLine);
+    for (const int points : def.points) json.value(std::int64_t(points));
+    json.end_array();
+    json.key("vectors").begin_array(kOneLine);
+    for (const Vec3& vector : def.vectors) json.value(vector);
+    json.end_array();
+    return;
+  }
+  json.field("strength", def.strength);
+  if (def.kind == FieldKind::stokes) return unless_default(json, "velocity", def.velocity, none.velocity);
+  json.field("axis", def.axis);
+  if (def.kind == FieldKind::magnetic) return;
+  json.field("center", def.center);
+  json.field("radius", def.radius);
+  unless_default(json, "core", def.core, none.core);
 }
 
 void write_field(JsonWriter& json, const FieldDef& def) {
@@ -419,7 +473,8 @@ void write_field(JsonWriter& json, const FieldDef& def) {
   json.field("type", to_string(def.kind));
   if (def.bounds) write_bounds(json, *def.bounds);
   if (def.layers != none.layers) json.field("layers", std::int64_t(def.layers));
-  if (def.kind != FieldKind::radial) write_medium(json, def);
+  if (def.kind <= FieldKind::buoyancy && def.kind != FieldKind::radial) write_medium(json, def);
+  if (def.kind > FieldKind::buoyancy) write_named_law(json, def);
   if (def.kind == FieldKind::wind) {
     unless_default(json, "turbulence", def.turbulence, none.turbulence);
     unless_default(json, "turbulence_length", def.turbulence_length, none.turbulence_length);
@@ -488,6 +543,7 @@ std::string write_scene(const Scene& scene, const WriteOptions& options) {
     for (const SceneJoint& joint : scene.joints) write_joint(json, scene, joint);
     json.end_array();
   }
+  write_pairs_and_couplings(json, scene);
   write_soft_matter(json, scene);
   write_fluids(json, scene);
   if (!scene.fields.empty() || !scene.explosions.empty()) {

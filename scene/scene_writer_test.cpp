@@ -58,14 +58,17 @@ const std::string kEverything = R"({
   ],
   "joints": [
     {"type": "ball", "name": "j1", "a": "box", "b": "world", "anchor": [0, 1, 0], "break_force": 100, "break_torque": 50},
-    {"type": "hinge", "a": "box", "b": "other", "anchor": [0, 1, 0], "axis": [1, 0, 0], "limits": [-0.5, 1.2],
+    {"type": "hinge", "name": "j2", "a": "box", "b": "other", "anchor": [0, 1, 0], "axis": [1, 0, 0], "limits": [-0.5, 1.2],
      "motor": {"target_velocity": 1, "target_position": 0.5, "max_force": 10, "frequency": 2, "damping_ratio": 0.7}},
-    {"type": "slider", "a": "world", "b": "other", "axis": [0, 2, 0], "limits": null, "motor": null},
+    {"type": "slider", "name": "j3", "a": "world", "b": "other", "axis": [0, 2, 0], "limits": null, "motor": null},
     {"type": "fixed", "a": "box", "b": "other", "collide_connected": true, "length": null},
     {"type": "distance", "a": "box", "b": "other", "anchor": [0, 1, 0], "anchor_b": [0, 2, 0], "length": 1,
      "min_length": 0.5, "max_length": 2, "stiffness": 100, "damping": 3},
     {"type": "distance", "a": "box", "b": "other"}
   ],
+  "couplings": [{"terms": [{"joint": "j2", "axis": "angular_x", "coefficient": 2.5}, {"joint": "j3"}], "offset": 0.5},
+    {"terms": [{"joint": "j3", "coefficient": -1}, {"joint": "j2"}], "offset": null}],
+  "ignored_pairs": [["box", "other"]],
   "cloths": [], "ropes": [], "soft_bodies": [], "gases": [], "liquids": [],
   "force_fields": [
     {"type": "wind", "velocity": [5, 0, 0], "turbulence": 0.2, "bounds": null},
@@ -74,6 +77,11 @@ const std::string kEverything = R"({
     {"type": "vortex", "center": [0, 1, 0], "axis": [0, 2, 0], "strength": 8, "radius": 1, "density": 2, "linear_drag": 0.5},
     {"type": "drag", "drag_coefficient": 0.4, "density": null},
     {"type": "buoyancy", "normal": [0, 1, 0], "offset": 0.5, "density": 1025, "velocity": [0.5, 0, 0]},
+    {"type": "magnetic", "strength": 2, "axis": [0, 0, 1]},
+    {"type": "magnetic_dipole", "strength": 2, "axis": [0, 0, 1], "center": [1, 2, 3], "radius": 3, "core": 0.5},
+    {"type": "stokes", "strength": 0.25, "velocity": [1, 0, 0]},
+    {"type": "grid", "bounds": [[0, 0, 0], [1, 1, 1]], "points": [2, 2, 3],
+     "vectors": [[1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0], [5, 0, 0], [6, 0, 0], [7, 0, 0], [8, 0, 0], [9, 0, 0], [0, 1, 0], [0, 2, 0], [0, 3, 0]]},
     {"type": "explosion", "start": 1.5, "center": [0, 1, 0], "pressure": 50, "reference": 2, "falloff": 1, "radius": 8, "occlusion": false, "layers": 2}]
 })";
 
@@ -123,6 +131,17 @@ TEST(SceneWriter, EveryNumberKeepsItsBits) {
   EXPECT_FALSE(second->world.sleeping);
   EXPECT_EQ(second->world.sleep_share, 0.25f);
   EXPECT_EQ(second->bodies[2].def.sleep_speed, 0.125f);
+  ASSERT_EQ(second->couplings.size(), 2u);
+  EXPECT_EQ(second->couplings[0].terms[0].coefficient, 2.5f);
+  EXPECT_EQ(second->couplings[0].terms[1].axis, JointAxis::linear_x) << "the axis of a slider";
+  EXPECT_EQ(second->couplings[0].offset, 0.5f);
+  EXPECT_FALSE(second->couplings[1].offset);
+  ASSERT_EQ(second->ignored_pairs.size(), 1u);
+  const FieldDef& grid = second->fields.back();
+  EXPECT_EQ(grid.kind, FieldKind::grid);
+  EXPECT_EQ(grid.points[2], 3);
+  ASSERT_EQ(grid.vectors.size(), 12u);
+  EXPECT_EQ(grid.vectors[11], (Vec3{0, 3, 0}));
   ASSERT_EQ(first->bodies.size(), second->bodies.size());
   for (std::size_t i = 0; i < first->bodies.size(); ++i) {
     const SceneBody &a = first->bodies[i], &b = second->bodies[i];

@@ -63,7 +63,9 @@ void read_settings(Members& members, int vertices, SoftSettings& out) {
                                             {"explicit_euler", SoftIntegrator::explicit_euler},
                                             {"semi_implicit_euler", SoftIntegrator::semi_implicit_euler},
                                             {"rk4", SoftIntegrator::rk4},
-                                            {"verlet", SoftIntegrator::verlet}});
+                                            {"verlet", SoftIntegrator::verlet},
+                                            {"sdirk2", SoftIntegrator::sdirk2},
+                                            {"visual", SoftIntegrator::visual}});
   }
   members.read("damping", out.damping, Range::between(0, kMaxSurface));
   members.read("static_friction", out.static_friction, Range::between(0, kMaxSurface));

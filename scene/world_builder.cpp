@@ -25,7 +25,7 @@ Overloaded(Ts...) -> Overloaded<Ts...>;
 bool WorldBuilder::build() {
   mesh_cache_.resize(scene_.meshes.size());
   hull_cache_.resize(scene_.meshes.size());
-  return add_pairs() && add_bodies() && add_joints() && add_soft_matter() && add_fluids() &&
+  return add_pairs() && add_bodies() && add_joints() && add_couplings() && add_soft_matter() && add_fluids() &&
          add_fields();
 }
 
@@ -235,6 +235,24 @@ bool WorldBuilder::add_joints() {
     const JointId id = world_.add_joint(def);
     if (!id) return fail(pointer_to("joints", i), last_refusal());
     joints_.push_back(id);
+  }
+  return true;
+}
+
+bool WorldBuilder::add_couplings() {
+  for (std::size_t i = 0; i < scene_.couplings.size(); ++i) {
+    CouplingDef def;
+    for (const SceneCouplingTerm& term : scene_.couplings[i].terms)
+      def.terms.push_back({joints_[std::size_t(term.joint)], term.axis, term.coefficient});
+    def.offset = scene_.couplings[i].offset;
+    const CouplingId id = world_.add_coupling(def);
+    if (!id) return fail(pointer_to("couplings", i), last_refusal());
+    couplings_.push_back(id);
+  }
+  for (std::size_t i = 0; i < scene_.ignored_pairs.size(); ++i) {
+    const auto& [a, b] = scene_.ignored_pairs[i];
+    if (!world_.set_pair_ignored(bodies_[std::size_t(a)], bodies_[std::size_t(b)], true))
+      return fail(pointer_to("ignored_pairs", i), last_refusal());
   }
   return true;
 }

@@ -20,6 +20,7 @@ class WorldBuilder {
   const SceneError& error() const { return error_; }
   std::vector<BodyId> take_bodies() { return std::move(bodies_); }
   std::vector<JointId> take_joints() { return std::move(joints_); }
+  std::vector<CouplingId> take_couplings() { return std::move(couplings_); }
   std::vector<SoftId> take_ropes() { return std::move(ropes_); }
   std::vector<SoftId> take_cloths() { return std::move(cloths_); }
   std::vector<SoftId> take_soft_bodies() { return std::move(soft_bodies_); }
@@ -33,6 +34,7 @@ class WorldBuilder {
   bool add_pairs();
   bool add_bodies();
   bool add_joints();
+  bool add_couplings();
   bool add_fields();
   bool add_soft_matter();
   bool hold(const SceneSoft& soft, SoftId id, const std::string& pointer);
@@ -53,6 +55,7 @@ class WorldBuilder {
   SceneError error_;
   std::vector<BodyId> bodies_;
   std::vector<JointId> joints_;
+  std::vector<CouplingId> couplings_;
   std::vector<SoftId> ropes_, cloths_, soft_bodies_;
   std::vector<FluidId> gases_, liquids_;
   std::vector<std::vector<int>> region_pins_;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the npm package web/gyre-physics: three WebAssembly modules (SIMD; SIMD and threads; plain) with Debian's emscripten, the
-# bindings, and the TypeScript around them, into web/gyre-physics/dist. `npm pack` in that folder then makes the package.
+# Builds the npm package web/gyre-physics: three WebAssembly modules (SIMD; SIMD and threads; plain) and one that reads glTF, with Debian's
+# emscripten, the bindings, and the TypeScript around them, into web/gyre-physics/dist. `npm pack` in that folder then makes the package.
 #
 #   tools/build_web.sh [simd|threads|plain|typescript]...   only these parts; without any, all
 set -euo pipefail
@@ -33,7 +33,9 @@ for part in "${parts[@]}"; do
   case $part in
     simd | threads | plain)
       install_node_packages
-      build "web-$part" gyre_web &
+      targets=(gyre_web)
+      if [ "$part" != threads ]; then targets+=(gyre_import); fi
+      build "web-$part" "${targets[@]}" &
       waiting+=($!) ;;
   esac
 done
@@ -43,6 +45,8 @@ for part in "${parts[@]}"; do
   case $part in
     simd | threads | plain)
       node $package/tools/pack.mjs "$part" "build/web-$part/web" $package/dist/engine
+      # The reader of glTF is one module for all builds: without SIMD if that is made, which then comes last.
+      if [ "$part" != threads ]; then node $package/tools/pack.mjs gltf "build/web-$part/web" $package/dist/engine; fi
       ;;
     typescript)
       install_node_packages
@@ -56,7 +60,7 @@ for part in "${parts[@]}"; do
       # A bundler wants every file that is named; a build that was not made, or of other headers, is an empty one, which load()
       # passes over.
       version=$(sed -n 's/^export const bindingsVersion = \([0-9]*\);$/\1/p' $package/src/generated.ts)
-      for build in simd threads plain; do
+      for build in simd threads plain gltf; do
         if [ "$(head -n 1 $package/dist/engine/$build.js 2>/dev/null)" != "// bindings $version" ]; then
           node $package/tools/pack.mjs "$build" none $package/dist/engine
         fi

@@ -109,7 +109,7 @@ ROOMS = {
 TESTS = re.compile(r"_test(_\w+)?\.(h|cpp)$")
 # Files, tests among them, that may lie in one folder: more than these nobody reads as a list.
 ROOM_LIMIT = 40
-VALUE_HEADERS = {"ids", "math", "result", "geometry", "bounds", "decomposition", "defs", "events", "fields", "joints", "fluid", "memory", "soft", "stepping"}
+VALUE_HEADERS = {"ids", "math", "result", "geometry", "bounds", "coupling", "decomposition", "defs", "events", "fields", "joints", "fluid", "memory", "soft", "stepping"}
 SEES_WHOLE_API = {"world", "io", "debug", "batch"}
 
 # Folders outside src/: the project's own folders that they may include besides include/gyre.
@@ -120,7 +120,7 @@ OUTER = {
     "examples": set(),
     "kit": {"kit"},
     "capi": {"capi", "scene"},
-    "web": {"web", "scene"},
+    "web": {"web", "formats", "scene"},
 }
 
 PUBLIC_STANDARD = {

@@ -240,7 +240,7 @@ def crane():
                                        "static_friction": 0.7, "dynamic_friction": 0.6}]})
     joints = [{"type": "hinge", "name": "slewing ring", "a": "tower", "b": "jib", "anchor": [0, high + 0.1, 0], "axis": [0, 1, 0],
                "motor": {"target_velocity": 0.08, "max_force": 200000}}]
-    # The rope ends at the surface of the ball: its inner vertices would be pushed out of the ball.
+    # The rope ends at the surface of the ball, where it would be tied.
     end = [ball[0], ball[1] + 0.3 * math.cos(swing), ball[2] - 0.3 * math.sin(swing)]
     rope = {"name": "rope", "points": [[reach, high, 0], end], "segments": 40, "radius": 0.025, "linear_density": 1.2, "links": "springs", "stretch_stiffness": 3e6, "damping": 0.02,
             "color": "#454c57", "attach": [{"end": 0, "body": "jib"}, {"end": 1, "body": "wrecking ball"}]}

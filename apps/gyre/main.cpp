@@ -67,7 +67,8 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "Gyre simulates scenes of bodies: reads a scene, moves it on in time, writes down what happened.",
+      "Gyre simulates scenes of bodies, ropes, cloth, solids, gases and liquids: reads a scene, steps it, "
+      "writes down what happened.",
       "gyre");
   app.set_version_flag("--version", "gyre " GYRE_VERSION_STRING, "Print the version and exit");
   app.require_subcommand(0, 1);

@@ -17,12 +17,6 @@ namespace {
 
 constexpr std::string_view kMagic = "GYREPLAY";
 
-SceneLimits recording_limits() {
-  SceneLimits limits;
-  limits.file_bytes = std::size_t(1) << 32;
-  return limits;
-}
-
 // The two forms that a recording may have; neither if both are damaged.
 struct Forms {
   std::optional<Replay> replay;
@@ -103,6 +97,12 @@ std::string json_of(Forms& forms) {
 }
 
 }  // namespace
+
+SceneLimits recording_limits() {
+  SceneLimits limits;
+  limits.file_bytes = std::size_t(1) << 32;
+  return limits;
+}
 
 bool is_recording(const std::string& path) {
   char begin[8] = {};

@@ -1,11 +1,16 @@
 // Recordings as files: their bytes, and what a recording holds.
 #pragma once
 
+#include "scene/scene_limits.h"
+
 #include <cstddef>
 #include <string>
 #include <vector>
 
 namespace gyre {
+
+// The limits of a scene, but for files of 4 GiB.
+SceneLimits recording_limits();
 
 // True if the file, or standard input ("-"), can be read and begins as a recording does.
 bool is_recording(const std::string& path);

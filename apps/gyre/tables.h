@@ -10,14 +10,23 @@
 
 namespace gyre {
 
+// A table on its way to a file.
+class CsvTable {
+ public:
+  OutputFile& file() { return file_; }
+
+ protected:
+  OutputFile file_;
+  std::string row_;
+};
+
 // One row per body: step,time,body,p,q,v,w,awake, where p is the centre of mass; then one per vertex of ropes, cloths and soft
 // bodies, NAME[i]; then, if asked for, one per particle of liquids.
-class TraceTable {
+class TraceTable : public CsvTable {
  public:
   // `only`: names of bodies and soft matter; empty: all.
   bool open(const std::string& path, const std::vector<std::string>& only, bool with_liquids);
   bool add_rows(const SceneRunner& runner);
-  OutputFile& file() { return file_; }
 
  private:
   bool add_vertices(const std::string& begin, const std::string& name, const SoftVertices& vertices,
@@ -25,8 +34,6 @@ class TraceTable {
   bool has(const std::string& name) const;
   bool add_particles(const std::string& begin, const std::string& name, const World& world, FluidId id);
 
-  OutputFile file_;
-  std::string row_;
   bool with_liquids_ = false;
   std::vector<std::string> only_;
   std::vector<DVec3> positions_;
@@ -34,41 +41,28 @@ class TraceTable {
 };
 
 // One row per joint that is there: the mean force (N) and torque (N m) on body b over the last step, position and velocity along its axis.
-class JointForceTable {
+class JointForceTable : public CsvTable {
  public:
   bool open(const std::string& path);
   bool add_rows(const SceneRunner& runner);
-  OutputFile& file() { return file_; }
-
- private:
-  OutputFile file_;
-  std::string row_;
 };
 
 // One row per contact point: forces (N) are means over the last step, friction on body b; the friction of a whole manifold stands at its
 // first point.
-class ContactPointTable {
+class ContactPointTable : public CsvTable {
  public:
   bool open(const std::string& path);
   bool add_rows(const SceneRunner& runner);
-  OutputFile& file() { return file_; }
 
  private:
-  OutputFile file_;
-  std::string row_;
   std::vector<ContactPoint> points_;
 };
 
 // One row per probe of gases and liquids.
-class ProbeTable {
+class ProbeTable : public CsvTable {
  public:
   bool open(const std::string& path);
   bool add_rows(const SceneRunner& runner);
-  OutputFile& file() { return file_; }
-
- private:
-  OutputFile file_;
-  std::string row_;
 };
 
 // One row per event of a step: what happened, and to whom.
@@ -84,15 +78,10 @@ class EventTable {
 };
 
 // One row a step.
-class StatsTable {
+class StatsTable : public CsvTable {
  public:
   bool open(const std::string& path);
   bool add_row(const SceneRunner& runner, double step_ms, bool count_crossings);
-  OutputFile& file() { return file_; }
-
- private:
-  OutputFile file_;
-  std::string row_;
 };
 
 }  // namespace gyre

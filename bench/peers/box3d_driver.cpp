@@ -27,7 +27,7 @@ struct Box3d final : Engine {
 
   bool create(const Scene& sc, int threads, bool sleep, std::string&) override {
     b3WorldDef wd = b3DefaultWorldDef();
-    wd.gravity = {0, float(kGravity), 0};
+    wd.gravity = {0, float(sc.gravity), 0};
     wd.enableSleep = sleep;
     wd.workerCount = uint32_t(threads);
     wd.capacity.dynamicBodyCount = int(sc.bodies.size());

@@ -107,7 +107,7 @@ struct Bullet final : Engine {
       dispatcher = new btCollisionDispatcher(config);
       world = new btDiscreteDynamicsWorld(dispatcher, broad, new btSequentialImpulseConstraintSolver, config);
     }
-    world->setGravity(btVector3(0, btScalar(kGravity), 0));
+    world->setGravity(btVector3(0, btScalar(sc.gravity), 0));
 
     std::vector<btCollisionShape*> hulls(sc.hulls.size());
     for (size_t i = 0; i < sc.bodies.size(); ++i) {

@@ -113,7 +113,7 @@ struct Jolt final : gyre::bench::Engine {
     jobs = new JPH::JobSystemThreadPool(JPH::cMaxPhysicsJobs, JPH::cMaxPhysicsBarriers, threads - 1);
     JPH::uint n = JPH::uint(sc.bodies.size());
     sys.Init(n + 16, 0, 32 * n + 4096, 16 * n + 4096, layers, against_broad, pairs);
-    sys.SetGravity(JPH::Vec3(0, float(kGravity), 0));
+    sys.SetGravity(JPH::Vec3(0, float(sc.gravity), 0));
     JPH::PhysicsSettings ps;
     ps.mAllowSleeping = sleep;
     sys.SetPhysicsSettings(ps);

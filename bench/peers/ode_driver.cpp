@@ -104,7 +104,7 @@ struct Ode final : Engine {
     world = dWorldCreate();
     space = dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XZY);
     contacts = dJointGroupCreate(0);
-    dWorldSetGravity(world, 0, kGravity, 0);
+    dWorldSetGravity(world, 0, sc.gravity, 0);
     dWorldSetAutoDisableFlag(world, sleep);
     if (threads > 1) {
       auto* impl = dThreadingAllocateMultiThreadedImplementation();

@@ -60,7 +60,7 @@ struct PhysX final : gyre::bench::Engine {
     px = PxCreatePhysics(PX_PHYSICS_VERSION, *f, scale);
     PxInitExtensions(*px, nullptr);
     PxSceneDesc d(scale);
-    d.gravity = PxVec3(0, float(kGravity), 0);
+    d.gravity = PxVec3(0, float(sc.gravity), 0);
     d.cpuDispatcher = PxDefaultCpuDispatcherCreate(threads > 1 ? PxU32(threads) : 0);
     d.filterShader = filter;
 #ifdef PHYSX_TGS

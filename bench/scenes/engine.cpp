@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "bench/scenes/clock.h"
+#include "bench/scenes/contact_trials.h"
 
 namespace gyre::bench {
 namespace {
@@ -76,9 +77,9 @@ bool parse(int argc, char** argv, RunOptions& options) {
         stderr,
         "usage: %s SCENE THREADS STEPS [sleep] [end]\n  STEPS 0: as many as the scene has. Scenes:", argv[0]);
     for (const char* name : scene_names()) std::fprintf(stderr, " %s", name);
-    std::fprintf(
-        stderr,
-        "\n  box_pile and mesh_rain also with a number of bodies, as in box_pile:10000; field only so.\n");
+    std::fprintf(stderr,
+                 "\n  box_pile and mesh_rain also with a number of bodies, as in box_pile:10000; field only "
+                 "so.\n  trial NAME: a trial of contacts.\n");
     return false;
   }
   options.scene = argv[1];
@@ -161,6 +162,7 @@ RayResult run_rays(Engine& engine, int rounds) {
 }
 
 int run_program(Engine& engine, int argc, char** argv) {
+  if (argc == 3 && std::strcmp(argv[1], "trial") == 0) return run_trial(engine, argv[2]);
   RunOptions options;
   if (!parse(argc, argv, options)) return 2;
   const std::optional<Scene> scene = find_scene(options.scene);

@@ -102,7 +102,7 @@ void GyreEngine::add_joints(const Scene& scene) {
 
 bool GyreEngine::create(const Scene& scene, int threads, bool sleep, std::string& why_not) {
   WorldDef def;
-  def.gravity = {0, float(kGravity), 0};
+  def.gravity = {0, float(scene.gravity), 0};
   def.threads = threads;
   def.sleeping = sleep;
   def.stepping.substeps = substeps_;

@@ -15,6 +15,10 @@
 
 namespace gyre::bench {
 
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kGravity = -9.81;  // m/s^2
+constexpr double kDt = 1.0 / 60.0;  // s
+
 enum class Kind { sphere, box, capsule, hull, mesh };
 
 struct Shape {
@@ -74,6 +78,7 @@ struct Joint {
 struct Scene {
   std::string name;
   int steps = 300;
+  double gravity = kGravity;  // m/s^2, along y
   double friction = 0.6, restitution = 0;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
@@ -85,10 +90,6 @@ struct Scene {
   double chain_length = 0;
   bool rays = false;  // ray-cast benchmark instead of stepping
 };
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGravity = -9.81;
-constexpr double kDt = 1.0 / 60.0;
 
 struct Ray {
   V3 from, by;

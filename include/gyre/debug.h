@@ -31,8 +31,9 @@ enum class RestState : std::uint8_t {
   resting,    // awake, hardly moving: its rest timer runs
   asleep,
   frozen,  // its state stopped being finite; it stays at its last pose
+  disabled,  // World::set_enabled(false)
 };
-constexpr int kRestStateCount = 6;
+constexpr int kRestStateCount = 7;
 const char* to_string(RestState state);
 
 constexpr std::uint32_t kNoIsland = 0xffffffffu;
@@ -238,8 +239,9 @@ enum class AwakeReason : std::uint8_t {
   settling,        // still, but not for long enough
   neighbor,        // it is still, but `cause` in its island is not
   moving_support,  // its island lies on `cause`, a moving kinematic body
+  disabled,        // World::set_enabled(false)
 };
-constexpr int kAwakeReasonCount = 12;
+constexpr int kAwakeReasonCount = 13;
 const char* to_string(AwakeReason reason);
 
 struct TouchingBody {

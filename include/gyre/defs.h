@@ -123,6 +123,7 @@ struct BodyDef {
   std::optional<Vec3> center_of_mass{};    // m, body frame
   std::optional<Sym3> inertia{};           // kg m^2, about the centre of mass, body axes
   std::uint64_t user_data = 0;
+  bool enabled = true;               // false: out of the simulation until World::set_enabled()
 };
 
 }  // namespace gyre

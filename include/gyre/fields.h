@@ -1,4 +1,5 @@
-// Force fields: media that flow past bodies (wind, vortex, drag, water), attraction to a point, and explosions.
+// Force fields: media that flow past bodies (wind, vortex, drag, water, syrup), attraction to a point, magnetic fields, accelerations on a
+// grid, and explosions.
 //
 // A field acts on every dynamic body whose centre of mass lies within its bounds and that has a shape in its layers. Several fields add
 // up. Fields are part of a world's state: they are recorded, saved and hashed. SI units, world frame.
@@ -13,8 +14,10 @@
 #include <gyre/ids.h>
 #include <gyre/math.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace gyre {
 
@@ -24,7 +27,12 @@ enum class FieldKind : std::uint8_t {
   vortex,    // a medium that rotates about an axis
   drag,      // a medium, at rest unless it has a velocity
   buoyancy,  // a medium below a plane, which also lifts: Archimedes
+  magnetic,         // a uniform magnetic field, which turns the velocity of charges
+  magnetic_dipole,  // the magnetic field of a small magnet
+  stokes,           // a viscous medium: Stokes drag on the ball of equal volume
+  grid,             // accelerations at the points of a grid
 };
+constexpr int kFieldKindCount = 9;
 const char* to_string(FieldKind kind);
 
 // All points between two corners.
@@ -56,17 +64,28 @@ struct FieldDef {
   // distance^2 + core^2 replaces distance^2 (H. C. Plummer, 1911).
   // Vortex: the medium moves with `strength` (m/s) at distance `radius` from the axis through `center`, counter-clockwise seen against
   // the axis. Inside it rotates like a solid; outside the speed falls with the distance (W. J. M. Rankine, 1858).
+  // Magnetic: a body is accelerated by velocity x B, where B has the direction `axis` and the size `strength` (1/s): charge over mass times
+  // the flux density, the rate at which a velocity across B turns.
+  // Magnetic dipole: the same with B of a magnet at `center` whose moment points along `axis`. `strength` is the size of B at distance `radius`
+  // at right angles to the axis; B falls with the cube of the distance, and weakens within `core`. Bodies feel no torque.
+  // Stokes: `strength` is the viscosity (Pa s, 0 or more) of a medium that moves with `velocity`. The drag is 6 pi viscosity R times the
+  // velocity against the medium, and 8 pi viscosity R^3 times the angular velocity; R is the radius of the ball with the volume of the body.
   DVec3 center{};
   float strength = 0.0f;
   float radius = 1.0f;
   float falloff = 2.0f;  // -4 to 4
   float core = 0.0f;
-  Vec3 axis{0, 1, 0};  // vortex; any length but zero
+  Vec3 axis{0, 1, 0};  // vortex, magnetic, magnetic_dipole; any length but zero
 
   // Buoyancy: the medium fills {p : dot(normal, p) < offset} with the unit normal. It lifts along the normal by the weight of the
   // displaced medium in the world's gravity. Overlapping shapes of one body count twice, as they do for its mass.
   Vec3 normal{0, 1, 0};  // any length but zero
   double offset = 0.0;   // m
+
+  // Grid: `bounds` must be given. `points` points along x, y and z (2 to 1,024 each, 4,194,304 in all) stand from `bounds->low` to
+  // `bounds->high`; `vectors` are the accelerations there (m/s^2), x fastest, then y, then z. Between points they are interpolated.
+  std::array<int, 3> points{};
+  std::vector<Vec3> vectors{};
 };
 
 // A blast from a point, as one impulse: every surface element dA at distance r that faces the centre gets the impulse

@@ -243,7 +243,8 @@ struct SixDofDef {
   bool collide_connected = false;       // true: a and b still collide with each other
 };
 
-// a's rotation about `axis` is -ratio times b's rotation about `axis_b`, both against the world. Both wheels need bearings: hinges.
+// a's rotation about `axis` is -ratio times b's rotation about `axis_b`. Both wheels need bearings: hinges. Rotations are measured against
+// the body that carries both hinges, if it can move and the shafts are not on one line, and otherwise against the world.
 struct GearDef {
   BodyId a{};                           // null = the world
   BodyId b{};                           // null = the world

@@ -9,6 +9,7 @@
 // Every change is one command inside the world, so a recording cannot miss one.
 #pragma once
 
+#include <gyre/coupling.h>
 #include <gyre/defs.h>
 #include <gyre/events.h>
 #include <gyre/fields.h>
@@ -78,6 +79,7 @@ struct JointAxisState {
   float position = 0;  // m or rad, continuous beyond +-pi
   float velocity = 0;  // m/s or rad/s, of b relative to a
   float force = 0;     // N or N m along it by limits, motor, spring and friction together, mean over the last step
+  float motor = 0;     // N or N m by the motor alone, in the last sub-step; at most Motor::max_force
 };
 
 // Tells whether the integrator can follow explicit springs (SpringKind::explicit_force). The figures are those of the fastest mode of all of
@@ -146,7 +148,10 @@ class World {
   ShapeId add_shape(BodyId body, const ShapeDef& shape);  // mass is computed anew unless BodyDef overrode it
   bool remove_shape(ShapeId shape);
   JointId add_joint(const JointDef& joint);  // any of joints.h: add_joint(HingeDef{.a = ..., .b = ..., .anchor = ..., .axis = ...})
-  bool remove_joint(JointId joint);
+  bool remove_joint(JointId joint);  // with its couplings
+  // A linear equation between axes of joints (coupling.h). A mechanism with couplings has at most 256 axes.
+  CouplingId add_coupling(const CouplingDef& coupling);
+  bool remove_coupling(CouplingId coupling);
   FieldId add_field(const FieldDef& field);  // wakes every body, as every change of fields does
   bool remove_field(FieldId field);
   SoftId add_rope(const RopeDef& rope);
@@ -169,6 +174,10 @@ class World {
   // Replaces BodyDef::mass, center_of_mass and inertia. The origin of the body stays where it is.
   bool set_mass(BodyId body, const MassDef& mass);
   bool set_locked_axes(BodyId body, const LockedAxes& locked);
+  // False takes the body out of the simulation: its contacts end with their events, no query or sensor finds it, its joints idle, and
+  // forces and impulses on it are ignored. It counts neither in energy() nor in momentum(). True puts it back with the pose and the velocity
+  // that it had or that were set meanwhile. Vertices of soft matter that are attached to it stay where it is.
+  bool set_enabled(BodyId body, bool enabled);
   bool set_continuous(BodyId body, bool continuous);  // BodyDef::continuous
   bool set_can_sleep(BodyId body, bool can_sleep);    // BodyDef::can_sleep; false wakes it
   bool set_user_data(BodyId body, std::uint64_t user_data);
@@ -228,13 +237,19 @@ class World {
   bool add_angular_impulse(BodyId body, Vec3 impulse);        // N m s
 
   // Soft matter (soft.h). The vertex keeps its present place in the frame of the body, and turns freely there; it follows a moving body within
-  // the step. It no longer collides with that body. A second call replaces the first.
+  // the step. It no longer collides with that body, nor do its neighbours
+  // as far as they are inside it now. A second call replaces the first.
   bool attach(SoftId soft, int vertex, BodyId body);
   bool pin(SoftId soft, int vertex);      // to the world: it stays where it is
   bool release(SoftId soft, int vertex);  // from a body or the world; true if it was free already
   // Positions (m) and velocities (m/s) of all vertices at once; either may be empty and stays then. Attached vertices stay attached, where
   // they are put.
   bool set_vertices(SoftId soft, std::span<const DVec3> positions, std::span<const Vec3> velocities);
+  // Keeps every vertex near an animated target, as a coat near a body: within distances[i] (m; below 0: free) of targets[i] (m), and in front of the plane that
+  // lies backstops[i] (m) behind the target, seen along normals[i]. Normals and backstops may be empty. Called before each step in which
+  // the targets move; the limits stay until the next call, and empty targets end them. docs/soft.md: Skinning
+  bool set_vertex_limits(SoftId soft, std::span<const DVec3> targets, std::span<const float> distances, std::span<const Vec3> normals,
+                         std::span<const float> backstops);
 
   // Fluids (fluid.h). Replaces all emitters.
   bool set_emitters(FluidId fluid, std::span<const FluidEmitter> emitters);
@@ -254,6 +269,7 @@ class World {
   bool exists(BodyId body) const;
   bool exists(ShapeId shape) const;
   bool exists(JointId joint) const;
+  bool exists(CouplingId coupling) const;
   bool exists(FieldId field) const;
   bool exists(SoftId soft) const;
   bool exists(FluidId fluid) const;
@@ -272,6 +288,7 @@ class World {
   float gravity_scale(BodyId body) const;
   bool continuous(BodyId body) const;  // BodyDef::continuous
   bool can_sleep(BodyId body) const;   // BodyDef::can_sleep
+  bool enabled(BodyId body) const;     // by set_enabled()
   LockedAxes locked_axes(BodyId body) const;
   // Copies up to out.size() joints of the body, in order of index; returns how many there are.
   std::size_t joints(BodyId body, std::span<JointId> out) const;
@@ -288,6 +305,10 @@ class World {
   std::uint64_t user_data(ShapeId shape) const;
   JointInfo joint_info(JointId joint) const;
   JointState joint_state(JointId joint) const;
+  // Copies up to out.size() ids, in order of index; returns how many couplings there are.
+  std::size_t couplings(std::span<CouplingId> out) const;
+  CouplingDef coupling(CouplingId coupling) const;
+  CouplingState coupling_state(CouplingId coupling) const;
   // The definition in force: directions have length 1, an optional density has its default.
   FieldDef field(FieldId field) const;
   // Copies up to out.size() ids, in order of index; returns how many fields there are.
@@ -310,6 +331,9 @@ class World {
   SoftVertices vertices(SoftId soft) const;
   // The surface: three vertices each, counter-clockwise seen from outside (of a cloth: from one side). None of a rope.
   std::span<const std::uint32_t> soft_triangles(SoftId soft) const;
+  // The elements of a solid as it is now, also of one made from a box or a surface. Copies up to out.size() numbers, four vertices a
+  // tetrahedron; returns how many numbers there are, 0 for ropes and cloths. At rest each tetrahedron has a positive volume.
+  std::size_t solid_tetrahedra(SoftId solid, std::span<std::uint32_t> out) const;
   // The surface that a solid was made of (SolidDef::surface), carried along by its tetrahedra: for pictures. Copies up to out.size() places of
   // its vertices, in the order of the definition; returns how many there are, 0 without such a surface.
   std::size_t soft_surface(SoftId soft, std::span<DVec3> out) const;

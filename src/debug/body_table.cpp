@@ -13,6 +13,7 @@ namespace gyre {
 namespace {
 
 RestState rest_state(const BodyFlags& flags, const BodySleep& sleep) {
+  if (is_disabled(flags)) return RestState::disabled;
   if (flags.frozen != 0) return RestState::frozen;
   if (flags.type == BodyType::fixed) return RestState::fixed;
   if (flags.type == BodyType::kinematic) return RestState::kinematic;
@@ -71,6 +72,8 @@ const char* to_string(RestState state) {
       return "asleep";
     case RestState::frozen:
       return "frozen";
+    case RestState::disabled:
+      return "disabled";
   }
   return "unknown";
 }

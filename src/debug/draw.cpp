@@ -34,6 +34,8 @@ Color rest_color(RestState state, float still_time) {
       return kBlue;
     case RestState::frozen:
       return kViolet;
+    case RestState::disabled:
+      return kDark;
   }
   return kWhite;
 }

@@ -38,6 +38,7 @@ class Inquiry {
 // The reason why the body itself does not sleep; `settling` if there is none.
 AwakeReason Inquiry::own_reason(std::uint32_t body) const {
   const BodyFlags& flags = w_.bodies.flags[body];
+  if (is_disabled(flags)) return AwakeReason::disabled;
   if (flags.frozen != 0) return AwakeReason::frozen;
   if (flags.type == BodyType::fixed) return AwakeReason::fixed;
   if (flags.type == BodyType::kinematic) return AwakeReason::kinematic;
@@ -164,6 +165,8 @@ const char* to_string(AwakeReason reason) {
       return "kinematic";
     case AwakeReason::frozen:
       return "frozen";
+    case AwakeReason::disabled:
+      return "disabled";
     case AwakeReason::asleep:
       return "asleep";
     case AwakeReason::sleeping_off:

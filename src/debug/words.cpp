@@ -92,6 +92,9 @@ void Sentences::reason(BodyId body) {
       add(" is frozen: its position or velocity was no longer a finite number, so it is kept where it last "
           "was.");
       return;
+    case AwakeReason::disabled:
+      add(" is disabled: it takes no part in the simulation until it is enabled again.");
+      return;
     case AwakeReason::asleep:
       add(" is asleep.");
       return;

@@ -8,6 +8,7 @@
 #include "dynamics/worker_partition.h"
 #include "rigid/solve/body_motion_solve.h"
 #include "rigid/solve/contact_solve.h"
+#include "rigid/solve/coupling_solve.h"
 #include "rigid/solve/hit_events.h"
 #include "rigid/solve/joint_solve.h"
 #include "rigid/solve/row_stages.h"
@@ -52,6 +53,7 @@ struct BatchContext {
   std::size_t moved_in_contact = 0;   // number of first moved bodies that contacts act on
   FusedRuns fused_runs[2] = {};       // if bodies move run by run: of other bodies; of articulations
   RowSolve* rows = nullptr;           // if constraints are solved as rows
+  CouplingSolve* couplings = nullptr;  // if the batch has all couplings of the world
   SoftSolve soft{};                   // with members if the batch has all soft matter of the world
 
   bool has_soft() const { return !soft.members.empty(); }

@@ -17,7 +17,7 @@ std::uint8_t rotation_mode(const BodyMotionSolve& motion, std::uint32_t body) {
 // True if the batch has grouped articulations, and only these and contacts act between the moves of bodies.
 bool may_fuse(const BatchContext& batch) {
   const JointSolve& joints = batch.joints;
-  return !batch.has_soft() && !joints.bundles.bundles.empty() && !batch.motion.is_smooth &&
+  return !batch.has_soft() && batch.couplings == nullptr && !joints.bundles.bundles.empty() && !batch.motion.is_smooth &&
          batch.scratch.contacts.impacts.empty() && joints.lists.swept.empty() &&
          joints.articulations.scalar.empty() && batch.motion.fields.blocks() == 0;
 }

@@ -8,7 +8,7 @@ namespace gyre {
 namespace {
 
 // Upper bounds for the lines that stand once in the program, and for those of a half-step beside a line for each colour.
-constexpr std::size_t kLinesOnce = 24, kLinesPerHalfStep = 56;
+constexpr std::size_t kLinesOnce = 24, kLinesPerHalfStep = 60;
 
 }  // namespace
 

@@ -135,6 +135,12 @@ class ProgramBuilder {
     add(run_stage<stage, SoftSolve>, &batch_.soft, soft_members_ > 0 ? 1 : 0);
   }
 
+  // Adds a line for all couplings.
+  template <auto stage>
+  void couplings() {
+    if (batch_.couplings != nullptr) add(run_stage<stage, CouplingSolve>, batch_.couplings, 1);
+  }
+
   // Adds a line for islands whose constraints are solved as rows.
   template <auto stage>
   void row_islands() {

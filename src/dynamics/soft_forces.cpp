@@ -118,6 +118,7 @@ void add_attraction(const FieldRecord& field, SoftEntry& entry) {
 
 void add_field(const FieldRecord& field, SoftEntry& entry, double time, float h) {
   if (field.kind == FieldKind::radial) return add_attraction(field, entry);
+  if (field.kind > FieldKind::buoyancy) return;  // those act on bodies
   if (field.linear_drag > 0.0f) add_linear_drag(field, entry, time, h);
   if (!(field.drag_coefficient > 0.0f) || !(field.density > 0.0f)) return;
   const auto stream = [&](DVec3 at, Flow& flow) {

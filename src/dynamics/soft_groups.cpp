@@ -39,7 +39,8 @@ std::span<const std::uint32_t> group_soft(const SoftStore& soft, float gravity, 
   std::size_t count = 0;
   for (std::uint32_t slot = 0; slot < std::uint32_t(soft.entries.size()); ++slot) {
     const SoftEntry& entry = soft.entries[slot];
-    if (entry.def == nullptr || entry.contact_surface == nullptr) continue;
+    if (entry.def == nullptr || entry.contact_surface == nullptr || !entry.contact_surface->touches_soft)
+      continue;
     boxes[count] = box_of(entry, gravity, seconds);
     slots[count++] = slot;
   }

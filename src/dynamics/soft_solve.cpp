@@ -3,6 +3,7 @@
 #include "dynamics/soft_forces.h"
 #include "math/rotation.h"
 #include "rigid/batch/solve_batch.h"
+#include "soft/solver/vertex_limits.h"
 
 #include <cmath>
 
@@ -203,8 +204,9 @@ bool loosen_grips(SoftSolve& s, std::uint32_t member) {
   return any;
 }
 
-// The velocities, and what else the solution of an implicit sub-step changes.
+// Places and velocities, and what else the solution of an implicit sub-step changes. (Places: of a scheme of two stages.)
 void copy_motion(const SoftBody& from, SoftBody& to) {
+  to.particles.x = from.particles.x, to.particles.y = from.particles.y, to.particles.z = from.particles.z;
   to.particles.vx = from.particles.vx, to.particles.vy = from.particles.vy,
   to.particles.vz = from.particles.vz;
   for (int axis = 0; axis < 3; ++axis) to.pull[axis] = from.pull[axis];
@@ -452,6 +454,7 @@ void make_soft_rows(SoftSolve& s) {
     const std::size_t padded = entry.body.particles.x.size();
     work.arena.reset();
     work.impulses.resize(padded), work.change.resize(padded);
+    work.field_forces.clear();
     work.first_row = std::uint32_t(scratch.rows.size());
     const auto add = [&](std::uint32_t particle, std::int32_t body, std::uint32_t source) -> SoftRow& {
       SoftRow row;
@@ -487,22 +490,52 @@ void make_soft_rows(SoftSolve& s) {
   begin_soft_surfaces(s);
 }
 
+void turn_soft_rows(SoftSolve& s, int, int) {
+  const RigidWorld& w = *s.w;
+  for (SoftRow& row : s.scratch->rows) {
+    if (row.touched < 0) continue;
+    const SoftEntry& entry = entry_of(s, row.member);
+    const Vec3 arm = row.is_contact
+                         ? turned_now(w, row.body, entry.contacts[row.source].from_body)
+                         : rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
+    const Vec3 moment = cross(arm - row.arm, (-1.0f / float(s.parts)) * row.impulse);
+    s.w->bodies.motion[std::size_t(row.body)].angular_velocity +=
+        w.bodies.inertia[std::size_t(row.body)].inverse * moment;
+    row.arm = arm;
+  }
+}
+
+namespace {
+
+// The forces of fields; of visual entries they are found once a step.
+void set_forces(SoftSolve& s, SoftEntry& entry, SoftWork& work, bool again) {
+  Particles& p = entry.body.particles;
+  Array<Vec3>& kept = work.field_forces;
+  for (int i = 0; i < int(kept.size()); ++i) p.fx[i] = kept[i].x, p.fy[i] = kept[i].y, p.fz[i] = kept[i].z;
+  if (!kept.empty()) return;
+  set_field_forces(*s.w, *s.fluids, entry, s.time, s.h, again);
+  if (entry.settings().integrator != SoftIntegrator::visual) return;
+  for (int i = 0; i < p.count; ++i) kept.push_back({p.fx[i], p.fy[i], p.fz[i]});
+}
+
+}  // namespace
+
 void begin_soft_members(SoftSolve& s, int begin, int end) {
   for (std::uint32_t m = std::uint32_t(begin); m < std::uint32_t(end); ++m) {
     SoftEntry& entry = entry_of(s, m);
     SoftWork& work = work_of(s, m);
     work.mark = work.arena.mark();
     move_held(s, entry);
-    const bool is_implicit = entry.settings().integrator == SoftIntegrator::implicit;
-    if (is_implicit && work.first_row != work.last_row) copy_motion(entry.body, work.before);
+    const bool implicit = is_implicit(entry.settings().integrator);
+    if (implicit && work.first_row != work.last_row) copy_motion(entry.body, work.before);
     for (int pass = 0; pass < kGripPasses; ++pass) {
-      set_field_forces(*s.w, *s.fluids, entry, s.time, s.h, pass > 0);
+      set_forces(s, entry, work, pass > 0);
       add_rows(s, m);
       add_forces_of_surfaces(s, m);
       work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels,
                                   work.arena, work.tasks);
       find_carried_steps(s, m);
-      if (!is_implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
+      if (!implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
       work.arena.release(work.mark);
       copy_motion(work.before, entry.body);
     }
@@ -530,6 +563,7 @@ void finish_soft_members(SoftSolve& s, int begin, int end) {
     SoftEntry& entry = entry_of(s, m);
     SoftWork& work = work_of(s, m);
     finish_soft_step(entry, work.step, *s.kernels, work.tasks);
+    if (!entry.limits.empty()) keep_limits(entry);
     work.arena.release(work.mark);
   }
 }

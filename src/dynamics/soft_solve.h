@@ -66,7 +66,8 @@ struct SoftWork {
   SoftBody before;                            // what a sub-step that is solved anew begins with
   Array<Vec3> impulses, change;               // by particle
   std::uint32_t first_row = 0, last_row = 0;  // in SoftScratch::rows
-  std::uint32_t carried = 0;                  // rows that carry, from first_row on in SoftScratch::carried
+  Array<Vec3> field_forces;   // N, by particle, of a visual entry: those of the whole step; else none
+  std::uint32_t carried = 0;  // rows that carry, from first_row on in SoftScratch::carried
 };
 
 // A change of velocity of a body, m/s and rad/s.
@@ -110,6 +111,9 @@ void make_soft_rows(SoftSolve& s);
 void find_carried_steps(SoftSolve& s, std::uint32_t member);
 
 // Stages. Members are independent of each other; the others have one block.
+// Bodies have turned since they were given the impulses of the last half-step, which they get again: their moments follow. Without this a heavy body on a rope gains energy
+// from its swing about the end of the rope.
+void turn_soft_rows(SoftSolve& s, int begin, int end);
 void begin_soft_members(SoftSolve& s, int begin, int end);
 // The impulses of the last half-step on bodies.
 void warm_start_soft_rows(SoftSolve& s, int begin, int end);

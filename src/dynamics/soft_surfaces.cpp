@@ -66,7 +66,7 @@ void begin_soft_surfaces(SoftSolve& s) {
   bool any_self = false;
   for (std::uint32_t m = 0; m < std::uint32_t(s.members.size()); ++m) {
     const SoftEntry& entry = entry_at(s, m);
-    if (entry.contact_surface == nullptr) continue;
+    if (entry.contact_surface == nullptr || !entry.contact_surface->touches_soft) continue;
     all.placed_of[m] = std::int32_t(all.placed.size());
     all.placed.push_back({entry.contact_surface.get(), std::uint32_t(vertices)});
     all.surfaces.push_back(entry.contact_surface);
@@ -102,7 +102,7 @@ long count_soft_crossings(const SoftStore& store, Arena& arena) {
   Array<PlacedSurface> placed;
   Array<DVec3> positions;
   store.for_each([&](const SoftEntry& entry) {
-    if (entry.contact_surface == nullptr) return;
+    if (entry.contact_surface == nullptr || !entry.contact_surface->touches_soft) return;
     placed.push_back({entry.contact_surface.get(), std::uint32_t(positions.size())});
     for (int i = 0; i < entry.body.particles.count; ++i) positions.push_back(entry.body.particles.place(i));
   });

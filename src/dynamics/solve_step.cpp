@@ -346,6 +346,20 @@ void add_soft(BatchContext& batch, SoftStore& soft, const FluidStore& fluids, So
   make_soft_rows(batch.soft);
 }
 
+// The bodies that soft matter or couplings unite in one batch.
+std::span<const std::uint32_t> list_united(const RigidWorld& w, SolveScratch& scratch) {
+  if (w.couplings.empty()) return scratch.soft.touched.view();
+  scratch.united.clear();
+  scratch.united.append(scratch.soft.touched);
+  list_coupled_bodies(w, scratch.united);
+  return scratch.united.view();
+}
+void add_couplings(BatchContext& batch, CouplingSolve& couplings, const HalfStepping& plan) {
+  if (batch.w.couplings.empty()) return;
+  begin_couplings(couplings, batch.w, plan.h, batch.joints.settings.softness.bias_rate, plan.warm_scale);
+  if (!couplings.empty()) batch.couplings = &couplings;
+}
+
 void begin_scratch(BatchScratch& scratch) {
   scratch.hits.clear();
   scratch.counts = {};
@@ -431,14 +445,16 @@ void solve_step(RigidWorld& w, SoftStore& soft, const FluidStore& fluids, SolveS
   const ArenaScope scope(arena);
   scratch.soft.slots.clear(), scratch.soft.touched.clear();
   if (!soft.empty()) gather_soft(w, soft, scratch.soft);
-  const std::span<const std::uint32_t> united = scratch.soft.touched.view();
+  const std::span<const std::uint32_t> united = list_united(w, scratch);
   const IslandBatches all = find_batches(w, united, arena, tasks, batch_size(tasks.worker_count(), shared));
   const auto describe = [&](const IslandBatch& members, BatchScratch& own) {
     return describe_batch(w, own, kernels, members, all.local_index, seconds, plan);
   };
-  const auto solve_together = [&](const IslandBatch& members, bool has_soft) {
+  const auto solve_together = [&](const IslandBatch& members, bool is_united) {
     BatchContext batch = describe(members, scratch.together);
+    const bool has_soft = is_united && !scratch.soft.slots.empty();
     if (has_soft) add_soft(batch, soft, fluids, scratch.soft, plan);
+    if (is_united) add_couplings(batch, scratch.couplings, plan);
     if (row_solver != nullptr) {
       solve_batch_as_rows(batch, *row_solver, arena, tasks);
     } else {
@@ -449,8 +465,8 @@ void solve_step(RigidWorld& w, SoftStore& soft, const FluidStore& fluids, SolveS
   // Soft matter that touches no moving body has a batch of its own.
   if (!scratch.soft.slots.empty() && all.united < 0) solve_together({}, true);
   for (std::size_t i = 0; i < all.batches.size(); ++i) {
-    const bool has_soft = int(i) == all.united;
-    if (!shared || !all.batches[i].is_small || has_soft) solve_together(all.batches[i], has_soft);
+    const bool is_united = int(i) == all.united;
+    if (!shared || !all.batches[i].is_small || is_united) solve_together(all.batches[i], is_united);
   }
   if (shared) {
     for_blocks(tasks, int(all.batches.size()), 1, [&](int i, int, int worker) {

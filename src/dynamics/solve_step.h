@@ -28,6 +28,8 @@ struct SolveScratch {
   RowStats rows;
   int colors = 0;
   SoftScratch soft;
+  CouplingSolve couplings;
+  Array<std::uint32_t> united;  // bodies that soft matter or couplings unite
 };
 
 // The options of graph colouring.

@@ -76,6 +76,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
     if (first) p.simd_articulations<&Simd::compute_bias>();  // later ones: at the end of the half-step before
     p.joints<warm_start_joints>();
     p.joint_islands<limit_energy_gain>();
+    p.couplings<warm_start_couplings>();
     if (!first && !warm_start_with_forces) p.measured_bodies<warm_start_bodies>();
     if (first) p.measured_bodies<start_contact_change>();
     if (first) p.contacts<warm_start_contacts>();
@@ -90,6 +91,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
     p.articulations<solve_articulation>();
     p.simd_articulations<&Simd::solve>();
     p.joint_islands<limit_energy_gain>();
+    p.couplings<solve_couplings>();
     if (has_joints) p.measured_bodies<start_contact_change>();
   }
   // Contacts, or all constraints as rows. Resting islands are solved directly in the first half-step, for the loads of this step, and in
@@ -98,6 +100,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   if (!first) p.row_islands<solve_row_islands>();
   p.contacts<solve_contacts>();
   // Soft matter, with bodies as joints and contacts leave them.
+  if (p.begins_soft(half_step)) p.soft_rows<turn_soft_rows>();
   if (p.begins_soft(half_step)) p.soft_members<begin_soft_members>();
   if (p.begins_soft(half_step)) p.soft_rows<solve_soft_surfaces>();
   if (p.begins_soft(half_step)) p.soft_rows<solve_soft_rows>();
@@ -111,6 +114,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   p.articulations<solve_articulation_after_contacts>();
   p.simd_articulations<&Simd::solve_after_contacts>();
   p.joint_islands<limit_energy_gain>();
+  p.couplings<solve_couplings_last>();
   // Positions.
   if (has_joints) p.bodies<integrate_positions>();
   if (!has_joints) p.bodies<add_contact_change_and_integrate>();
@@ -127,6 +131,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   p.articulations<relax_articulation>();
   add_relaxation_of_simd(p, has_swept, last);
   p.joint_islands<remove_energy_gain>();
+  p.couplings<relax_couplings>();
   p.row_islands<prepare_row_joints>();
   p.row_islands<sum_row_joints>();
 }

@@ -118,7 +118,7 @@ void ensure_fat_boxes_cover_motion(RigidWorld& w, TaskSystem& tasks, float secon
 void freeze(RigidWorld& w, std::uint32_t body) {
   w.bodies.motion[body] = {};
   w.bodies.orientations[body] = w.bodies.poses[body].orientation;
-  w.bodies.flags[body].frozen = 1;
+  w.bodies.flags[body].frozen = kFrozen;
   w.bodies.inertia[body] = {};
   w.bodies.awake_stale = true;
   for_each_contact_of_body(w, body, [&](std::uint32_t slot) {

@@ -74,6 +74,30 @@ void set_can_sleep(WorldState& s, std::uint32_t body, bool can_sleep) {
   s.rigid.bodies.flags[body].can_sleep = can_sleep ? 1 : 0;
 }
 
+void set_enabled(WorldState& s, std::uint32_t body, bool enabled) {
+  RigidWorld& w = s.rigid;
+  BodyFlags& flags = w.bodies.flags[body];
+  if (is_disabled(flags) != enabled) return;
+  wake_with_neighbours(s, body);  // alone, the body leaves its sleeping group
+  flags.frozen = enabled ? kNotFrozen : kDisabled;
+  flags.awake = 1;
+  w.bodies.sleep[body] = {};
+  w.bodies.forces[body].force = w.bodies.forces[body].torque = {};
+  w.bodies.awake_stale = true;
+  for (const std::uint32_t joint : joints_of(w.bodies, body)) forget_impulses(w, joint);
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    drop_soft_contacts(s, id.index);
+    drop_contacts(w, id.index);
+    refresh_proxy(w, id.index);
+  }
+  refresh_inertia(w.bodies, body);
+  refit_body(w, body);
+  if (!enabled) return;
+  activate_constraints_of(w, body);
+  wake_with_neighbours(s, body);
+  wake_overlapped(s, body);
+}
+
 void set_sensor(WorldState& s, std::uint32_t shape, bool sensor) {
   RigidWorld& w = s.rigid;
   const std::uint32_t body = w.shapes.bodies[shape];

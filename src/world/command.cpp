@@ -34,15 +34,16 @@ void drop_contacts(RigidWorld& w, std::uint32_t shape) {
   remove_contacts_of_shape(w.contacts, shape, [&](std::uint32_t, const Contact& contact) { report_end(w, contact); }, w.listed);
 }
 
-namespace {
-
-// The fields of a proxy that follow from the body.
 void refresh_proxy(RigidWorld& w, std::uint32_t shape) {
   Proxy& proxy = w.shapes.proxies[shape];
   const BodyFlags& flags = w.bodies.flags[w.shapes.bodies[shape]];
-  proxy.motion = flags.type == BodyType::fixed ? ProxyMotion::fixed : ProxyMotion::moving;
+  proxy.motion = is_disabled(flags)              ? ProxyMotion::none
+                 : flags.type == BodyType::fixed ? ProxyMotion::fixed
+                                                 : ProxyMotion::moving;
   proxy.pushes = flags.type == BodyType::dynamic;
 }
+
+namespace {
 
 // Mass, centre and inertia from shapes and overrides; the origin of the body stays at `origin`.
 void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
@@ -286,7 +287,7 @@ CommandResult execute(WorldState& s, const SetType& c) {
   w.bodies.flags[body].type = c.type;
   w.bodies.flags[body].awake = 1;
   activate_constraints_of(w, body);
-  w.bodies.flags[body].frozen = 0;
+  if (!is_disabled(w.bodies.flags[body])) w.bodies.flags[body].frozen = kNotFrozen;
   w.bodies.sleep[body] = {};
   if (c.type == BodyType::fixed) clear_motion(w.bodies.motion[body]);
   w.bodies.awake_stale = true;
@@ -514,6 +515,10 @@ CommandResult execute(WorldState& s, const SetBreakLoad& c) {
 }
 CommandResult execute(WorldState& s, const SetPairIgnored& c) {
   set_pair_ignored(s, c.a.index, c.b.index, c.ignored);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const SetEnabled& c) {
+  set_enabled(s, c.body.index, c.enabled);
   return {true, {}, {}, {}};
 }
 CommandResult execute(WorldState& s, const Step& c) {

@@ -21,7 +21,7 @@ namespace gyre {
 
 struct WorldState;
 
-// Without BodyDef::sleep_speed, which is a command of its own: it is younger than the first recordings.
+// Without BodyDef::sleep_speed and BodyDef::enabled, which are commands of their own: they are younger than the first recordings.
 struct AddBody {
   BodyDef def;
   std::vector<ShapeDef> shapes;
@@ -176,6 +176,14 @@ struct SetVertices {
   std::vector<DVec3> positions;
   std::vector<Vec3> velocities;
 };
+// No targets: limits end. Normals and backstops may be empty.
+struct SetVertexLimits {
+  SoftId soft;
+  std::vector<DVec3> targets;
+  std::vector<float> distances;
+  std::vector<Vec3> normals;
+  std::vector<float> backstops;
+};
 struct AddFluid {
   std::shared_ptr<const FluidDef> def;
 };
@@ -244,6 +252,18 @@ struct SetFluidVelocity {
   Vec3 linear, angular;
 };
 
+struct SetEnabled {
+  BodyId body;
+  bool enabled = true;
+};
+
+struct AddCoupling {
+  CouplingDef def;
+};
+struct RemoveCoupling {
+  CouplingId coupling;
+};
+
 // Recordings store the index of a command in this list: append new ones.
 using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
@@ -251,7 +271,8 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled,
                              SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices, AddFluid, RemoveFluid, SetEmitters,
                              SetSleepShare, SetSleepSpeed, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetShape,
-                             SetBodyUserData, SetShapeUserData, SetBreakLoad, SetPairIgnored, SetFluidPose, SetFluidVelocity>;
+                             SetBodyUserData, SetShapeUserData, SetBreakLoad, SetPairIgnored, SetEnabled, AddCoupling,
+                             RemoveCoupling, SetFluidPose, SetFluidVelocity, SetVertexLimits>;
 
 // The result of a command: success, and the id of the new object.
 struct CommandResult {
@@ -262,6 +283,7 @@ struct CommandResult {
   FieldId field{};
   SoftId soft{};
   FluidId fluid{};
+  CouplingId coupling{};
 };
 
 // Checks the command, shows it to the log and executes it. A refused command changes nothing and is reported as one

@@ -454,6 +454,7 @@ Error check(const WorldState& s, const SetBreakLoad& c) {
                    check_range("break force", c.force, 0.0f, 1.0e30f),
                    check_range("break torque", c.torque, 0.0f, 1.0e30f)});
 }
+Error check(const WorldState& s, const SetEnabled& c) { return check_body(s, c.body, "set_enabled"); }
 Error check(const WorldState& s, const SetPairIgnored& c) {
   const Error e = first_of({check_body(s, c.a, "set_pair_ignored"), check_body(s, c.b, "set_pair_ignored")});
   if (e) return e;

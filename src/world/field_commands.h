@@ -8,6 +8,8 @@
 
 namespace gyre {
 
+struct RigidWorld;
+
 Error check(const WorldState& state, const AddField& c);
 Error check(const WorldState& state, const SetField& c);
 Error check(const WorldState& state, const RemoveField& c);
@@ -21,6 +23,6 @@ CommandResult execute(WorldState& state, const Explode& c);
 // True if the field of an id exists.
 bool is_field(const WorldState& state, FieldId id);
 // Why loaded fields cannot be a state; null if they can.
-const char* fault_in_fields(std::span<const FieldRecord> fields);
+const char* fault_in_fields(const RigidWorld& w);
 
 }  // namespace gyre

@@ -1,11 +1,12 @@
 #include "world/joint_commands.h"
 
 #include "collision/contact/pair_update.h"
-#include "rigid/solve/hit_events.h"
-#include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
-#include "solver/joint/joint.h"
+#include "rigid/sleep/island.h"
+#include "rigid/solve/hit_events.h"
+#include "solver/joint/joint_kinds.h"
 #include "solver/joint/path.h"
+#include "world/gear_housing.h"
 
 namespace gyre {
 
@@ -408,11 +409,34 @@ JointId add_joint(RigidWorld& w, const FlatJoint& def) {
     if (body != kNoBody) insert_sorted(make_joints_of(w.bodies, std::uint32_t(body)), slot);
   }
   if (blocks(joint)) block_bodies(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
+  // Gears may be older than their bearings.
+  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
+    if (body == kNoBody || (def.kind != JointKind::hinge && def.kind != JointKind::gear)) continue;
+    for (const std::uint32_t of_body : joints_of(w.bodies, std::uint32_t(body))) find_housing(w, of_body);
+  }
   return joint_id(w, slot);
 }
 
+namespace {
+
+// A coupling goes with any of its joints; the bodies of the others wake.
+void remove_couplings_of(RigidWorld& w, std::uint32_t joint) {
+  for (CouplingRecord& coupling : w.couplings) {
+    bool has = false;
+    for (std::uint32_t i = 0; coupling.is_live() && i < coupling.count; ++i) has = has || coupling.joints[i] == joint;
+    if (!has) continue;
+    for_each_body_of_coupling(w, coupling, [&](std::uint32_t body) { wake(w, body); });
+    const std::uint32_t generation = coupling.generation + 1;
+    coupling = {};
+    coupling.generation = generation;
+  }
+}
+
+}  // namespace
+
 void remove_joint(RigidWorld& w, std::uint32_t slot) {
   const JointRecord joint = w.joints.records[slot];
+  remove_couplings_of(w, slot);
   wake_joint_bodies(w, joint);
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body != kNoBody) erase_slot(make_joints_of(w.bodies, std::uint32_t(body)), slot);
@@ -487,6 +511,19 @@ void shift_joint_ends(RigidWorld& w, std::uint32_t body, Vec3 by) {
   }
 }
 
+void forget_impulses(RigidWorld& w, std::uint32_t slot) {
+  JointRecord& joint = w.joints.records[slot];
+  const float position = joint.position;
+  clear_impulses(joint);
+  joint.position = position;
+  JointDetail* const detail = detail_of(w.joints, slot);
+  if (detail == nullptr) return;
+  float positions[kJointAxisCount];
+  for (int i = 0; i < kJointAxisCount; ++i) positions[i] = detail->axes[i].position;
+  clear_impulses(*detail);
+  for (int i = 0; i < kJointAxisCount; ++i) detail->axes[i].position = positions[i];
+}
+
 void set_joint_enabled(RigidWorld& w, std::uint32_t slot, bool enabled) {
   if (detail_of(w.joints, slot) == nullptr) {
     if (enabled) return;
@@ -500,5 +537,38 @@ void set_joint_enabled(RigidWorld& w, std::uint32_t slot, bool enabled) {
   w.joints.records[slot].position = position;
   wake_joint_bodies(w, w.joints.records[slot]);
 }
+
+// ------------------------------------------------------------------------------------------------------ flat definitions
+
+
+namespace {
+
+template <class T>
+void set_field(T& to, const T& from) {
+  to = from;
+}
+// Zero stiffness or damping means none. The check refuses other values out of range, NaN among them.
+void set_field(std::optional<float>& to, float from) {
+  if (from != 0.0f) to = from;
+}
+
+template <std::size_t n = 0>
+JointDef make_default(std::size_t index) {
+  if constexpr (n + 1 < std::variant_size_v<JointDef>) {
+    if (index != n) return make_default<n + 1>(index);
+  }
+  return JointDef(std::in_place_index<n>);
+}
+
+}  // namespace
+
+FlatJoint flatten(const JointDef& def) {
+  FlatJoint flat;
+  flat.kind = kind_of(def);
+  std::visit([&](const auto& d) { for_each_field(d, flat, [](const auto& from, auto& to) { set_field(to, from); }); }, def);
+  return flat;
+}
+
+JointDef default_joint(JointKind kind) { return make_default(std::size_t(kind)); }
 
 }  // namespace gyre

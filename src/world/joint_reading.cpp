@@ -12,7 +12,8 @@ namespace {
 struct JointMotion {
   BodyMotion a, b;
   Quat frame_a, frame_b;
-  Vec3 speed;  // of b's anchor relative to the body of a at that point
+  Vec3 offset;  // of b's anchor from a's
+  Vec3 speed;   // of b's anchor relative to the body of a at that point
   Vec3 turning;
 };
 JointMotion state_of(const RigidWorld& w, const JointRecord& joint) {
@@ -28,8 +29,8 @@ JointMotion state_of(const RigidWorld& w, const JointRecord& joint) {
   s.frame_a = orientation(joint.body_a) * joint.local_frame_a;
   s.frame_b = orientation(joint.body_b) * joint.local_frame_b;
   const Vec3 angular_b = rotate(orientation(joint.body_b), joint.local_anchor_b);
-  const Vec3 angular_a =
-      rotate(orientation(joint.body_a), joint.local_anchor_a) + difference(anchors.b, anchors.a);
+  s.offset = difference(anchors.b, anchors.a);
+  const Vec3 angular_a = rotate(orientation(joint.body_a), joint.local_anchor_a) + s.offset;
   s.speed = s.b.linear_velocity + cross(s.b.angular_velocity, angular_b) - s.a.linear_velocity -
             cross(s.a.angular_velocity, angular_a);
   s.turning = s.b.angular_velocity - s.a.angular_velocity;
@@ -64,15 +65,32 @@ float line_speed(const RigidWorld& w, const JointRecord& joint, const JointDetai
   return dot(s.speed, rotate(s.frame_a, unit[axis]));
 }
 
-float turn_speed(const JointRecord& joint, const JointMotion& s, int axis) {
-  const Vec3 x_a = rotate(s.frame_a, {1, 0, 0}), x_b = rotate(s.frame_b, {1, 0, 0});
+// Angular velocity of a shaft of a gear about itself, against what the gear counts turns against.
+float gear_speed(GearFrame frame, const JointMotion& s, bool of_a) {
+  const Vec3 w_a = s.a.angular_velocity, w_b = s.b.angular_velocity;
+  const Vec3 x = rotate(of_a ? s.frame_a : s.frame_b, {1, 0, 0}),
+             other = rotate(of_a ? s.frame_b : s.frame_a, {1, 0, 0});
+  const float speed = dot(of_a ? w_a : w_b, x);
+  if (frame == GearFrame::world) return speed;
+  const bool centres = frame == GearFrame::centres;
+  const Vec3 along = centres ? s.offset : other,
+             change = centres ? s.speed + cross(w_a, along) : cross(of_a ? w_b : w_a, along);
+  const float lean = dot(along, x);
+  const Vec3 arm = along - lean * x;
+  const float square_arm = length_squared(arm),
+              turned = dot(x, cross(arm, change)) + lean * dot(of_a ? w_a : w_b, arm);
+  return square_arm > 0.0f ? speed - turned / square_arm : speed;
+}
+
+float turn_speed(const JointRecord& joint, const JointDetail* detail, const JointMotion& s, int axis) {
+  const Vec3 x_a = rotate(s.frame_a, {1, 0, 0});
   switch (joint.kind) {
     case JointKind::hinge:
       return dot(s.turning, x_a);
     case JointKind::cone:
       return dot(s.turning, twist_axis(s.frame_a, s.frame_b));
     case JointKind::gear:
-      return axis == 0 ? dot(s.a.angular_velocity, x_a) : dot(s.b.angular_velocity, x_b);
+      return gear_speed(gear_frame(*detail), s, axis == 0);
     case JointKind::rack_and_pinion:
       return dot(s.a.angular_velocity, x_a);
     default:
@@ -148,8 +166,11 @@ JointAxisState read_joint_axis(const RigidWorld& w, std::uint32_t slot, JointAxi
   const float seconds = w.settings.last_step;
   const int i = int(axis);
   JointAxisState reading;
-  reading.velocity = i < 3 ? line_speed(w, joint, detail, s, i) : turn_speed(joint, s, i - 3);
-  if (joint.kind <= JointKind::distance) {
+  reading.velocity = i < 3 ? line_speed(w, joint, detail, s, i) : turn_speed(joint, detail, s, i - 3);
+  const float substep = w.settings.last_substep;
+  const bool in_record = joint.kind <= JointKind::distance;
+  if (substep > 0.0f) reading.motor = (in_record ? joint.motor_impulse : detail->axes[i].motor_impulse) / substep;
+  if (in_record) {
     reading.position = joint.position;
     if (seconds > 0.0f) reading.force = force_in_record(joint, s) / seconds;
     return reading;
@@ -223,7 +244,7 @@ bool read_joint_load(const RigidWorld& w, std::uint32_t slot, JointAxis axis, fl
 double spring_energy(const RigidWorld& w, std::uint32_t slot) {
   const JointRecord& joint = w.joints.records[slot];
   const JointDetail* const detail = detail_of(w.joints, slot);
-  if (detail != nullptr && detail->disabled) return 0.0;
+  if (!is_joint_enabled(w, slot)) return 0.0;
   if (joint.kind == JointKind::distance) {
     if (!joint.is_spring) return 0.0;
     const JointAnchors anchors = joint_anchors(w, joint);

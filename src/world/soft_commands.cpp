@@ -1,6 +1,7 @@
 #include "world/soft_commands.h"
 
 #include "base/float_mode.h"
+#include "dynamics/soft_contacts.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
 #include "soft/body/enclosed_gas.h"
@@ -45,6 +46,21 @@ void anchor_here(const RigidWorld& w, const SoftEntry& entry, SoftAttachment& at
   if (attachment.body == kWorldAnchor) return;
   const BodyPose& pose = w.bodies.poses[std::size_t(attachment.body)];
   attachment.local = rotate(conjugate(pose.orientation), difference(attachment.place, pose.center));
+}
+
+// Vertices that begin inside bodies that hold them do not touch these.
+void find_inside_again(const RigidWorld& w, SoftEntry& entry) {
+  entry.inside.clear();
+  for (const SoftAttachment& one : entry.attachments)
+    if (one.body != kWorldAnchor) add_inside(w, entry, std::uint32_t(one.body), one.particle);
+}
+
+// A body that holds nothing any more pushes out what is inside it.
+void let_out(SoftEntry& entry, std::int32_t body) {
+  for (const SoftAttachment& one : entry.attachments)
+    if (one.body == body) return;
+  for (std::size_t k = entry.inside.size(); k-- > 0;)
+    if (entry.inside[k].body == body) entry.inside.erase_at(k);
 }
 
 // Contacts of the last step, between steps of a scheme, and the changes that the next step begins with, belong to the old places.
@@ -101,6 +117,33 @@ Error check(const WorldState& s, const SetVertices& c) {
   return {};
 }
 
+Error check(const WorldState& s, const SetVertexLimits& c) {
+  const Error e = check_id(s, c.soft, "set_vertex_limits");
+  if (e || c.targets.empty()) return e;
+  const std::size_t count = std::size_t(s.soft.entries[c.soft.index].body.particles.count);
+  const auto fits = [&](std::size_t size) { return size == count; };
+  if (!fits(c.targets.size()) || !fits(c.distances.size()))
+    return refuse("set_vertex_limits: there are %d targets and %d distances for %d vertices", int(c.targets.size()),
+                  int(c.distances.size()), int(count));
+  if (c.normals.size() != c.backstops.size() || (!c.normals.empty() && !fits(c.normals.size())))
+    return refuse("set_vertex_limits: there are %d normals and %d backstops; there must be %d of both, or none", int(c.normals.size()),
+                  int(c.backstops.size()), int(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const DVec3 p = c.targets[i];
+    if (!is_finite(p) || absolute(p.x) > kMaxPosition || absolute(p.y) > kMaxPosition || absolute(p.z) > kMaxPosition)
+      return refuse("set_vertex_limits: targets[%d] is (%g, %g, %g); every component must be finite and within 1e12 m", int(i), p.x, p.y,
+                    p.z);
+    if (!is_finite(c.distances[i])) return refuse("set_vertex_limits: distances[%d] is not finite", int(i));
+    if (c.normals.empty()) continue;
+    const float size = length(c.normals[i]);
+    if (!is_finite(c.normals[i]) || !(absolute(size - 1.0f) < 1.0e-3f))
+      return refuse("set_vertex_limits: normals[%d] has the length %g; it must be 1", int(i), double(size));
+    if (!is_finite(c.backstops[i]) || c.backstops[i] < 0.0f)
+      return refuse("set_vertex_limits: backstops[%d] is %g; it must be finite and at least 0", int(i), double(c.backstops[i]));
+  }
+  return {};
+}
+
 CommandResult execute(WorldState& s, const AddSoft& c) {
   const IdPool::Slot slot = s.soft.ids.acquire();
   if (s.soft.entries.size() < s.soft.ids.capacity()) s.soft.entries.resize(s.soft.ids.capacity());
@@ -128,8 +171,11 @@ CommandResult execute(WorldState& s, const AttachSoft& c) {
   const std::size_t at = find_attachment(entry, particle);
   if (!has_attachment(entry, at, particle)) entry.attachments.insert_at(at, SoftAttachment{.particle = particle});
   SoftAttachment& attachment = entry.attachments[at];
+  const std::int32_t before = attachment.body;
   attachment.body = c.body ? std::int32_t(c.body.index) : kWorldAnchor;
   anchor_here(s.rigid, entry, attachment);
+  if (before != kWorldAnchor && before != attachment.body) let_out(entry, before);
+  if (attachment.body != kWorldAnchor) add_inside(s.rigid, entry, std::uint32_t(attachment.body), particle);
   wake(entry);
   return {true, {}, {}, {}};
 }
@@ -137,8 +183,10 @@ CommandResult execute(WorldState& s, const ReleaseSoft& c) {
   SoftEntry& entry = s.soft.entries[c.soft.index];
   const std::size_t at = find_attachment(entry, std::uint32_t(c.vertex));
   if (!has_attachment(entry, at, std::uint32_t(c.vertex))) return {true, {}, {}, {}};
-  if (entry.attachments[at].body != kWorldAnchor) wake(s.rigid, std::uint32_t(entry.attachments[at].body));
+  const std::int32_t body = entry.attachments[at].body;
+  if (body != kWorldAnchor) wake(s.rigid, std::uint32_t(body));
   entry.attachments.erase_at(at);
+  let_out(entry, body);
   let_go(entry.body, c.vertex);
   wake(entry);
   return {true, {}, {}, {}};
@@ -151,7 +199,20 @@ CommandResult execute(WorldState& s, const SetVertices& c) {
   forget_motion(entry);
   if (!c.positions.empty()) {
     for (SoftAttachment& attachment : entry.attachments) anchor_here(s.rigid, entry, attachment);
+    find_inside_again(s.rigid, entry);
   }
+  return {true, {}, {}, {}};
+}
+
+CommandResult execute(WorldState& s, const SetVertexLimits& c) {
+  SoftEntry& entry = s.soft.entries[c.soft.index];
+  entry.limits.clear();
+  for (std::size_t i = 0; i < c.targets.size(); ++i) {
+    SoftLimit limit{.target = c.targets[i], .distance = c.distances[i]};
+    if (!c.normals.empty()) limit.normal = c.normals[i], limit.backstop = c.backstops[i];
+    entry.limits.push_back(limit);
+  }
+  wake(entry);
   return {true, {}, {}, {}};
 }
 
@@ -170,6 +231,7 @@ void forget_body(SoftStore& soft, std::uint32_t body) {
       if (entry.attachments[k].body != std::int32_t(body)) continue;
       let_go(entry.body, int(entry.attachments[k].particle));
       entry.attachments.erase_at(k);
+      let_out(entry, std::int32_t(body));
       wake(entry);
     }
   });
@@ -220,6 +282,7 @@ SoftInfo World::soft_info(SoftId soft) const {
   info.contacts = int(entry.contacts.size());
   info.user_data = entry.settings().user_data;
   info.awake = entry.is_awake();
+  info.visual = entry.settings().integrator == SoftIntegrator::visual;
   info.elastic_energy = elastic_energy(entry.body);
   if (const EnclosedGas& gas = entry.body.gas; !gas.triangles.empty()) {
     info.volume = enclosed_volume(p, gas.triangles);
@@ -241,6 +304,25 @@ SoftVertices World::vertices(SoftId soft) const {
 std::span<const std::uint32_t> World::soft_triangles(SoftId soft) const {
   if (!exists(soft)) return {};
   return state_->soft.entries[soft.index].triangles.view();
+}
+std::size_t World::solid_tetrahedra(SoftId solid, std::span<std::uint32_t> out) const {
+  if (!exists(solid)) return 0;
+  std::size_t count = 0;
+  for (const TetBlock& block : state_->soft.entries[solid.index].body.continuum.tetrahedra) {
+    for (int lane = 0; lane < kTetLanes; ++lane) {
+      if (!(block.volume[lane] > 0.0f)) continue;
+      // Corners ascend in a block; the last two change places where that turns the tetrahedron inside out.
+      const auto& m = block.inverse;
+      const Vec3 x{m[0][lane], m[1][lane], m[2][lane]}, y{m[3][lane], m[4][lane], m[5][lane]},
+          z{m[6][lane], m[7][lane], m[8][lane]};
+      const bool inverted = dot(cross(x, y), z) < 0.0f;
+      for (int k = 0; k < 4; ++k, ++count) {
+        const int corner = inverted && k > 1 ? 5 - k : k;
+        if (count < out.size()) out[count] = std::uint32_t(block.corner[corner][lane]);
+      }
+    }
+  }
+  return count;
 }
 std::size_t World::soft_surface(SoftId soft, std::span<DVec3> out) const {
   if (!exists(soft)) return 0;
@@ -278,6 +360,10 @@ const char* to_string(SoftIntegrator integrator) {
       return "rk4";
     case SoftIntegrator::verlet:
       return "verlet";
+    case SoftIntegrator::sdirk2:
+      return "sdirk2";
+    case SoftIntegrator::visual:
+      return "visual";
   }
   return "unknown";
 }
@@ -310,6 +396,17 @@ Error check_soft_columns(const RigidWorld& w, const SoftStore& soft) {
       if (k > 0 && entry.attachments[k - 1].particle >= one.particle) return bad("attachments out of order");
       if (!is_finite(one.place) || !is_finite(one.local) || !is_finite(one.impulse)) return bad("an attachment that is not finite");
     }
+    for (std::size_t k = 0; k < entry.inside.size(); ++k) {
+      const SoftInside& one = entry.inside[k];
+      if (one.particle >= count || one.body < 0 || !good_body(one.body)) return bad("a vertex inside a body that is not there");
+      if (k > 0 && (entry.inside[k - 1].particle > one.particle ||
+                    (entry.inside[k - 1].particle == one.particle && entry.inside[k - 1].body >= one.body)))
+        return bad("vertices inside bodies out of order");
+    }
+    if (entry.limits.size() > count) return bad("more limits than vertices");
+    for (const SoftLimit& one : entry.limits)
+      if (!is_finite(one.target) || !is_finite(one.distance) || !is_finite(one.normal) || !is_finite(one.backstop))
+        return bad("a limit of a vertex that is not finite");
     for (const SoftContact& one : entry.contacts) {
       if (one.particle >= count || one.shape >= w.shapes.ids.capacity() || !good_body(one.body))
         return bad("a contact of a vertex that is not there");

@@ -12,12 +12,14 @@ Error check(const WorldState& state, const RemoveSoft& c);
 Error check(const WorldState& state, const AttachSoft& c);
 Error check(const WorldState& state, const ReleaseSoft& c);
 Error check(const WorldState& state, const SetVertices& c);
+Error check(const WorldState& state, const SetVertexLimits& c);
 
 CommandResult execute(WorldState& state, const AddSoft& c);
 CommandResult execute(WorldState& state, const RemoveSoft& c);
 CommandResult execute(WorldState& state, const AttachSoft& c);
 CommandResult execute(WorldState& state, const ReleaseSoft& c);
 CommandResult execute(WorldState& state, const SetVertices& c);
+CommandResult execute(WorldState& state, const SetVertexLimits& c);
 
 // True if what the id names exists.
 bool is_soft(const WorldState& state, SoftId id);

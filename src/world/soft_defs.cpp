@@ -70,7 +70,7 @@ std::size_t World::cloth_crossings() const {
   Array<PlacedSurface> placed;
   Array<DVec3> positions;
   state_->soft.for_each([&](const SoftEntry& entry) {
-    if (entry.kind != SoftKind::cloth || entry.contact_surface == nullptr) return;
+    if (entry.kind != SoftKind::cloth || entry.contact_surface == nullptr || !entry.contact_surface->touches_soft) return;
     placed.push_back({entry.contact_surface.get(), std::uint32_t(positions.size())});
     const Particles& p = entry.body.particles;
     for (int i = 0; i < p.count; ++i) positions.push_back(p.place(i));

@@ -1,5 +1,6 @@
 // Checks loaded columns: every index is valid, every ring closes, every count fits its array. A state that passes can
 // be stepped safely, whatever its numbers are.
+#include "world/joint_commands.h"
 #include "world/field_commands.h"
 #include "world/world_state.h"
 
@@ -83,6 +84,7 @@ const char* fault_in_sizes(const RigidWorld& w) {
 const char* fault_in_body(const BodyStore& bodies, std::uint32_t i) {
   const BodyFlags& flags = bodies.flags[i];
   if (flags.type > BodyType::dynamic) return "a body of unknown type";
+  if (flags.frozen > kDisabled) return "a body that is neither enabled nor disabled";
   const BodyPose& body_pose = bodies.poses[i];
   if (!is_finite(body_pose.center) || !is_finite(body_pose.orientation))
     return "a body whose place is not finite";
@@ -120,11 +122,12 @@ const char* fault_in_shape(const RigidWorld& w, std::uint32_t i) {
   const Proxy& proxy = w.shapes.proxies[i];
   const bool live = w.shapes.ids.live(i);
   if (proxy.motion > ProxyMotion::moving) return "a proxy of unknown motion";
-  if ((proxy.motion != ProxyMotion::none) != live) return "a proxy without a shape";
+  if (proxy.motion != ProxyMotion::none && !live) return "a proxy without a shape";
   if (check_shape(w.shapes.geometry[i])) return "a shape that cannot be";
   if (!live) return nullptr;
   const std::uint32_t body = w.shapes.bodies[i];
   if (!w.bodies.ids.live(body)) return "a shape without a body";
+  if ((proxy.motion == ProxyMotion::none) != is_disabled(w.bodies.flags[body])) return "a shape without a proxy";
   if (proxy.body != body) return "a proxy of another body than its shape";
   const Transform& local = w.shapes.body_from_shape[i];
   if (!is_finite(local.position) || !is_finite(local.orientation)) return "a shape whose place is not finite";
@@ -222,11 +225,12 @@ const char* fault_in(const RigidWorld& w) {
   const char* fault = fault_in_settings(w.settings);
   if (fault == nullptr) fault = fault_in_solver(w.solver.view());
   if (fault == nullptr) fault = fault_in_rules(w.surface_rules.view());
-  if (fault == nullptr) fault = fault_in_fields(w.fields.view());
+  if (fault == nullptr) fault = fault_in_fields(w);
   if (fault == nullptr) fault = fault_in_sizes(w);
   if (fault == nullptr) fault = fault_in_motion(w);
   if (fault == nullptr) fault = fault_in_sleep_speeds(w);
   if (fault == nullptr) fault = fault_in_ignored_pairs(w);
+  if (fault == nullptr) fault = fault_in_couplings(w);
   if (fault != nullptr) return fault;
   for (std::uint32_t i = 0; fault == nullptr && i < w.bodies.ids.capacity(); ++i)
     fault = fault_in_body(w.bodies, i);

@@ -194,6 +194,23 @@ template <Is<IgnoredPair> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.a), f(r.b);
 }
+template <Is<FieldGrid> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.first), f(r.count);
+  for (auto& points : r.points) f(points);
+}
+template <Is<FieldVector> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.value, f);
+}
+template <Is<CouplingRecord> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.generation), f(r.count);
+  for (auto& joint : r.joints) f(joint);
+  for (auto& axis : r.axes) f(axis);
+  for (auto& coefficient : r.coefficients) f(coefficient);
+  f(r.offset), f(r.impulse), f(r.total);
+}
 template <Is<BodySleepSpeed> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.speed);
@@ -205,6 +222,14 @@ void for_each_field(T& r, F&& f) {
 template <Is<SoftAttachment> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.body), for_each_field(r.place, f), for_each_field(r.local, f), for_each_field(r.impulse, f);
+}
+template <Is<SoftInside> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.particle), f(r.body);
+}
+template <Is<SoftLimit> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.target, f), f(r.distance), for_each_field(r.normal, f), f(r.backstop);
 }
 template <Is<SoftContact> T, class F>
 void for_each_field(T& r, F&& f) {

@@ -1,6 +1,7 @@
 // The rules, by group. See validate_state.h.
 #include "world/validate_state.h"
 
+#include "base/container/disjoint_sets.h"
 #include "base/float_mode.h"
 #include "collision/broadphase/fat_box.h"
 #include "dynamics/island_batches.h"
@@ -317,16 +318,9 @@ Error StateValidator::everything_is_solved() const {
 // motion may have contacts that are about to end.
 Error StateValidator::islands() const {
   std::vector<std::uint32_t> parent(w_.bodies.motion.size());
-  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = i;
-  const auto root_of = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  const DisjointSets sets(parent);
   for_each_island_edge(w_, [&](std::uint32_t a, std::uint32_t b) {
-    if (!is_movable(w_.bodies.flags[a]) || !is_movable(w_.bodies.flags[b])) return;
-    a = root_of(a);
-    b = root_of(b);
-    parent[max(a, b)] = min(a, b);
+    if (is_movable(w_.bodies.flags[a]) && is_movable(w_.bodies.flags[b])) sets.unite(a, b);
   });
   std::vector<std::uint8_t> fell_asleep_moving(parent.size(), 0);
   for (const BodySleep& sleep : w_.bodies.sleep) {
@@ -335,7 +329,7 @@ Error StateValidator::islands() const {
   for (std::uint32_t body = 0; body < parent.size(); ++body) {
     const std::uint32_t group = w_.bodies.sleep[body].group;
     if (group == kNoGroup || fell_asleep_moving[group] != 0) continue;
-    if (root_of(body) != root_of(group))
+    if (sets.of(body) != sets.of(group))
       return broken("body %u sleeps in the group of body %u, but nothing links them", body, group);
   }
   return {};

@@ -25,6 +25,7 @@ BodyId World::add_body(const BodyDef& body, const ShapeDef& shape) {
 BodyId World::add_body(const BodyDef& body, std::span<const ShapeDef> shapes) {
   const BodyId id = submit(*state_, AddBody{body, {shapes.begin(), shapes.end()}}).body;
   if (id && body.sleep_speed != 0.0f) submit(*state_, SetSleepSpeed{id, body.sleep_speed});
+  if (id && !body.enabled) submit(*state_, SetEnabled{id, false});
   return id;
 }
 bool World::remove_body(BodyId body) { return submit(*state_, RemoveBody{body}).done; }
@@ -56,6 +57,9 @@ bool World::set_density(ShapeId shape, float density) {
 }
 bool World::set_locked_axes(BodyId body, const LockedAxes& locked) {
   return submit(*state_, SetLockedAxes{body, locked}).done;
+}
+bool World::set_enabled(BodyId body, bool enabled) {
+  return submit(*state_, SetEnabled{body, enabled}).done;
 }
 bool World::set_continuous(BodyId body, bool continuous) {
   return submit(*state_, SetContinuous{body, continuous}).done;
@@ -134,6 +138,15 @@ bool World::pin(SoftId soft, int vertex) { return submit(*state_, AttachSoft{sof
 bool World::release(SoftId soft, int vertex) { return submit(*state_, ReleaseSoft{soft, vertex}).done; }
 bool World::set_vertices(SoftId soft, std::span<const DVec3> positions, std::span<const Vec3> velocities) {
   return submit(*state_, SetVertices{soft, {positions.begin(), positions.end()}, {velocities.begin(), velocities.end()}}).done;
+}
+bool World::set_vertex_limits(SoftId soft, std::span<const DVec3> targets, std::span<const float> distances, std::span<const Vec3> normals,
+                              std::span<const float> backstops) {
+  return submit(*state_, SetVertexLimits{soft,
+                                         {targets.begin(), targets.end()},
+                                         {distances.begin(), distances.end()},
+                                         {normals.begin(), normals.end()},
+                                         {backstops.begin(), backstops.end()}})
+      .done;
 }
 
 bool World::explode(const ExplosionDef& explosion) { return submit(*state_, Explode{explosion}).done; }

@@ -117,6 +117,9 @@ float World::gravity_scale(BodyId body) const {
 bool World::continuous(BodyId body) const {
   return exists(body) && state_->rigid.bodies.flags[body.index].continuous != 0;
 }
+bool World::enabled(BodyId body) const {
+  return exists(body) && !is_disabled(state_->rigid.bodies.flags[body.index]);
+}
 bool World::can_sleep(BodyId body) const {
   return exists(body) && state_->rigid.bodies.flags[body.index].can_sleep != 0;
 }
@@ -172,9 +175,6 @@ std::uint64_t World::user_data(ShapeId shape) const {
 }
 
 bool World::exists(FieldId field) const { return is_field(*state_, field); }
-FieldDef World::field(FieldId field) const {
-  return is_field(*state_, field) ? field_def(state_->rigid.fields[field.index]) : FieldDef{};
-}
 std::size_t World::fields(std::span<FieldId> out) const {
   const Array<FieldRecord>& fields = state_->rigid.fields;
   std::size_t count = 0;

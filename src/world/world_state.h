@@ -130,7 +130,9 @@ constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || s
                                  std::is_same_v<Column, Array<MotionSettings>> || std::is_same_v<Column, Array<LastMove>> ||
                                  std::is_same_v<Column, Array<SolverSettings>> || std::is_same_v<Column, SoftStore> ||
                                  std::is_same_v<Column, FluidStore> || std::is_same_v<Column, Array<SleepSettings>> ||
-                                 std::is_same_v<Column, Array<BodySleepSpeed>> || std::is_same_v<Column, Array<IgnoredPair>>;
+                                 std::is_same_v<Column, Array<BodySleepSpeed>> || std::is_same_v<Column, Array<IgnoredPair>> ||
+                                 std::is_same_v<Column, Array<CouplingRecord>> || std::is_same_v<Column, Array<FieldGrid>> ||
+                                 std::is_same_v<Column, Array<FieldVector>>;
 
 // Calls visit(name, column) for every state column, in a fixed order. A column is an Array or an IsColumn of records
 // that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
@@ -146,6 +148,8 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("ignored_pairs", s.rigid.ignored_pairs);
   visit("surface_rules", s.rigid.surface_rules);
   visit("fields", s.rigid.fields);
+  visit("field_grids", s.rigid.field_grids);
+  visit("field_vectors", s.rigid.field_vectors);
   visit("body_ids", s.rigid.bodies.ids);
   visit("body_motion", s.rigid.bodies.motion);
   visit("body_last_moves", s.rigid.bodies.last_moves);
@@ -169,6 +173,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("joints", s.rigid.joints.records);
   visit("joint_details", s.rigid.joints.details);
   visit("path_points", s.rigid.joints.path_points);
+  visit("couplings", s.rigid.couplings);
   visit("contacts", s.rigid.contacts.contacts);
   visit("manifolds", s.rigid.contacts.manifolds);
   visit("soft", s.soft);

@@ -133,6 +133,77 @@ TEST(Changes, BodiesThatIgnoreEachOtherPassThrough) {
   EXPECT_NEAR(w.pose(next).position.y, 0.5, 0.01);
 }
 
+std::uint64_t hash_after(World& w, int steps) {
+  for (int i = 0; i < steps; ++i) w.step(kStep);
+  return w.hash();
+}
+
+TEST(Changes, DisabledBodiesLeaveAndComeBack) {
+  Stage s;
+  World& w = s.world;
+  const BodyId top = w.add_body({.pose = {.position = {0, 1.5, 0}}}, kBox);
+  s.run(120);
+  ASSERT_FALSE(w.is_awake(top)) << "the pile sleeps";
+  const Pose before = w.pose(s.box);
+  ASSERT_TRUE(w.set_enabled(s.box, false));
+  EXPECT_FALSE(w.enabled(s.box));
+  EXPECT_EQ(w.body_contacts(s.box, {}), 0u);
+  EXPECT_FALSE(w.cast_ray({0, 0.5, 5}, {0, 0, -10})) << "no query finds it";
+  EXPECT_TRUE(w.cast_ray({0, 1.5, 5}, {0, 0, -10}));
+  EXPECT_TRUE(w.add_impulse(s.box, {0, 1e6f, 0})) << "ignored";
+  s.run(1);
+  EXPECT_EQ(w.events().ends.size(), 2u) << "with the ground and with the box above";
+  s.run(90);
+  EXPECT_NEAR(w.pose(top).position.y, 0.5, 0.01) << "it fell to the ground";
+  EXPECT_EQ(w.pose(s.box).position, before.position);
+  EXPECT_EQ(explain(w, s.box).reason, AwakeReason::disabled);
+  // Snapshots have it, and a changed velocity and pose hold when it is back.
+  World loaded = *load_snapshot(save_snapshot(w));
+  ASSERT_TRUE(w.set_velocity(s.box, {0, 0, 1}, {}));
+  ASSERT_TRUE(w.set_pose(s.box, {.position = {0, 4, 0}}));
+  ASSERT_TRUE(w.set_enabled(s.box, true));
+  s.run(1);
+  EXPECT_NEAR(w.linear_velocity(s.box).z, 1, 1e-6);
+  EXPECT_TRUE(w.cast_ray({0, 4, 5}, {0, 0, -10}));
+  s.run(180);
+  EXPECT_GT(w.pose(s.box).position.y, 0.45);
+  EXPECT_GT(w.body_contacts(s.box, {}), 0u);
+  World undone = *load_snapshot(save_snapshot(loaded));
+  EXPECT_EQ(hash_after(undone, 30), hash_after(loaded, 30));
+  EXPECT_FALSE(w.set_enabled({}, true));
+}
+
+TEST(Changes, JointsOfDisabledBodiesIdle) {
+  Stage s;
+  World& w = s.world;
+  const BodyId lower = w.add_body({.pose = {.position = {5, 2, 0}}}, ShapeDef{.geometry = Sphere{0.2f}});
+  const JointId second = w.add_joint(HingeDef{.a = s.ball, .b = lower, .anchor = {5, 2.5, 0}, .axis = {0, 0, 1}});
+  s.run(5);
+  ASSERT_TRUE(w.set_enabled(s.ball, false));
+  const double energy = w.energy().potential;
+  s.run(20);
+  EXPECT_LT(w.pose(lower).position.y, 1.6) << "nothing holds it";
+  EXPECT_EQ(length(w.joint_state(second).force), 0);
+  EXPECT_LT(w.energy().potential, energy) << "of the bodies that are left";
+  ASSERT_TRUE(w.set_pose(lower, {.position = {5, 2, 0}}));
+  ASSERT_TRUE(w.set_velocity(lower, {}, {}));
+  ASSERT_TRUE(w.set_enabled(s.ball, true));
+  s.run(60);
+  EXPECT_NEAR(w.pose(lower).position.y, 2, 0.01) << "it hangs again";
+  // One that begins disabled, of every type.
+  for (const BodyType type : {BodyType::fixed, BodyType::kinematic, BodyType::dynamic}) {
+    const BodyId off = w.add_body({.type = type, .pose = {.position = {0, 9, 0}}, .enabled = false}, kBox);
+    EXPECT_FALSE(w.enabled(off));
+    EXPECT_FALSE(w.cast_ray({0, 12, 0}, {0, -5, 0}));
+    s.run(3);
+    EXPECT_EQ(w.pose(off).position.y, 9);
+    ASSERT_TRUE(w.set_enabled(off, true));
+    EXPECT_TRUE(w.cast_ray({0, 12, 0}, {0, -5, 0}));
+    s.run(3);
+    ASSERT_TRUE(w.remove_body(off));
+  }
+}
+
 TEST(Changes, JointsBreakAtTheNewLoad) {
   Stage s;
   s.run(10);
@@ -271,6 +342,7 @@ TEST(Changes, AreRecordedAndReplayedToTheBit) {
       [&](World& w) { return w.set_user_data(s.ball, 5) && w.set_user_data(s.shape(s.ball), 6); },
       [&](World& w) { return w.set_break_load(s.hinge, 1e6f, 1e6f); },
       [&](World& w) { return w.set_pair_ignored(s.box, s.ball, true); },
+      [&](World& w) { return w.set_enabled(s.box, false); }, [&](World& w) { return w.set_enabled(s.box, true); },
       [&](World& w) { return w.set_sensor(s.shape(s.ball), true); },
       [&](World& w) { return w.add_joint_load(s.hinge, JointAxis::angular_x, 5); }};
   for (const auto& change : changes) {

@@ -247,6 +247,138 @@ TEST(SoftMatter, PinsFollowAMovingBodyWithoutLag) {
   }
 }
 
+double total_energy(const World& world) {
+  const Energy e = world.energy();
+  return e.kinetic + e.potential + e.soft_elastic;
+}
+
+// A ball on a rope that ends in its middle: four vertices begin inside it, which its surface would push out while the rope pulls them in.
+TEST(SoftMatter, ARopeThatIsAttachedInsideABodyDoesNotFightItsSurface) {
+  World world = make_world();
+  const double swing = 1.0, length_of_rope = 3.0;
+  const DVec3 end{length_of_rope * std::sin(swing), -length_of_rope * std::cos(swing), 0};
+  const BodyId ball = add_ball(world, end, 0.3f, 565.0f);
+  const SoftId rope = world.add_rope({.points = {{0, 0, 0}, end}, .segments = 40, .linear_density = 1.2f});
+  world.pin(rope, 0);
+  ASSERT_TRUE(world.attach(rope, 40, ball));
+  const double range = 565.0 * 9.81 * length_of_rope * (1.0 - std::cos(swing)), before = total_energy(world);
+  for (int i = 0; i < 180; ++i) {
+    world.step(kStep);
+    ASSERT_LT(total_energy(world), before + 1.0e-3 * range) << i;
+  }
+  EXPECT_NEAR(length(world.pose(ball).position), length_of_rope, 0.02);
+  // Let go, it is pushed out.
+  ASSERT_TRUE(world.release(rope, 40));
+  step(world, 2);
+  EXPECT_GT(world.soft_info(rope).contacts, 0);
+}
+// The corner of a cloth and the foot of a jelly begin inside boxes that carry them.
+TEST(SoftMatter, ClothsAndSolidsThatBeginInsideABodyStayThere) {
+  World world = make_world({});
+  BodyDef def;
+  def.type = BodyType::kinematic;
+  const BodyId box = world.add_body(def, ShapeDef{.geometry = Box{{0.3f, 0.3f, 0.3f}}});
+  const SoftId cloth = world.add_cloth(sheet(2, 20, {0.5, 0.05, 0.5}));
+  SolidDef jelly;
+  jelly.box = SolidBox{{0.15f, 0.3f, 0.15f}, {3, 6, 3}};
+  jelly.pose.position = {0, 0.5, 0};
+  const SoftId solid = world.add_solid(jelly);
+  int inside = -1, foot = -1;
+  for (int i = 0; i < 441 && inside < 0; ++i)
+    if (length(world.vertices(cloth).position(std::size_t(i)) - DVec3{0, 0.05, 0}) < 1e-4) inside = i;
+  for (int i = 0; i < 112 && foot < 0; ++i)
+    if (length(world.vertices(solid).position(std::size_t(i)) - DVec3{0.05, 0.2, 0.05}) < 1e-4) foot = i;
+  ASSERT_GE(inside, 0);
+  ASSERT_GE(foot, 0);
+  ASSERT_TRUE(world.attach(cloth, inside, box));
+  ASSERT_TRUE(world.attach(solid, foot, box));
+  step(world, 30);
+  const SoftVertices v = world.vertices(cloth);
+  // Next to the middle, 20 cm from the nearest face, and a layer of the jelly below its own attachment's neighbours.
+  EXPECT_LT(length(v.position(std::size_t(inside) + 1) - DVec3{0.1, 0.05, 0}), 1.0e-3);
+  EXPECT_LT(length(v.position(std::size_t(inside) + 2) - DVec3{0.2, 0.05, 0}), 1.0e-3);
+  EXPECT_LT(length(world.vertices(solid).position(0) - DVec3{-0.15, 0.2, -0.15}), 1.0e-3);
+}
+
+// A vertex follows its target, and stays in front of its backstop, exactly; snapshots and rollback know the limits.
+TEST(SoftMatter, VerticesKeepTheirLimits) {
+  for (const SoftIntegrator integrator :
+       {SoftIntegrator::implicit, SoftIntegrator::sdirk2, SoftIntegrator::verlet, SoftIntegrator::visual}) {
+    World world = make_world();
+    ClothDef def = sheet(1, 10, {0, 0, 0});
+    def.stretch_stiffness = 100.0f, def.shear_stiffness = 20.0f, def.self_collision = false;
+    def.settings.integrator = integrator;
+    def.settings.damping = integrator == SoftIntegrator::verlet ? 1.0e-4f : 0.0f;
+    SoftId cloth = world.add_cloth(def);
+    std::vector<DVec3> rest, targets;
+    std::vector<float> distances, backstops(121, 0.02f);
+    const std::vector<Vec3> normals(121, Vec3{0, 1, 0});
+    for (std::size_t i = 0; i < 121; ++i) {
+      rest.push_back(world.vertices(cloth).position(i));
+      distances.push_back(i % 11 == 0 ? 0.0f : i % 11 == 10 ? -1.0f : 0.05f * float(i % 11));
+    }
+    for (int k = 1; k <= 60; ++k) {
+      targets = rest;
+      for (DVec3& one : targets) one.x += 0.03 * k, one.y += 0.2 * std::sin(0.2 * k);
+      ASSERT_TRUE(world.set_vertex_limits(cloth, targets, distances, k % 2 == 0 ? normals : std::vector<Vec3>{},
+                                          k % 2 == 0 ? backstops : std::vector<float>{}));
+      world.step(kStep);
+      const SoftVertices v = world.vertices(cloth);
+      for (std::size_t i = 0; i < 121; ++i) {
+        const DVec3 off = v.position(i) - targets[i];
+        const double far = distances[i] >= 0.0f ? double(distances[i]) : 1.0e9, low = k % 2 == 0 ? -0.02 : -1.0e9;
+        ASSERT_LT(length(off), far + 1.0e-6) << to_string(integrator) << k << ' ' << i;
+        ASSERT_GT(off.y, low - 1.0e-6) << to_string(integrator) << k << ' ' << i;
+      }
+      if (k != 40) continue;
+      world = std::move(*load_snapshot(save_snapshot(world)));
+      world.softs({&cloth, 1});
+    }
+    ASSERT_TRUE(world.set_vertex_limits(cloth, {}, {}, {}, {}));
+    step(world, 30);
+    EXPECT_LT(lowest(world.vertices(cloth)), -0.2) << to_string(integrator);
+  }
+}
+TEST(SoftMatter, BadLimitsAreRefused) {
+  World world = make_world();
+  const SoftId rope = world.add_rope({.points = {{0, 0, 0}, {1, 0, 0}}});
+  const std::vector<DVec3> two{{0, 0, 0}, {1, 0, 0}};
+  EXPECT_FALSE(world.set_vertex_limits(rope, {two.data(), 1}, std::vector<float>{1}, {}, {}));
+  EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1}, {}, {}));
+  EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1, NAN}, {}, {}));
+  EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1, 1}, std::vector<Vec3>{{0, 2, 0}, {0, 1, 0}}, std::vector<float>{0, 0}));
+  EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1, 1}, std::vector<Vec3>{{0, 1, 0}, {0, 1, 0}}, std::vector<float>{0, -1}));
+  EXPECT_TRUE(world.set_vertex_limits(rope, two, std::vector<float>{1, -1}, {}, {}));
+}
+
+// A flag of the visual scheme keeps its size in a storm, lies on a ball, and says what it is.
+TEST(SoftMatter, AVisualFlagKeepsItsSizeAndTouchesShapes) {
+  World world = make_world();
+  FieldDef wind;
+  wind.velocity = {12, 0, 3};
+  world.add_field(wind);
+  ClothDef def = sheet(2, 40, {0, 3, 0});
+  def.settings.integrator = SoftIntegrator::visual;
+  const SoftId flag = world.add_cloth(def);
+  for (int j = 0; j <= 40; ++j) world.pin(flag, 41 * j);
+  def.pose.position = {20, 1.2, 20};
+  const SoftId blanket = world.add_cloth(def);
+  add_ball(world, {20, 0, 20}, 1.0f, 0.0f, BodyType::fixed);
+  EXPECT_TRUE(world.soft_info(flag).visual);
+  for (int i = 0; i < 120; ++i) {
+    world.step(kStep);
+    const SoftVertices v = world.vertices(flag);
+    for (std::size_t k = 0; k < v.size(); ++k)
+      ASSERT_LT(length(v.position(k) - v.position(k / 41 * 41)), 2.0 * 1.35) << i;  // along the links, which run over corners
+    const SoftVertices b = world.vertices(blanket);
+    for (std::size_t k = 0; i < 60 && k < b.size(); ++k) ASSERT_GT(length(b.position(k) - DVec3{20, 0, 20}), 0.9) << i;
+  }
+  SolidDef solid;
+  solid.box = SolidBox{};
+  solid.settings.integrator = SoftIntegrator::visual;
+  EXPECT_FALSE(world.exists(world.add_solid(solid)));
+}
+
 World make_mixture(int threads, int width) {
   World world = make_world({0, -9.81f, 0}, threads, width);
   add_ground(world);
@@ -260,6 +392,23 @@ World make_mixture(int threads, int width) {
   jelly.box = SolidBox{{0.3f, 0.3f, 0.3f}, {3, 3, 3}};
   jelly.pose.position = {-1.5, 0.6, 0};
   world.add_solid(jelly);
+  // Each integrator, vertices that begin inside a body, and limits.
+  RopeDef lively{.points = {{3, 3, 0}, {3, 1, 0}}, .segments = 8};
+  lively.settings.integrator = SoftIntegrator::sdirk2;
+  const SoftId chain = world.add_rope(lively);
+  world.pin(chain, 0);
+  world.attach(chain, 8, add_ball(world, {3, 1, 0}, 0.6f, 20.0f));
+  ClothDef banner = sheet(1, 6, {5, 2, 0});
+  banner.settings.integrator = SoftIntegrator::sdirk2;
+  const SoftId first = world.add_cloth(banner);
+  banner.pose.position.z = 3;
+  banner.settings.integrator = SoftIntegrator::visual;
+  const SoftId second = world.add_cloth(banner);
+  for (const SoftId one : {first, second}) world.pin(one, 0), world.pin(one, 6);
+  std::vector<DVec3> targets;
+  for (std::size_t i = 0; i < 49; ++i) targets.push_back(world.vertices(second).position(i));
+  world.set_vertex_limits(second, targets, std::vector<float>(49, 0.25f), std::vector<Vec3>(49, Vec3{0, 1, 0}),
+                          std::vector<float>(49, 0.1f));
   add_ball(world, {0.1, 1.2, 0.05}, 0.4f, 2.0f);
   add_box(world, {-1.5, 1.6, 0}, {0.2f, 0.2f, 0.2f}, 3.0f);
   for (int i = 0; i < 6; ++i) add_box(world, {0.5, 0.2 + 0.42 * i, 1.5}, {0.2f, 0.2f, 0.2f}, 1.0f);

@@ -89,6 +89,18 @@ TEST_F(Sweep, EveryCombinationRunsAndReadsTheLawOfFall) {
   EXPECT_EQ(dots, 18u * 3 * 4);  // parameters that are numbers, and readings
 }
 
+TEST_F(Sweep, AJointMayHaveTheNameOfABody) {
+  write("door.gyre.json", R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0], "time_step": 0.01},
+    "bodies": [{"name": "door", "angular_velocity": [0, 1, 0], "shapes": [{"type": "sphere", "radius": 0.5}]}],
+    "joints": [{"name": "door", "type": "hinge", "a": "world", "b": "door", "anchor": [0, 0, 0], "axis": [0, 1, 0]}]})");
+  write("door.json", R"({"gyre_study": 1, "scene": "door.gyre.json", "steps": 10, "readings": [
+    {"name": "angle", "quantity": "joint_position", "joint": "door"}, {"name": "speed", "quantity": "angular_speed", "body": "door"}]})");
+  ASSERT_EQ(gyre({"door.json"}).code, 0);
+  const Json line = Json::parse(read("door.results.jsonl"));
+  EXPECT_NEAR(line["readings"]["angle"].get<double>(), 0.1, 1e-5);
+  EXPECT_NEAR(line["readings"]["speed"].get<double>(), 1.0, 1e-5);
+}
+
 TEST_F(Sweep, AnInterruptedStudyGoesOnAndGivesTheSameFile) {
   ASSERT_EQ(gyre({"study.json", "--threads", "1"}).code, 0);
   const std::string whole = read("study.results.jsonl");

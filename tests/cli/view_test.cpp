@@ -28,7 +28,7 @@ const std::string kTile = "v -5 0 -5\nv 5 0 -5\nv 5 0 5\nv -5 0 5\nf 1 3 2\nf 1 
 // A running `gyre view`, ended by Ctrl-C.
 class RunningView {
  public:
-  RunningView(const std::vector<std::string>& arguments, const fs::path& folder) {
+  RunningView(const std::vector<std::string>& arguments, const fs::path& folder, const char* input = "/dev/null") {
     const std::string program = program_path();
     std::vector<std::string> all = {program, "view"};
     all.insert(all.end(), arguments.begin(), arguments.end());
@@ -48,6 +48,7 @@ class RunningView {
       unsetenv("WAYLAND_DISPLAY");
       unsetenv("GYRE_VIEWER");
       if (chdir(folder.c_str()) != 0) _exit(125);
+      dup2(open(input, O_RDONLY), 0);
       execv(program.c_str(), argv.data());
       _exit(126);
     }
@@ -164,6 +165,13 @@ TEST_F(View, ServesTheViewerTheSceneAndItsMeshes) {
   EXPECT_EQ(body_of(view.get("/inside.js")), "js");
   write("s.gyre.json", "{}");  // the file as it is, not as it was
   EXPECT_EQ(body_of(view.get("/files/s.gyre.json")), "{}");
+  EXPECT_EQ(view.finish(), 0);
+}
+
+TEST_F(View, ShowsStandardInput) {
+  RunningView view(arguments({"-"}), folder_, "s.gyre.json");
+  EXPECT_EQ(view.address, "http://127.0.0.1:" + std::to_string(view.port) + "/?file=/files/input.gyre.json");
+  EXPECT_EQ(body_of(view.get("/files/input.gyre.json")), kScene);
   EXPECT_EQ(view.finish(), 0);
 }
 

@@ -1,5 +1,6 @@
 // Fast bodies and thin ones, and sliding over meshes and over boxes laid flush: nothing passes through, nothing bumps.
 #include "laws/kit.h"
+#include "random.h"
 
 namespace gyre::laws::continuous_test {
 namespace {
@@ -220,6 +221,34 @@ TEST(Sliding, OverFlushBoxesHasNoBumps) {
     expect_smooth(s.name, slide(floor_of_boxes(Box{{0.35f, 0.35f, 0.35f}}, 0.7, 0.35), s.shape, s.height));
     expect_smooth(s.name, slide(floor_of_boxes(hull, 1.0, 0.5), s.shape, s.height));
   }
+}
+
+// At any angle to the seams, a corner of a tile that the slider does not touch yet comes towards one of its sides.
+TEST(Sliding, TurnedAtRandomOverFlushBoxesHasNoBumps) {
+  testing_random::Random random;
+  double bump = 0.0, change = 0.0, lag = 0.0;
+  for (int draw = 0; draw < 40; ++draw) {
+    const float pitch = random.real(0.5f, 1.2f), speed = random.real(1.0f, 9.0f),
+                heading = random.real(0.0f, 2.0f * kPi);
+    const Vec3 half{random.real(0.1f, 0.5f), random.real(0.1f, 0.3f), random.real(0.1f, 0.5f)};
+    World world = floor_of_boxes(Box{0.5f * Vec3{pitch, pitch, pitch}}, double(pitch), 0.5 * double(pitch));
+    const Vec3 velocity{speed * std::cos(heading), 0, speed * std::sin(heading)};
+    const DVec3 start{double(random.real(-0.5f, 0.5f)), double(half.y), double(random.real(-0.5f, 0.5f))};
+    const BodyId b = world.add_body(
+        {.pose = {start, from_axis_angle({0, 1, 0}, random.real(0.0f, kPi))}, .linear_velocity = velocity},
+        {.geometry = Box{half}, .material = surface(0.0f)});
+    for (int i = 0; i < 60; ++i) {
+      world.step(kStep);
+      bump = std::max(bump, std::fabs(world.pose(b).position.y - start.y));
+    }
+    const double path = 60.0 * double(kStep) * double(speed);
+    change = std::max(change, double(length(world.linear_velocity(b) - velocity) / speed));
+    lag =
+        std::max(lag, length(world.pose(b).position - start - 60.0 * double(kStep) * wide(velocity)) / path);
+  }
+  EXPECT_TRUE(limit_row("turned boxes over tiles: bump (m)", bump, 1e-3, 2e-5));
+  EXPECT_TRUE(limit_row("turned boxes over tiles: change of velocity (relative)", change, 1e-3, 1e-5));
+  EXPECT_TRUE(limit_row("turned boxes over tiles: lag (share of the path)", lag, 1e-2, 1e-3));
 }
 
 // Boxes of one fixed body, side by side, are as flush as those of many.

@@ -1,6 +1,7 @@
 // What may not matter: where the world is, how it is turned, how fast it moves, which way is left, and the unit of mass.
 // And what must improve: the error with the step.
 #include "laws/kit.h"
+#include "random.h"
 
 namespace gyre::laws::invariance_test {
 namespace {
@@ -244,6 +245,53 @@ TEST(Reversal, OfAFrictionlessElasticGasReturns) {
   for (std::size_t i = 0; i < balls.size(); ++i)
     error = std::max(error, length(world.pose(balls[i]).position - start[i]));
   EXPECT_TRUE(limit_row("A-175 distance from the start (m)", error, 1e-2, 1e-4));
+}
+
+// Twelve drawn bodies that fall on a floor, all lengths, speeds and gravity times `scale`; positions over the scale after a second. Every
+// body starts up to `moved` sizes of the scale beside its place.
+std::vector<DVec3> fall_at_scale(float scale, float moved, std::uint64_t seed) {
+  testing_random::Random random, moves;
+  random.state += 977 * seed;
+  World world = make_world({.gravity = {0, -9.81f * scale, 0}, .sleeping = false});
+  const Material rough = surface(0.5f, 0.3f);
+  world.add_body({.type = BodyType::fixed, .pose = {{0, -double(scale), 0}, {}}},
+                 {.geometry = Box{{20 * scale, scale, 20 * scale}}, .material = rough});
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 12; ++i) {
+    const float size = scale * random.real(0.2f, 0.5f);
+    Vec3 at = scale * random.vector(-1.2f, 1.2f);
+    at.y = scale * (0.7f + 0.9f * float(i));
+    const AnyShape shape = i % 3 == 0   ? AnyShape(Sphere{size})
+                           : i % 3 == 1 ? AnyShape(Box{{size, 0.6f * size, size}})
+                                        : AnyShape(Capsule{0.5f * size, size});
+    bodies.push_back(world.add_body(
+        {.pose = {DVec3(at) + double(scale) * DVec3(moves.vector(-moved, moved)), random.turn(3)},
+         .linear_velocity = scale * random.vector(-1, 1),
+         .angular_velocity = random.vector(-2, 2)},
+        {.geometry = shape, .material = rough}));
+  }
+  run(world, 1.0);
+  std::vector<DVec3> places;
+  for (const BodyId body : bodies) places.push_back((1.0 / double(scale)) * world.pose(body).position);
+  return places;
+}
+
+// Froude similarity: v^2 / (g L) is the same at every scale, so the motion is. What is left are roundings, which grow as a start does that is
+// moved by as much. (Powers of two, since the numbers of other scales are rounded themselves.)
+TEST(Scale, ScenesOfEqualFroudeNumberMoveAlike) {
+  double worst = 0.0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const std::vector<DVec3> base = fall_at_scale(1.0f, 0.0f, seed);
+    const auto difference = [&](const std::vector<DVec3>& other) {
+      double most = 0.0;
+      for (std::size_t i = 0; i < base.size(); ++i) most = std::max(most, length(other[i] - base[i]));
+      return most;
+    };
+    const double of_moved = difference(fall_at_scale(1.0f, 1.0e-7f, seed));
+    for (const float scale : {0.0078125f, 0.125f, 8.0f, 128.0f})
+      worst = std::max(worst, difference(fall_at_scale(scale, 0.0f, seed)) / of_moved);
+  }
+  EXPECT_TRUE(limit_row("scaled scenes: difference, over that of a start moved by 1e-7", worst, 10.0, 1.0));
 }
 
 }  // namespace

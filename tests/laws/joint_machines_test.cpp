@@ -3,6 +3,8 @@
 #include "laws/any_joint.h"
 #include "laws/kit.h"
 
+#include <random>
+
 namespace gyre::laws::joint_machines_test {
 namespace {
 
@@ -27,8 +29,44 @@ TEST(Gimbal, PrecessesAboutTheOtherAxis) {
     last = double(world.joint_state(second).position);
   }
   // The torque turns the spin with it: its part along the outer axis is torque times time.
-  EXPECT_TRUE(relative_row("A-22 precession (rad/s)", std::sin(std::fabs(last)) / (steps / 60.0), 0.25, 2e-2, 1e-3));
+  EXPECT_TRUE(
+      relative_row("A-22 precession (rad/s)", std::sin(std::fabs(last)) / (steps / 60.0), 0.25, 2e-2, 1e-3));
   EXPECT_NEAR(double(length(world.angular_velocity(rotor))), 100.0, 0.1);
+}
+
+// A cylinder of two light bodies that drives a heavy bucket at 0.05 m/s, with more force than balance needs (82.8 kN).
+TEST(Cylinder, OfLightPartsLiftsWhatItsForceCan) {
+  std::mt19937 engine{3};
+  const auto draw = [&](double low, double high) {
+    return low + (high - low) * double(engine() >> 8) / 16777216.0;
+  };
+  for (int trial = 0; trial < 8; ++trial) {
+    World world = make_world();
+    const float light = float(0.5 * std::pow(10.0, draw(0.0, 2.0)));
+    const ShapeDef part{.geometry = Box{{0.4f, 0.1f, 0.1f}}, .filter = {.collides_with = 0}};
+    const auto body = [&](DVec3 place, float mass, float angle) {
+      return world.add_body(
+          {.pose = {.position = place, .orientation = from_axis_angle({0, 0, 1}, angle)}, .mass = mass},
+          part);
+    };
+    const DVec3 foot{0.3, 0, 0}, head{1.5, 1, 0}, middle{0.9, 0.5, 0};
+    const float angle = float(std::atan2(1.0, 1.2));
+    const BodyId boom = body({2, 1, 0}, 50, 0), bucket = body({4, 1, 0}, 2000, 0);
+    const BodyId barrel = body({0.66, 0.3, 0}, light, angle), rod = body({1.14, 0.7, 0}, light, angle);
+    world.add_joint(HingeDef{.b = boom, .anchor = {0, 1, 0}, .axis = {0, 0, 1}});
+    world.add_joint(FixedDef{.a = boom, .b = bucket, .anchor = {4, 1, 0}});
+    world.add_joint(HingeDef{.b = barrel, .anchor = foot, .axis = {0, 0, 1}});
+    world.add_joint(HingeDef{.a = boom, .b = rod, .anchor = head, .axis = {0, 0, 1}});
+    const JointId cylinder = world.add_joint(
+        SliderDef{.a = barrel,
+                  .b = rod,
+                  .anchor = middle,
+                  .axis = to_float(head - foot),
+                  .motor = {.target_velocity = 0.05f, .max_force = float(82800.0 * draw(1.3, 4.0))}});
+    run(world, 3.0);
+    EXPECT_NEAR(double(world.joint_state(cylinder).position), 0.15, 0.01) << "parts of " << light << " kg";
+    EXPECT_GT(world.pose(bucket).position.y, 1.57) << "parts of " << light << " kg";
+  }
 }
 
 // A universal joint between shafts at an angle b: the second turns cos b / (1 - sin^2 b cos^2 t) times as fast, and two of them
@@ -91,7 +129,8 @@ TEST(Spring, OfAnyStiffnessIsStable) {
         World world = make_world({.sleeping = false});
         const double rest = 1.0, extension = 0.01;
         const float moment = float(mass * 1e-2);
-        const BodyId body = world.add_body(point_body(mass, {moment, moment, moment}, {0, -rest - extension, 0}));
+        const BodyId body =
+            world.add_body(point_body(mass, {moment, moment, moment}, {0, -rest - extension, 0}));
         world.add_joint(DistanceDef{
             .b = body, .length = float(rest), .stiffness = float(stiffness), .damping = float(damping)});
         const auto energy = [&] {
@@ -99,8 +138,7 @@ TEST(Spring, OfAnyStiffnessIsStable) {
           return e.kinetic + e.elastic + e.potential;
         };
         const double start = energy();
-        const double scale = 0.5 * stiffness * extension * extension +
-                             mass * kGravity * extension;
+        const double scale = 0.5 * stiffness * extension * extension + mass * kGravity * extension;
         double most = start;
         for (int i = 0; i < 600; ++i) {
           world.step(kStep);
@@ -185,7 +223,8 @@ TEST(JointTrouble, DrivenAgainstATeleportedBase) {
   world.set_pose(base, {{1, 2, 3}, {}});
   run(world, 5.0);
   const DVec3 expected{1 + 0.5 * std::cos(0.5), 2 + 0.5 * std::sin(0.5), 3};
-  EXPECT_TRUE(limit_row("B-30 a driven arm off its place (m)", length(world.pose(arm).position - expected), 1e-2, 1e-3));
+  EXPECT_TRUE(limit_row("B-30 a driven arm off its place (m)", length(world.pose(arm).position - expected),
+                        1e-2, 1e-3));
 }
 
 // B-30: a spring to a kinematic body that moves.
@@ -195,9 +234,10 @@ TEST(JointTrouble, SpringOnAKinematicBody) {
   const BodyId body = world.add_body(point_body(1.0, {0.1f, 0.1f, 0.1f}, {-1, 0, 0}));
   world.add_joint(DistanceDef{.a = base, .b = body, .length = 1.0f, .stiffness = 100.0f, .damping = 20.0f});
   run(world, 10.0);
-  EXPECT_TRUE(relative_row("B-30 speed behind a kinematic body", double(world.linear_velocity(body).x), 2.0, 2.5e-2, 1e-3));
-  EXPECT_TRUE(relative_row("B-30 length of its spring", length(world.pose(body).position - world.pose(base).position),
-                           1.0, 2e-2, 1e-3));
+  EXPECT_TRUE(relative_row("B-30 speed behind a kinematic body", double(world.linear_velocity(body).x), 2.0,
+                           2.5e-2, 1e-3));
+  EXPECT_TRUE(relative_row("B-30 length of its spring",
+                           length(world.pose(body).position - world.pose(base).position), 1.0, 2e-2, 1e-3));
 }
 
 // B-30: several joints between one pair, and bodies that must not collide while any is left.
@@ -214,7 +254,8 @@ TEST(JointTrouble, ParallelJointsBetweenOnePair) {
   for (const JointId joint : joints) {
     run(world, 1.0);
     EXPECT_EQ(world.stats().touching, 0);
-    EXPECT_TRUE(limit_row("B-30 speed on several joints (m/s)", double(length(world.linear_velocity(a))), 3.0, 1.0));
+    EXPECT_TRUE(
+        limit_row("B-30 speed on several joints (m/s)", double(length(world.linear_velocity(a))), 3.0, 1.0));
     EXPECT_TRUE(world.remove_joint(joint));
   }
   run(world, 0.5);

@@ -1,6 +1,8 @@
 // What stands by leaning: card houses, towers of planks, arches of dry stones.
 #include "laws/kit.h"
 
+#include <random>
+
 namespace gyre::laws::masonry_test {
 namespace {
 
@@ -97,6 +99,42 @@ TEST(CardHouse, OfOnePairNeedsHalfTheTangent) {
     } else {
       EXPECT_LT(moved, 1.0e-3) << "fell";
     }
+  }
+}
+
+// Boards whose inner edges alone touch push each other with m g (x_m - x_f) / y_e, where x_m is a board's middle, x_f its foot and y_e
+// the height of the edges. The floor has to bear that by friction; the edges, as both push level, need none.
+TEST(CardHouse, OfTwoBoardsOnTheirEdgesNeedsFrictionOnTheFloorAlone) {
+  std::mt19937 engine{7};
+  const auto draw = [&](double low, double high) {
+    return low + (high - low) * double(engine() >> 8) / 16777216.0;
+  };
+  for (int trial = 0; trial < 16; ++trial) {
+    const double lean = draw(0.15, 0.6), half = draw(0.1, 0.8), thick = half * draw(0.03, 0.1),
+                 yaw = draw(-3, 3);
+    const double c = std::cos(lean), s = std::sin(lean);
+    const double reach = half * s + thick * c;                                // from a middle to the edges
+    const double foot = half * s - thick * c, height = half * c + thick * s;  // to the foot; of the middle
+    const double needed = foot / (height + half * c - thick * s),
+                 share = trial % 4 == 3 ? 0.8 : draw(1.2, 1.6);
+    World world = make_world({.sleeping = false});
+    const Material material = surface(float(share * needed));
+    add_ground(world, material);
+    const Quat turn = from_axis_angle({0, 1, 0}, float(yaw));
+    std::vector<BodyId> boards;
+    for (const double side : {-1.0, 1.0}) {
+      BodyDef def;
+      def.pose.position = DVec3(rotate(turn, {float(side * reach), 0, 0})) + DVec3{0, height, 0};
+      def.pose.orientation = turn * from_axis_angle({0, 0, 1}, float(side * lean));
+      boards.push_back(world.add_body(def, {.geometry = Box{{float(thick), float(half), float(0.5 * half)}},
+                                            .density = 600,
+                                            .material = material}));
+    }
+    const std::vector<DVec3> from = places_of(world, boards);
+    run(world, 4.0);
+    const double moved = farthest_moved(world, boards, from) / half;
+    EXPECT_TRUE(share < 1.0 ? moved > 0.2 : moved < 2.0e-3)
+        << "trial " << trial << ", lean " << lean << ", " << share << " of the friction: moved by " << moved;
   }
 }
 

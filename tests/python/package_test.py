@@ -91,6 +91,58 @@ class Same(unittest.TestCase):
         self.assertIn("m/s^2", gyre.WorldDef.gravity.__doc__)
 
 
+
+class Mechanisms(unittest.TestCase):
+    def test_couplings_and_motors(self):
+        world = gyre.World(gravity=(0, 0, 0))
+        left, right = (world.add_body(pose=(x, 0, 0), can_sleep=False, mass=1, inertia=(1, 1, 1, 0, 0, 0)) for x in (-1, 1))
+        a, b = (world.add_joint(gyre.SliderDef(b=body, anchor=(x, 0, 0), axis=(1, 0, 0))) for body, x in ((left, -1), (right, 1)))
+        coupling = world.add_coupling(terms=[dict(joint=a, axis="linear_x", coefficient=1), dict(joint=b, axis="linear_x", coefficient=2)])
+        for _ in range(30):
+            world.add_joint_load(a, "linear_x", 5)
+            world.step(1 / 60)
+        self.assertAlmostEqual(2 * world.linear_velocity(right)[0], -world.linear_velocity(left)[0], 4)
+        self.assertLess(world.coupling_state(coupling).force, 0)
+        self.assertEqual(len(world.coupling(coupling).terms), 2)
+        with self.assertRaisesRegex(gyre.GyreError, "2 to 8"):
+            world.add_coupling(terms=[dict(joint=a, axis="linear_x")])
+
+    def test_articulations_are_arrays(self):
+        world = gyre.World()
+        links = [world.add_body(pose=(i + 0.5, 0, 0), mass=1, inertia=(0.1, 0.1, 0.1, 0, 0, 0)) for i in range(3)]
+        for i, link in enumerate(links):
+            world.add_joint(gyre.HingeDef(a=links[i - 1] if i else None, b=link, anchor=(i, 0, 0), axis=(0, 0, 1)))
+        arm = world.read_articulation(links[2])
+        n, m = len(arm.velocities), len(arm.bodies)
+        self.assertEqual((n, m), (3, 3))
+        mass = arm.mass_matrix.reshape(n, n)
+        self.assertAlmostEqual(mass[2, 2], 0.1 + 0.25, 6)
+        jacobian = arm.jacobians.reshape(m, 6, n)
+        np.testing.assert_allclose(jacobian[2, 1], [2.5, 1.5, 0.5], atol=1e-5)
+        # A controller that computes torques holds the arm against its weight.
+        for _ in range(30):
+            for joint, axis, force in zip(arm.coordinate_joints, arm.coordinate_axes, world.inverse_dynamics(links[2], np.zeros(n))):
+                world.add_joint_load(joint, gyre.JointAxis(axis), force)
+            world.step(1 / 240)
+        self.assertLess(np.abs(world.read_articulation(links[2]).positions).max(), 1e-3)
+        poses = world.forward_kinematics(links[2], [np.pi / 2, 0, 0]).reshape(m, 7)
+        np.testing.assert_allclose(poses[2, :3], [0, 2.5, 0], atol=1e-4)
+
+    def test_disabled_bodies_and_grids(self):
+        world = gyre.World(gravity=(0, 0, 0))
+        ball = world.add_body(shapes=gyre.Sphere(0.5))
+        world.set_enabled(ball, False)
+        self.assertFalse(world.enabled(ball))
+        self.assertIsNone(world.cast_ray((0, 0, 5), (0, 0, -10)))
+        world.set_enabled(ball, True)
+        vectors = np.zeros((2, 2, 2, 3), np.float32)
+        vectors[..., 0] = 6
+        world.add_field(kind="grid", bounds=dict(low=(-9, -9, -9), high=(9, 9, 9)), points=(2, 2, 2), vectors=vectors.reshape(-1, 3))
+        for _ in range(60):
+            world.step(1 / 60)
+        self.assertAlmostEqual(world.linear_velocity(ball)[0], 6, 3)
+
+
 class Values(unittest.TestCase):
     def test_definitions_have_the_defaults_of_cpp(self):
         self.assertEqual(gyre.BodyDef().type, gyre.BodyType.DYNAMIC)

@@ -18,7 +18,7 @@ import headers  # noqa: E402
 import model  # noqa: E402
 
 # The definition of each object and the type of its id.
-OBJECTS = {"WorldDef": None, "BodyDef": "BodyId", "ShapeDef": "ShapeId", "FieldDef": "FieldId", "GasDef": "FluidId", "LiquidDef": "FluidId",
+OBJECTS = {"WorldDef": None, "BodyDef": "BodyId", "CouplingDef": "CouplingId", "ShapeDef": "ShapeId", "FieldDef": "FieldId", "GasDef": "FluidId", "LiquidDef": "FluidId",
            "RopeDef": "SoftId", "ClothDef": "SoftId", "SolidDef": "SoftId", "SoftSettings": "SoftId", "MassDef": "BodyId", "LockedAxes": "BodyId",
            "Material": "ShapeId", "Filter": "ShapeId", "MaterialPair": None, "SurfaceRule": None, "Stepping": None, "SolverOptions": None,
            "JointAxisDef": "JointId", "Motor": "JointId", "PoseDrive": "JointId"}
@@ -45,14 +45,14 @@ READERS = {
     "SoftSettings.user_data": "soft_info", "SoftSettings.positions": "vertices", "SoftSettings.velocities": "vertices",
     "RopeDef.points": "vertices", "RopeDef.radius": "soft_info", "ClothDef.thickness": "soft_info", "ClothDef.pressure": "soft_info", "ClothDef.triangles": "soft_triangles",
     "RopeDef.linear_density": "soft_info", "ClothDef.area_density": "soft_info", "SolidDef.density": "soft_info",
-    "SolidDef.surface": "soft_surface",
+    "SolidDef.surface": "soft_surface", "SolidDef.tetrahedra": "solid_tetrahedra",
 }
 # What nothing reads yet.
 MATERIAL_OF_SOFT = "the material of ropes, cloths and solids is known to whoever made them; a snapshot keeps it"
 UNREAD = {f"{name}.{part}": MATERIAL_OF_SOFT for name, parts in {
     "RopeDef": "segments links stretch_stiffness bend_stiffness settings",
     "ClothDef": "grid pose links stretch_stiffness shear_stiffness bend_stiffness self_collision ambient_pressure pressure_law settings",
-    "SolidDef": "box tetrahedra pose model young_modulus poisson_ratio settings",
+    "SolidDef": "box pose model young_modulus poisson_ratio settings",
     "SoftSettings": "integrator damping static_friction dynamic_friction filter"}.items() for part in parts.split()}
 # Of joints, JointInfo has what they connect and when they break; joint_axis_def(), motor() and drive() have what acts on their axes;
 # read_joints() (gyre/debug.h) has the frames and limits.

@@ -10,7 +10,7 @@ from pathlib import Path
 import headers
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "joints", "events", "soft", "fluid", "fields", "world", "replay", "debug", "track"]
+HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "joints", "coupling", "events", "soft", "fluid", "fields", "world", "replay", "debug", "articulation", "track"]
 # Public headers that are not bound, and why.
 NOT_BOUND = {"gyre": "includes the others",
              "replica": "one world over several processes; a page is one",
@@ -67,6 +67,7 @@ RENAMED = {
     "World::exists(ShapeId)": "shapeExists",
     "World::exists(JointId)": "jointExists",
     "World::exists(FieldId)": "fieldExists",
+    "World::exists(CouplingId)": "couplingExists",
     "World::exists(SoftId)": "softExists",
     "World::exists(FluidId)": "fluidExists",
     "World::user_data(ShapeId)": "shapeUserData",

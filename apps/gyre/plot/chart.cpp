@@ -77,6 +77,17 @@ std::string path_of(const ChartSeries& series, ToX to_x, ToY to_y) {
   return out;
 }
 
+template <class ToX, class ToY>
+std::string dots_of(const ChartSeries& series, ToX to_x, ToY to_y, const char* color) {
+  std::string out;
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
+    out += "<circle cx=\"" + pixel(to_x(series.x[i])) + "\" cy=\"" + pixel(to_y(series.y[i])) +
+           "\" r=\"2.4\" fill=\"" + color + "\" fill-opacity=\"0.6\"/>\n";
+  }
+  return out;
+}
+
 // A text of Python and of gnuplot in double quotes.
 std::string quoted_text(const std::string& text) {
   std::string out = "\"";
@@ -119,7 +130,10 @@ std::vector<double> chart_ticks(double low, double high, int wanted) {
   return out;
 }
 
-std::string chart_svg(const Chart& chart) {
+namespace {
+
+// Everything of a chart but the element around it; its upper left corner is at 0, 0.
+std::string chart_body(const Chart& chart) {
   Range x, y;
   for (const ChartSeries& series : chart.series) {
     for (const double value : series.x) x.add(value);
@@ -127,22 +141,18 @@ std::string chart_svg(const Chart& chart) {
   }
   x.widen();
   y.widen();
-  const std::vector<double> x_ticks = chart_ticks(x.low, x.high, 8), y_ticks = chart_ticks(y.low, y.high, 6);
-  const double margin = 0.04 * (y.high - y.low);
+  const int wanted_x = std::max(chart.width / 110, 2), wanted_y = std::max(chart.height / 90, 2);
+  const std::vector<double> x_ticks = chart_ticks(x.low, x.high, wanted_x),
+                            y_ticks = chart_ticks(y.low, y.high, wanted_y);
+  const double margin = 0.04 * (y.high - y.low), side = chart.dots ? 0.04 * (x.high - x.low) : 0.0;
   const double low = std::min(y.low - margin, y_ticks.front()),
                high = std::max(y.high + margin, y_ticks.back());
+  const double first = std::min(x.low - side, chart.dots ? x_ticks.front() : x.low),
+               last = std::max(x.high + side, chart.dots ? x_ticks.back() : x.high);
   const double right = chart.width - kRight, bottom = chart.height - kBottom;
-  const auto to_x = [&](double value) {
-    return kLeft + (value - x.low) / (x.high - x.low) * (right - kLeft);
-  };
+  const auto to_x = [&](double value) { return kLeft + (value - first) / (last - first) * (right - kLeft); };
   const auto to_y = [&](double value) { return bottom - (value - low) / (high - low) * (bottom - kTop); };
-  const std::string size =
-      "width=\"" + std::to_string(chart.width) + "\" height=\"" + std::to_string(chart.height) + "\"";
-  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" " + size + " viewBox=\"0 0 " +
-                    std::to_string(chart.width) + " " + std::to_string(chart.height) +
-                    "\" font-family=\"sans-serif\" font-size=\"13\" fill=\"#222\">\n<rect " + size +
-                    " fill=\"#fff\"/>\n";
-  out += text_at(0.5 * (kLeft + right), 24, "middle", chart.title, " font-size=\"16\"");
+  std::string out = text_at(0.5 * (kLeft + right), 24, "middle", chart.title, " font-size=\"16\"");
   for (const double tick : x_ticks) {
     out += line(to_x(tick), kTop, to_x(tick), bottom, "#ddd");
     out += text_at(to_x(tick), bottom + 18, "middle", rounded(tick, 6));
@@ -158,12 +168,45 @@ std::string chart_svg(const Chart& chart) {
   out += text_at(20, 0.5 * (kTop + bottom), "middle", chart.y_label, turned);
   double key = kLeft;  // the names above the drawing, from the left
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
+    const ChartSeries& series = chart.series[i];
     const char* const color = kColors[i % std::size(kColors)];
-    out += "<path d=\"" + path_of(chart.series[i], to_x, to_y) + "\" fill=\"none\" stroke=\"" + color +
-           "\" stroke-width=\"1.6\" stroke-linejoin=\"round\"/>\n";
-    if (key > right - 40) continue;
-    out += line(key, 42, key + 20, 42, color) + text_at(key + 26, 46, "start", chart.series[i].name);
-    key += 44 + 7.2 * double(chart.series[i].name.size());
+    if (chart.dots) {
+      out += dots_of(series, to_x, to_y, color);
+    } else {
+      out += "<path d=\"" + path_of(series, to_x, to_y) + "\" fill=\"none\" stroke=\"" + color +
+             "\" stroke-width=\"1.6\" stroke-linejoin=\"round\"/>\n";
+    }
+    if (series.name.empty() || key > right - 40) continue;
+    out += line(key, 42, key + 20, 42, color) + text_at(key + 26, 46, "start", series.name);
+    key += 44 + 7.2 * double(series.name.size());
+  }
+  return out;
+}
+
+std::string begin_svg(int width, int height) {
+  const std::string size =
+      "width=\"" + std::to_string(width) + "\" height=\"" + std::to_string(height) + "\"";
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" " + size + " viewBox=\"0 0 " + std::to_string(width) +
+         " " + std::to_string(height) +
+         "\" font-family=\"sans-serif\" font-size=\"13\" fill=\"#222\">\n<rect " + size +
+         " fill=\"#fff\"/>\n";
+}
+
+}  // namespace
+
+std::string chart_svg(const Chart& chart) {
+  return begin_svg(chart.width, chart.height) + chart_body(chart) + "</svg>\n";
+}
+
+std::string charts_svg(const std::vector<Chart>& charts, int columns) {
+  if (charts.empty() || columns < 1) return begin_svg(0, 0) + "</svg>\n";
+  const int width = charts[0].width, height = charts[0].height;
+  const int rows = (int(charts.size()) + columns - 1) / columns;
+  std::string out = begin_svg(columns * width, rows * height);
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    const int row = int(i) / columns, column = int(i) % columns;
+    out += "<g transform=\"translate(" + std::to_string(column * width) + " " + std::to_string(row * height) +
+           ")\">\n" + chart_body(charts[i]) + "</g>\n";
   }
   return out + "</svg>\n";
 }

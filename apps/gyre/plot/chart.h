@@ -16,9 +16,12 @@ struct Chart {
   std::string title, x_label, y_label;
   std::vector<ChartSeries> series;
   int width = 900, height = 540;  // pixels
+  bool dots = false;              // of SVG: points without lines between them
 };
 
 std::string chart_svg(const Chart& chart);
+// Charts of one size beside and below each other, row by row.
+std::string charts_svg(const std::vector<Chart>& charts, int columns);
 std::string chart_gnuplot(const Chart& chart, const std::string& png_path);
 std::string chart_matplotlib(const Chart& chart, const std::string& png_path);
 

@@ -217,8 +217,7 @@ void refuse_equal_names(const Members& in, const char* key, const std::vector<st
   }
 }
 
-Study read_study(const std::string& path) {
-  const std::string text = read_text(path);
+Study parse_study(const std::string& text, const std::string& path, ReadText read) {
   const Json root = parse_document(text, path, {});
   Members in(path, "", root);
   Study out;
@@ -229,7 +228,7 @@ Study read_study(const std::string& path) {
   const std::filesystem::path scene_path = std::filesystem::path(path).parent_path() / *scene;
   out.scene_path = scene_path.string();
   out.scene_folder = scene_path.parent_path().string();
-  const std::string scene_text = read_text(out.scene_path);
+  const std::string scene_text = read(out.scene_path);
   out.scene = parse_document(scene_text, out.scene_path, {});
   out.duration = in.number("duration", 0, 1e9);
   out.steps = in.whole("steps", 0, 1e12);
@@ -238,12 +237,16 @@ Study read_study(const std::string& path) {
   out.seed = in.whole("seed", 0, 9e15).value_or(0);
   out.samples = in.whole("samples", 1, double(kMaxCases)).value_or(1);
   std::vector<std::string> names;
+  double cases = double(out.samples);
   if (const Json* const list = in.find("parameters")) {
     if (!list->is_array()) in.fail("parameters", "expected a list");
     for (std::size_t i = 0; i < list->size(); ++i) {
       out.parameters.push_back(
           read_parameter({path, "/parameters/" + std::to_string(i), (*list)[i]}, out.scene));
       names.push_back(out.parameters.back().name);
+      cases *= double(std::max<std::size_t>(1, out.parameters.back().values.size()));
+      if (cases > double(kMaxCases))
+        in.fail("parameters", "these make " + rounded(cases) + " cases, expected at most 1e7");
     }
   }
   refuse_equal_names(in, "parameters", names);
@@ -258,11 +261,6 @@ Study read_study(const std::string& path) {
   if (out.readings.empty()) in.fail("readings", "expected at least one reading");
   refuse_equal_names(in, "readings", names);
   in.refuse_others();
-  double cases = double(out.samples);
-  for (const StudyParameter& parameter : out.parameters)
-    cases *= double(std::max<std::size_t>(1, parameter.values.size()));
-  if (cases > double(kMaxCases))
-    in.fail("parameters", "these make " + rounded(cases) + " cases, expected at most 1e7");
   char mark[20];
   std::snprintf(mark, sizeof mark, "%016llx",
                 static_cast<unsigned long long>(text_hash(text + '\0' + scene_text)));
@@ -302,13 +300,21 @@ std::vector<Json> Study::values_of(std::uint64_t number) const {
   return out;
 }
 
-SceneResult<Study> load_study(const std::string& path) {
+SceneResult<Study> read_study(const std::string& text, const std::string& path, ReadText read) {
   try {
-    return read_study(path);
+    return parse_study(text, path, read);
   } catch (const SceneError& error) {
     return error;
   } catch (const std::exception& error) {
     return SceneError{path, 0, 0, "", error.what()};
+  }
+}
+
+SceneResult<Study> load_study(const std::string& path) {
+  try {
+    return read_study(read_text(path), path, read_text);
+  } catch (const SceneError& error) {
+    return error;
   }
 }
 

@@ -51,6 +51,9 @@ struct Study {
 };
 
 SceneResult<Study> load_study(const std::string& path);
+// The same from text. `read` gives the text of the scene, by its path, or throws a SceneError.
+using ReadText = std::string (*)(const std::string& path);
+SceneResult<Study> read_study(const std::string& text, const std::string& path, ReadText read);
 
 // The result of a case: one line of JSON without the line break. Whatever goes wrong with the case is told in its "error".
 std::string run_case(const Study& study, std::uint64_t number);

@@ -22,13 +22,13 @@ class Gauge {
   Gauge(const StudyReading& reading, const SceneRunner& runner) : reading_(reading) {
     if (reading.object.empty()) return;
     const Scene& scene = runner.scene();
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const bool of_joint = reading.quantity.rfind("joint_", 0) == 0 || reading.quantity == "broken";
+    for (std::size_t i = 0; !of_joint && i < scene.bodies.size(); ++i) {
       if (scene.bodies[i].name == reading.object) body_ = runner.bodies()[i];
     }
-    for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    for (std::size_t i = 0; of_joint && i < scene.joints.size(); ++i) {
       if (scene.joints[i].name == reading.object) joint_ = runner.joints()[i];
     }
-    const bool of_joint = reading.quantity.rfind("joint_", 0) == 0 || reading.quantity == "broken";
     if (of_joint ? !joint_ : !body_)
       throw CaseFailure{"reading '" + reading.name + "': the scene has no " + (of_joint ? "joint" : "body") +
                         " '" + reading.object + "'"};

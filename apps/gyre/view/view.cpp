@@ -3,6 +3,8 @@
 
 #include "exit_code.h"
 #include "interrupt.h"
+#include "recording_file.h"
+#include "scene/mesh_file.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_writer.h"
 #include "view/open_browser.h"
@@ -101,7 +103,7 @@ bool check_recording(const std::string& path) {
   return false;
 }
 
-// The scene made from a file of another program, in a file that is there as long as it is served.
+// A scene made from a file of another program, or standard input, in a file that is there as long as it is served.
 class ConvertedScene {
  public:
   ConvertedScene() = default;
@@ -120,22 +122,37 @@ class ConvertedScene {
       return {};
     }
     for (const std::string& note : scene->notes) say(note);
+    return keep(fs::path(path).filename().string() + ".gyre.json", write_scene(*scene, {.inline_meshes = true}));
+  }
+  // The path of a file with the bytes of standard input.
+  std::string keep_input() {
+    std::string bytes;
+    const std::string problem = read_whole_file(std::string(kStandardInput), recording_limits(), bytes);
+    if (!problem.empty()) {
+      say("standard input: " + problem);
+      return {};
+    }
+    return keep(bytes.rfind("GYREPLAY", 0) == 0 ? "input.gyrec" : "input.gyre.json", bytes);
+  }
+
+ private:
+  // The path of a new file with these bytes; empty and a message if it cannot be made.
+  std::string keep(const std::string& name, const std::string& bytes) {
     std::string folder = (fs::temp_directory_path() / "gyre_view_XXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) {
       say(folder + ": cannot be made");
       return {};
     }
     folder_ = folder;
-    const fs::path made = fs::path(folder_) / (fs::path(path).filename().string() + ".gyre.json");
+    const fs::path made = fs::path(folder_) / name;
     std::ofstream file(made, std::ios::binary);
-    file << write_scene(*scene, {.inline_meshes = true});
+    file << bytes;
     file.close();
     if (file) return made.string();
     say(made.string() + ": cannot be written");
     return {};
   }
 
- private:
   std::string folder_;
 };
 
@@ -191,7 +208,10 @@ int view(const ViewOptions& options) {
   if (!viewer.empty()) files.add_folder("/", viewer.string());
   std::string query, shown_path, shown_file = options.file;
   ConvertedScene converted;
-  if (format_of(options.file) != FileFormat::scene) {
+  if (options.file == kStandardInput) {
+    shown_file = converted.keep_input();
+    if (shown_file.empty()) return kExitInvalid;
+  } else if (format_of(options.file) != FileFormat::scene) {
     shown_file = converted.make(options.file, options.import);
     if (shown_file.empty()) return kExitInvalid;
   }

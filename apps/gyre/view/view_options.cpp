@@ -17,7 +17,7 @@ void add_view(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "FILE", options->file,
-          "The scene (*.gyre.json), robot, glTF file or recording (*.gyrec); without it, the scenes that come with the viewer")
+          "The scene (*.gyre.json), robot, glTF file or recording (*.gyrec), - for standard input; without it, the scenes that come with the viewer")
       ->type_name("");
   command
       ->add_option("--port", options->port,

@@ -136,11 +136,10 @@ struct Patch {
   Vec3 out() const { return side.out * manifold.normal; }
 };
 
-// Decides which points of a manifold a neighbour of the same mover hides: points inside the neighbour, where it
-// continues beyond them and where the manifold's own shape does not rise above the neighbour.
-class Cover {
+// Two manifolds of one mover: which points of the first may be hidden beside the second.
+class Beside {
  public:
-  Cover(const CollideInput& input, const Patch& own, const Patch& neighbour)
+  Beside(const CollideInput& input, const Patch& own, const Patch& neighbour)
       : input_(input),
         own_(own),
         neighbour_(neighbour),
@@ -149,15 +148,18 @@ class Cover {
         up_(own_shape_.direction(neighbour.out())),
         slack_(kFlushShare * own.contact.size) {}
 
+  // True if the manifold's own shape does not rise above the neighbour's surface at a point.
+  bool is_level(int i) const {
+    return height_above(own_shape_.shape(), own_.manifold.triangle, own_shape_.point(surface_point(i)),
+                        up_) <= 2.0f * slack_;
+  }
+  // True if a static shape contains a point and continues beyond it.
+  bool is_inside(int i, std::uint32_t shape, std::uint32_t body) const {
+    const StaticShape by(input_, shape, body, own_.contact.body_a);
+    return continues_beyond(by.shape(), by.point(surface_point(i)), by.direction(out_), slack_);
+  }
   bool hides(int i) const {
-    const ContactPointState& state = own_.manifold.points[i];
-    // The point is midway between the surfaces; half the separation back lies the static surface.
-    const Vec3 point = state.from_a - 0.5f * state.separation * out_;
-    if (height_above(own_shape_.shape(), own_.manifold.triangle, own_shape_.point(point), up_) >
-        2.0f * slack_)
-      return false;
-    const StaticShape by(input_, neighbour_.side.other, neighbour_.side.other_body, own_.contact.body_a);
-    return continues_beyond(by.shape(), by.point(point), by.direction(out_), slack_);
+    return is_level(i) && is_inside(i, neighbour_.side.other, neighbour_.side.other_body);
   }
   bool hides_all() const {
     for (int i = 0; i < own_.manifold.count; ++i) {
@@ -167,6 +169,12 @@ class Cover {
   }
 
  private:
+  // The point is midway between the surfaces; half the separation back lies the static surface.
+  Vec3 surface_point(int i) const {
+    const ContactPointState& state = own_.manifold.points[i];
+    return state.from_a - 0.5f * state.separation * out_;
+  }
+
   const CollideInput& input_;
   const Patch& own_;
   const Patch& neighbour_;
@@ -224,12 +232,6 @@ struct Scene {
   const StaticContacts& static_contacts;
 };
 
-bool hides(const CollideInput& input, const Patch& neighbour, const Patch& own, int point) {
-  if (dot(own.out(), neighbour.out()) > kSameFace) return false;
-  // If two manifolds hide each other, both stay: a bump is better than a hole.
-  return Cover(input, own, neighbour).hides(point) && !Cover(input, neighbour, own).hides_all();
-}
-
 // A contact that may be hidden, and the contacts of the same mover.
 struct Candidate {
   std::uint32_t slot;
@@ -237,7 +239,22 @@ struct Candidate {
   std::span<const std::uint64_t> neighbours;
 };
 
-// True if a neighbour hides a point of the patch.
+// True if another static shape beside the mover contains a point of the patch and continues beyond it, touched or not.
+bool is_inside_another(const Scene& scene, const Candidate& candidate, const Patch& own, const Beside& beside,
+                       int point) {
+  bool inside = false;
+  for_each_contact_of_shape(scene.store, own.side.mover, [&](std::uint32_t slot) {
+    const Contact& pair = scene.store.contacts[slot];
+    if (inside || slot == candidate.slot || pair.sensor != 0) return;
+    const bool is_a = pair.shape_a == own.side.mover;
+    const std::uint32_t shape = is_a ? pair.shape_b : pair.shape_a, body = is_a ? pair.body_b : pair.body_a;
+    if (scene.input.proxies[shape].pushes || !move_together(scene.input, own.side.other_body, body)) return;
+    inside = beside.is_inside(point, shape, body);
+  });
+  return inside;
+}
+
+// True if a point of the patch is hidden beside one of the mover's other manifolds.
 bool is_point_hidden(const Scene& scene, const Candidate& candidate, const Patch& own, int point) {
   for (const std::uint64_t key : candidate.neighbours) {
     const auto slot = std::uint32_t(key);
@@ -247,7 +264,11 @@ bool is_point_hidden(const Scene& scene, const Candidate& candidate, const Patch
     const Contact& other = scene.store.contacts[slot];
     for (std::uint32_t m = 0; m < other.manifold_count; ++m) {
       const Patch by{other, side, scene.store.manifolds[other.first_manifold + m]};
-      if (hides(scene.input, by, own, point)) return true;
+      if (dot(own.out(), by.out()) > kSameFace) continue;
+      const Beside beside(scene.input, own, by);
+      // If two manifolds hide each other, both stay: a bump is better than a hole.
+      if (!beside.is_level(point) || Beside(scene.input, by, own).hides_all()) continue;
+      if (is_inside_another(scene, candidate, own, beside, point)) return true;
     }
   }
   return false;

@@ -7,8 +7,9 @@
 // A point p of B with the normal n (out of B) lies on the surface of the union only if no body A that contains p
 // extends beyond p along n; otherwise the way out of B leads into A. For a ball on A beside the edge of B, the nearest
 // point of the union is on A. A corner looks alike, but there B rises above A along the normal of A's own contact, so
-// its point stays. Both tests need only support points and are exact for convex bodies; steps below kFlushShare do not
-// count. Meshes and height fields are surfaces: a surface hides a point that lies on it if it continues, level, in the
+// its point stays. The body that contains p need not be touched yet: a point beside the seam of the next two tiles is
+// inside the one that comes after. Both tests need only support points and are exact for convex bodies; steps below
+// kFlushShare do not count. Meshes and height fields are surfaces: a surface hides a point that lies on it if it continues, level, in the
 // direction in which the normal leans; of the other surface only the touched triangle must not rise.
 #pragma once
 

@@ -188,6 +188,19 @@ void for_each_on_path(const ContinuousInput& input, const SweptPath& path, Array
   }
 }
 
+// True if the union of the shapes that the mover touches hides all contacts with the obstacle.
+bool is_behind_internal_edge(const ContinuousInput& input, std::uint32_t index, std::uint32_t obstacle) {
+  if (input.contacts == nullptr) return false;
+  bool hidden = false;
+  for_each_contact_of_shape(input.contacts->store, index, [&](std::uint32_t slot) {
+    const Contact& contact = input.contacts->store.contacts[slot];
+    if (contact.shape_a != obstacle && contact.shape_b != obstacle) return;
+    hidden = contact.manifold_count == 0 && slot < input.contacts->hidden.size() &&
+             input.contacts->hidden.test(slot);
+  });
+  return hidden;
+}
+
 // When a body must halt, and which of its shapes meets which.
 struct BodyImpactTime : TimeOfImpact {
   std::uint32_t shape = 0, obstacle = 0;
@@ -207,7 +220,9 @@ BodyImpactTime first_impact(const ContinuousInput& input, const SweptPath& path,
         if (input.lets_pass != nullptr &&
             (*input.lets_pass)(obstacle, path.sweep.translation - other.sweep->translation))
           return;
-        const TimeOfImpact impact = mover.impact_with(other, first.time, path.core_only, triangle);
+        TimeOfImpact impact = mover.impact_with(other, first.time, path.core_only, triangle);
+        if (impact.hit && !path.core_only && is_behind_internal_edge(input, index, obstacle))
+          impact = mover.impact_with(other, first.time, true, triangle);
         if (!impact.hit || !(impact.time < first.time || !first.hit)) return;
         static_cast<TimeOfImpact&>(first) = impact;
         first.shape = index;
@@ -242,9 +257,9 @@ double touching_share(const ContinuousInput& input, const BodyImpactTime& impact
     const DQuat back = conjugate(normalized(to_double(frame.orientation)));
     ClosestPair closest;
     return find_closest_points(other.shape,
-                        {&own.shape, rotate(back, placed.position - frame.position),
-                         back * normalized(to_double(placed.orientation))},
-                        touching, closest);
+                               {&own.shape, rotate(back, placed.position - frame.position),
+                                back * normalized(to_double(placed.orientation))},
+                               touching, closest);
   };
   if (touches(1.0)) return 1.0;
   double low = 0.0, high = 1.0;

@@ -8,7 +8,9 @@
 //
 // A shape must not be halted by what it touches as the step begins, or a sliding body would freeze in every step. The
 // solver handles such pairs; only the core (the shape with half of its inner radius removed all around) is swept
-// against them, so that it cannot pass. In a mesh or height field this holds for each plane of its triangles.
+// against them, so that it cannot pass. In a mesh or height field this holds for each plane of its triangles. The same
+// holds for a shape behind an internal edge (contact/internal_edges.h): a body that slides over flush tiles sinks in by a
+// trace, and the side of the next tile must not halt it.
 //
 // Sensors halt nothing. A body that passed through a sensor within the step is reported as a crossing, because updates
 // between steps would not see it.
@@ -75,6 +77,7 @@ struct KnownContacts {
   // one.
   const Bitset& ccd_blockers;
   const Bitset& near_blockers;
+  const Bitset& hidden;  // contacts with manifolds at internal edges in this step (InternalEdgeScratch::hidden)
 };
 
 struct ContinuousInput {

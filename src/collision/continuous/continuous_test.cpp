@@ -156,7 +156,7 @@ class Scene {
         ccd_blockers.set(slot), near_blockers.set(a), near_blockers.set(b);
       }
     }
-    const KnownContacts contacts{store, ccd_blockers, near_blockers};
+    const KnownContacts contacts{store, ccd_blockers, near_blockers, {}};
     contacts_ = &contacts;
     const std::vector<float> fractions = clamp_as_is(fast);
     contacts_ = nullptr;

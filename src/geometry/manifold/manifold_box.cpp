@@ -270,6 +270,65 @@ struct Pair {
   float max_separation;
 };
 
+// A place at an edge of a box along one axis, within `reach`. It is given in the frame of the box.
+bool is_at_edge(const float* half, Vec3 place, int along, float reach) {
+  for (const int k : {kNext[along], kAfter[along]})
+    if (absolute(absolute(place[k]) - half[k]) > reach) return false;
+  return true;
+}
+Vec3 onto_edge(const float* half, Vec3 place, int along) {
+  const auto at = [&](int k) { return k == along ? place[k] : place[k] < 0.0f ? -half[k] : half[k]; };
+  return {at(0), at(1), at(2)};
+}
+// The sum of the normals of both faces at an edge.
+Vec3 out_of_edge(Vec3 place, int along) {
+  const auto at = [&](int k) { return k == along ? 0.0f : place[k] < 0.0f ? -1.0f : 1.0f; };
+  return {at(0), at(1), at(2)};
+}
+
+// Boxes that lean on each other with two parallel edges touch at these edges alone. All normals between those of the faces around the
+// edges are as good, and that of one face would ask for friction which neither box needs: the normal halves the angle. Faces that are
+// nearly parallel keep theirs.
+void lean_on_edges(const Boxes& x, LocalManifold& out) {
+  constexpr float kReach = 0.02f;                // of the thinnest half extent
+  constexpr float kAlong = 0.9999f;              // cosine of parallel edges
+  constexpr float kLow = 0.26f, kHigh = 0.966f;  // cosines of 75 and 15 degrees, between the faces of the two
+  const float reach = kReach * thinnest(x);
+  const Vec3 axes_b[3] = {to_vec3(Floats::load(x.s[0])), to_vec3(Floats::load(x.s[1])),
+                          to_vec3(Floats::load(x.s[2]))};
+  const Vec3 center_b = to_vec3(Floats::load(x.t));
+  const auto in_b = [&](Vec3 p) {
+    const Vec3 d = p - center_b;
+    return Vec3{dot(d, axes_b[0]), dot(d, axes_b[1]), dot(d, axes_b[2])};
+  };
+  const auto turned = [&](Vec3 v) { return v.x * axes_b[0] + v.y * axes_b[1] + v.z * axes_b[2]; };
+  int deepest = 0;
+  for (int k = 1; k < out.count; ++k)
+    if (out.points[k].separation < out.points[deepest].separation) deepest = k;
+  const Vec3 on_a = out.points[deepest].position, on_b = in_b(on_a);
+  for (int i = 0; i < 3; ++i) {
+    if (!is_at_edge(x.a, on_a, i, reach)) continue;
+    int j = 0;
+    while (j < 3 && !(absolute(x.r[i][j]) > kAlong)) ++j;
+    if (j == 3 || !is_at_edge(x.b, on_b, j, reach)) continue;
+    const Vec3 out_of_a = out_of_edge(on_a, i), facing = turned(out_of_edge(on_b, j));
+    const float cosine = -0.5f * dot(out_of_a, facing);
+    if (!(cosine > kLow && cosine < kHigh)) return;
+    out.normal = normalized(out_of_a - facing);
+    int kept = 0;
+    for (int k = 0; k < out.count; ++k) {
+      const Vec3 place = out.points[k].position, place_b = in_b(place);
+      if (!is_at_edge(x.a, place, i, reach) || !is_at_edge(x.b, place_b, j, reach)) continue;
+      const Vec3 edge_a = onto_edge(x.a, place, i), edge_b = center_b + turned(onto_edge(x.b, place_b, j));
+      out.points[k].position = 0.5f * (edge_a + edge_b);
+      out.points[k].separation = dot(edge_b - edge_a, out.normal);
+      out.points[kept++] = out.points[k];
+    }
+    out.count = kept;
+    return;
+  }
+}
+
 // The manifold along the deciding axis, whose separation is within the allowed one. out.count must be 0.
 void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCache& cache,
                    LocalManifold& out) {
@@ -283,6 +342,7 @@ void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCach
   }
   // The boxes are close or overlap, but no face projects onto the other.
   if (out.count == 0) collide_cores(pair.a, pair.b, pair.a_from_b, pair.max_separation, cache, out);
+  if (out.count > 0) lean_on_edges(x, out);
 }
 
 }  // namespace

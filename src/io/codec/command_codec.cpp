@@ -53,9 +53,10 @@ class FieldReader {
   void shape(AnyShape& value) { value = read_shape(in_, geometry_); }
   template <class T>
   void count(std::vector<T>& list) {
-    // A shape takes more, an emitter without a velocity this.
+    // A shape takes more, an emitter without a velocity this; a term is stored without gaps.
     constexpr std::size_t kMinBytes = std::is_same_v<T, ShapeDef>       ? 64
                                       : std::is_same_v<T, FluidEmitter> ? 53
+                                      : std::is_same_v<T, CouplingTerm> ? 11
                                                                         : sizeof(T);
     list.resize(in_.get_count(kMinBytes));
   }
@@ -157,9 +158,10 @@ void fields(C& c, T& v) {
 template <class C, Is<FieldDef> T>
 void fields(C& c, T& v) {
   auto& [kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence,
-         turbulence_length, center, strength, radius, falloff, core, axis, normal, offset] = v;
+         turbulence_length, center, strength, radius, falloff, core, axis, normal, offset, points, vectors] = v;
   all(c, kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence,
       turbulence_length, center, strength, radius, falloff, core, axis, normal, offset);
+  if (kind == FieldKind::grid) all(c, points, vectors);
 }
 template <class C, Is<ExplosionDef> T>
 void fields(C& c, T& v) {
@@ -189,8 +191,8 @@ void fields(C& c, T& v) {
 template <class C, Is<BodyDef> T>
 void fields(C& c, T& v) {
   auto& [type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep,
-         sleep_speed, locked, mass, center, inertia, user_data] = v;
-  (void)sleep_speed;  // a command of its own, SetSleepSpeed
+         sleep_speed, locked, mass, center, inertia, user_data, enabled] = v;
+  (void)sleep_speed, (void)enabled;  // commands of their own, SetSleepSpeed and SetEnabled
   all(c, type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep,
       locked, mass, center, inertia, user_data);
 }
@@ -214,8 +216,18 @@ void fields(C& c, T& v) {
   auto& [position, orientation, linear, angular, frequency, damping, force, torque] = v;
   all(c, position, orientation, linear, angular, frequency, damping, force, torque);
 }
+template <class C, Is<CouplingTerm> T>
+void fields(C& c, T& v) {
+  auto& [joint, axis, coefficient] = v;
+  all(c, joint, axis, coefficient);
+}
+template <class C, Is<CouplingDef> T>
+void fields(C& c, T& v) {
+  auto& [terms, offset] = v;
+  all(c, terms, offset);
+}
 template <class C, class T>
-requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>> || Is<T, std::vector<DVec3>> ||
+requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<CouplingTerm>> || Is<T, std::vector<Vec3>> || Is<T, std::vector<DVec3>> ||
          Is<T, std::vector<std::uint32_t>> || Is<T, std::vector<float>> ||
          Is<T, std::vector<FluidEmitter>> || Is<T, std::vector<FluidRegion>>) void fields(C& c, T& list) {
   c.count(list);
@@ -441,7 +453,7 @@ concept IsOneOf = (Is<T, Of> || ...);
 template <class C, class T>
 requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair,
                  SetSurfaceRule, SetSleeping, SetSubsteps, AddField, RemoveField, Explode, AddSoft,
-                 RemoveSoft, AddFluid, RemoveFluid, SetSleepShare, Step>
+                 RemoveSoft, AddFluid, RemoveFluid, SetSleepShare, Step, AddCoupling, RemoveCoupling>
 void fields(C& c, T& v) {
   auto& [only] = v;
   all(c, only);
@@ -450,10 +462,15 @@ template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
                  SetAwake, SetField, SetSleepSpeed, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft,
                  SetEmitters, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetBodyUserData,
-                 SetShapeUserData, SetFluidPose>
+                  SetShapeUserData, SetEnabled, SetFluidPose>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
+}
+template <class C, Is<SetVertexLimits> T>
+void fields(C& c, T& v) {
+  auto& [soft, targets, distances, normals, backstops] = v;
+  all(c, soft, targets, distances, normals, backstops);
 }
 template <class C, Is<SetMotion> T>
 void fields(C& c, T& v) {

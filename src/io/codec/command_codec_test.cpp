@@ -117,8 +117,13 @@ std::vector<Command> all_commands() {
           SetShapeUserData{shape, 1234567890124},
           SetBreakLoad{joint, 1.5f, 2.5f},
           SetPairIgnored{body, BodyId{4, 6, kWorld}, true},
+          SetEnabled{body, false},
+          AddCoupling{{.terms = {{joint, JointAxis::linear_y, 2.5f}, {JointId{1, 2, kWorld}, JointAxis::angular_z, -3.0f}},
+                       .offset = 0.75f}},
+          RemoveCoupling{CouplingId{4, 3, kWorld}},
           SetFluidPose{FluidId{2, 1, kWorld}, Pose{{1, 2, 3}, {0, 1, 0, 0}}},
-          SetFluidVelocity{FluidId{2, 1, kWorld}, {1, 2, 3}, {4, 5, 6}}};
+          SetFluidVelocity{FluidId{2, 1, kWorld}, {1, 2, 3}, {4, 5, 6}},
+          SetVertexLimits{SoftId{3, 1, kWorld}, {{1, 2, 3}}, {0.5f}, {{0, 1, 0}}, {0.25f}}};
 }
 
 // Fields of certain kinds of joints are restored as well.

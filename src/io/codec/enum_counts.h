@@ -38,11 +38,11 @@ inline constexpr int kEnumCount<SpringKind> = int(SpringKind::explicit_force) + 
 template <>
 inline constexpr int kEnumCount<TimeStepping> = kTimeSteppingCount;
 template <>
-inline constexpr int kEnumCount<FieldKind> = int(FieldKind::buoyancy) + 1;
+inline constexpr int kEnumCount<FieldKind> = kFieldKindCount;
 template <>
 inline constexpr int kEnumCount<SoftKind> = int(SoftKind::solid) + 1;
 template <>
-inline constexpr int kEnumCount<SoftIntegrator> = int(SoftIntegrator::verlet) + 1;
+inline constexpr int kEnumCount<SoftIntegrator> = int(SoftIntegrator::visual) + 1;
 template <>
 inline constexpr int kEnumCount<RopeLinks> = int(RopeLinks::rods) + 1;
 template <>

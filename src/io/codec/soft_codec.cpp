@@ -1,7 +1,7 @@
 #include "io/codec/soft_codec.h"
 
-#include "io/codec/command_codec.h"
 #include "io/codec/array_codec.h"
+#include "io/codec/command_codec.h"
 #include "soft/store/soft_builder.h"
 #include "soft/store/soft_damage.h"
 
@@ -17,8 +17,10 @@ bool fits(const SoftEntry& entry) {
   for (const Array<double>* column : {&p.x, &p.y, &p.z}) good = good && column->size() == rows;
   for (const Array<float>* column : {&p.vx, &p.vy, &p.vz}) good = good && column->size() == rows;
   for (const Array<float>& column : entry.body.pull) good = good && (column.empty() || column.size() == rows);
-  for (const Array<double>& column : entry.body.moved) good = good && (column.empty() || column.size() == rows);
-  return good && entry.rest.size() == 1 && entry.body.chain.tension.size() == entry.body.chain.rest_length.size();
+  for (const Array<double>& column : entry.body.moved)
+    good = good && (column.empty() || column.size() == rows);
+  return good && entry.rest.size() == 1 &&
+         entry.body.chain.tension.size() == entry.body.chain.rest_length.size();
 }
 
 }  // namespace
@@ -29,6 +31,13 @@ void write_soft(ByteWriter& out, const SoftStore& soft) {
     write_soft_def(out, *entry.def);
     for_each_damage_array(entry, [&](const auto& array) { write_array(out, array); });
     for_each_soft_array(entry, [&](const auto& array) { write_array(out, array); });
+  });
+  // By slot; left out if there are none.
+  bool any = false;
+  soft.for_each([&](const SoftEntry& entry) { any = any || has_rare_state(entry); });
+  if (!any) return;
+  soft.for_each([&](const SoftEntry& entry) {
+    for_each_rare_array(entry, [&](const auto& array) { write_array(out, array); });
   });
 }
 
@@ -48,7 +57,12 @@ bool read_soft(ByteReader& in, SoftStore& soft) {
     for_each_soft_array(entry, [&](auto& array) { good = good && read_array(in, array); });
     if (!good || !fits(entry)) return false;
   }
-  return true;
+  bool good = true;
+  if (in.left() == 0) return good;
+  soft.for_each([&](SoftEntry& entry) {
+    for_each_rare_array(entry, [&](auto& array) { good = good && read_array(in, array); });
+  });
+  return good;
 }
 
 }  // namespace gyre

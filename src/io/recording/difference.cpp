@@ -66,6 +66,7 @@ struct Tracer {
       };
       for_each_damage_array(entry, add_array);
       for_each_soft_array(entry, add_array);
+      for_each_rare_array(entry, add_array);
       out.rows.push_back(hash);
     });
   }

@@ -198,6 +198,7 @@ struct OtherSize {
     soft.for_each([&](const SoftEntry& entry) {
       for_each_damage_array(entry, [&](const auto& array) { bytes += array.bytes(); });
       for_each_soft_array(entry, [&](const auto& array) { bytes += array.bytes(); });
+      for_each_rare_array(entry, [&](const auto& array) { bytes += array.bytes(); });
     });
   }
   void operator()(const char*, const FluidStore& fluids) {

@@ -23,8 +23,7 @@ inline bool may_act(const Contact& contact) {
   return contact.manifold_room != 0 && contact.manifold_count != 0 && contact.sensor == 0;
 }
 inline bool may_act(const RigidWorld& w, std::uint32_t joint) {
-  const JointDetail* const detail = detail_of(w.joints, joint);
-  return detail == nullptr || !detail->disabled;
+  return is_joint_enabled(w, joint);
 }
 // True if the contact is a constraint now.
 bool is_solved(const RigidWorld& w, const Contact& contact);

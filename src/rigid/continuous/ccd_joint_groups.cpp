@@ -12,8 +12,7 @@ constexpr std::size_t kMaxJoints = 48;  // around each halted body; the body's o
 // True if its equations and limits depend on the positions of two bodies, and not only on rotation or travel.
 bool constrains_pose(const RigidWorld& w, std::uint32_t joint) {
   const JointKind kind = w.joints.records[joint].kind;
-  const JointDetail* const detail = detail_of(w.joints, joint);
-  return (detail == nullptr || !detail->disabled) && kind != JointKind::gear &&
+  return is_joint_enabled(w, joint) && kind != JointKind::gear &&
          kind != JointKind::rack_and_pinion && kind != JointKind::pulley && kind != JointKind::mouse &&
          kind != JointKind::motor;
 }

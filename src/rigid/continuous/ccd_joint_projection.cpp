@@ -45,8 +45,7 @@ void store_poses(RigidWorld& w, const ProjectionGroup& group, const ProjectionBo
 
 bool constrains_position(const RigidWorld& w, std::uint32_t joint) {
   const JointKind kind = w.joints.records[joint].kind;
-  const JointDetail* const detail = detail_of(w.joints, joint);
-  return (detail == nullptr || !detail->disabled) &&
+  return is_joint_enabled(w, joint) &&
          (kind == JointKind::ball || kind == JointKind::hinge || kind == JointKind::fixed ||
           kind == JointKind::cone || kind == JointKind::universal);
 }

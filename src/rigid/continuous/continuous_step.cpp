@@ -2,12 +2,12 @@
 // them, and moves them back to their time of impact.
 #include "collision/continuous/continuous.h"
 #include "math/rotation.h"
+#include "rigid/batch/surface_rules.h"
 #include "rigid/continuous/ccd_joint_projection.h"
 #include "rigid/rigid_step.h"
 #include "rigid/store/shape_boxes.h"
-#include "rigid/batch/surface_rules.h"
-#include "task/parallel_filter.h"
 #include "task/parallel.h"
+#include "task/parallel_filter.h"
 
 #include <cmath>
 
@@ -147,8 +147,8 @@ class Overrun {
     }
     if (scratch_.listed.test(body)) return;
     scratch_.listed.set(body);
-    scratch_.fast.push_back(
-        {body, w_.bodies.flags[body].continuous != 0, 0.0f, joints_of(w_.bodies, body).empty(), only_crosses});
+    scratch_.fast.push_back({body, w_.bodies.flags[body].continuous != 0, 0.0f,
+                             joints_of(w_.bodies, body).empty(), only_crosses});
   }
 
   const RigidWorld& w_;
@@ -271,7 +271,8 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
   const auto shapes_of = [&](std::uint32_t body) { return shapes[body]; };
   const auto passes = [&](std::uint32_t shape, Vec3 direction) { return lets_pass(w, shape, direction); };
   const FunctionRef<bool(std::uint32_t shape, Vec3 direction)> one_way(passes);
-  const KnownContacts contacts{w.contacts, w.touches.ccd_blockers, scratch.near_blockers};
+  const KnownContacts contacts{w.contacts, w.touches.ccd_blockers, scratch.near_blockers,
+                               w.internal_edges.hidden};
   const ContinuousInput input{w.shapes.colliders,
                               w.shapes.proxies,
                               *w.broadphase,
@@ -313,8 +314,9 @@ std::span<const HaltedBody> halt_bodies(RigidWorld& w, ContinuousScratch& scratc
       halted[halted_count++] = {i, result.fraction, motion.delta_position, motion.delta_rotation};
     const Quat impact_orientation = pose_at(sweep_of_body(w.bodies, i), double(result.fraction)).orientation;
     const Quat end = w.bodies.orientations[i];
-    w.bodies.orientations[i] =
-        result.rotation == Vec3{} ? impact_orientation : integrate_rotation(impact_orientation, result.rotation);
+    w.bodies.orientations[i] = result.rotation == Vec3{}
+                                   ? impact_orientation
+                                   : integrate_rotation(impact_orientation, result.rotation);
     motion.angular_velocity = spin_at(w.bodies.masses[i], w.bodies.flags[i], end, w.bodies.orientations[i],
                                       motion.angular_velocity);
     motion.delta_position = result.fraction * motion.delta_position + result.slide;

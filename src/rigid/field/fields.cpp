@@ -43,6 +43,8 @@ void add_radial_forces(const RigidWorld& w, const FieldBody& from, const BodySta
   const double mass = double(w.bodies.masses[from.body].mass);
   for (const std::uint32_t slot : from.fields) {
     const FieldRecord& field = w.fields[slot];
+    if (field.kind == FieldKind::grid)
+      add(force, make_vec6(mass * grid_acceleration_at(w, slot, state.center), {}));
     if (field.kind != FieldKind::radial) continue;
     const RadialForce radial = radial_force_at(field, state.center);
     add(force, make_vec6(mass * radial.acceleration, {}));
@@ -122,6 +124,16 @@ Vec6 stream_drive(const RigidWorld& w, const FieldBody& from, const BodyState& s
   return sum;
 }
 
+// Magnetic fields turn the velocity and keep its size: a rotation against B, exact for a uniform field.
+DVec3 turn_in_magnetic_fields(const RigidWorld& w, const FieldBody& from, const BodyState& state, double h,
+                              DVec3 velocity) {
+  DVec3 rate;
+  for (const std::uint32_t slot : from.fields)
+    if (w.fields[slot].is_magnetic()) rate += magnetic_rate_at(w.fields[slot], state.center);
+  if (rate == DVec3{} || w.bodies.flags[from.body].locked_linear != 0) return velocity;
+  return rotate(exponential_map(-h * rate), velocity);
+}
+
 void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
   BodyMotion& motion = w.bodies.motion[from.body];
   const BodyState state = state_of(w, from.body);
@@ -151,7 +163,8 @@ void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
   // Masses and moments may differ by many orders, so a pivot is compared with its own row only.
   solve_ldlt(factor_ldlt(matrix.m, 1.0e-300), right.v);
   // Radial forces may grow with distance. The speed limits hold for their results, too.
-  const Vec3 v = to_float(clamp_length(state.velocity + right.linear(), double(kMaxSpeed)));
+  const DVec3 turned = turn_in_magnetic_fields(w, from, state, h, state.velocity + right.linear());
+  const Vec3 v = to_float(clamp_length(turned, double(kMaxSpeed)));
   const Vec3 a = to_float(clamp_length(state.spin + right.angular(), double(kMaxSpin)));
   if (!is_finite(v) || !is_finite(a)) return;
   motion.linear_velocity = v + Vec3{};
@@ -213,6 +226,12 @@ Vec6 force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const st
       add(force,
           make_vec6(double(w.bodies.masses[body].mass) * radial_force_at(field, state.center).acceleration,
                     {}));
+    if (field.kind == FieldKind::grid)
+      add(force, make_vec6(double(w.bodies.masses[body].mass) * grid_acceleration_at(w, slot, state.center), {}));
+    if (field.is_magnetic())
+      add(force, make_vec6(double(w.bodies.masses[body].mass) *
+                               cross(state.velocity, magnetic_rate_at(field, state.center)),
+                           {}));
     if (const double gravity = weight_along(w, field); gravity > 0.0)
       add_buoyancy(w, field, body, state, gravity, force, stiffness);
     if (!field.is_medium()) continue;

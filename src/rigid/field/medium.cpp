@@ -230,8 +230,68 @@ Vec6 stream_at(const FieldRecord& field, DVec3 position, double time) {
   return out;
 }
 
+DVec3 magnetic_rate_at(const FieldRecord& field, DVec3 position) {
+  const DVec3 axis(field.axis);
+  const double strength = double(field.strength);
+  if (field.kind == FieldKind::magnetic) return strength * axis;
+  const DVec3 from = position - field.center;
+  const double square = length_squared(from) + double(field.core) * double(field.core);
+  if (!(square > 0.0)) return {};
+  const double radius = double(field.radius);
+  const double share = radius * radius * radius / (square * std::sqrt(square));
+  return (strength * share) * ((3.0 * dot(axis, from) / square) * from - axis);
+}
+
+DVec3 grid_acceleration_at(const RigidWorld& w, std::uint32_t slot, DVec3 position) {
+  const FieldRecord& field = w.fields[slot];
+  const FieldGrid& grid = w.field_grids[slot];
+  const double at[3] = {position.x - field.low.x, position.y - field.low.y, position.z - field.low.z};
+  const double size[3] = {field.high.x - field.low.x, field.high.y - field.low.y, field.high.z - field.low.z};
+  std::size_t cell[3];
+  double share[3];
+  for (int i = 0; i < 3; ++i) {
+    const double cells = double(grid.points[i] - 1);
+    const double place = size[i] > 0.0 ? clamp(at[i] / size[i] * cells, 0.0, cells) : 0.0;
+    const double first = min(std::floor(place), cells - 1.0);
+    cell[i] = std::size_t(first);
+    share[i] = place - first;
+  }
+  DVec3 sum;
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1.0;
+    std::size_t index[3];
+    for (int i = 0; i < 3; ++i) {
+      const bool high = (corner >> i & 1) != 0;
+      weight *= high ? share[i] : 1.0 - share[i];
+      index[i] = cell[i] + (high ? 1 : 0);
+    }
+    const std::size_t row = index[2] * std::size_t(grid.points[1]) + index[1];
+    sum += weight * DVec3(w.field_vectors[grid.first + row * std::size_t(grid.points[0]) + index[0]].value);
+  }
+  return sum;
+}
+
+namespace {
+
+// The matrix of Stokes drag on the ball of equal volume; a body without volume has none.
+void add_stokes_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, Mat6& matrix) {
+  double volume = 0.0;
+  for (const ShapeId id : w.bodies.shapes[body])
+    if (acts_on_shape(w, field, id.index)) volume += double(volume_of(w.shapes.colliders[id.index].shape));
+  if (!(volume > 0.0)) return;
+  const double radius = exp(log(volume * 3.0 / (4.0 * kPiDouble)) / 3.0);
+  const double linear = 6.0 * kPiDouble * double(field.strength) * radius;
+  for (int i = 0; i < 3; ++i) {
+    matrix.m[i][i] += linear;
+    matrix.m[3 + i][3 + i] += 4.0 / 3.0 * linear * radius * radius;
+  }
+}
+
+}  // namespace
+
 void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyState& state,
               const Vec6& stream, Mat6& matrix) {
+  if (field.kind == FieldKind::stokes) return add_stokes_drag(w, field, body, matrix);
   Vec6 against = stream;
   add(against, make_vec6(-state.velocity, -state.spin));
   const double half = 0.5 * double(field.density) * double(field.drag_coefficient);

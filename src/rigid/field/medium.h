@@ -58,6 +58,11 @@ struct RadialForce {
 };
 RadialForce radial_force_at(const FieldRecord& field, DVec3 position);
 
+// 1/s, along B: the rate at which a magnetic field turns velocities.
+DVec3 magnetic_rate_at(const FieldRecord& field, DVec3 position);
+// The acceleration of a grid (the field of `slot`) at a position; outside of its bounds that of the nearest point inside.
+DVec3 grid_acceleration_at(const RigidWorld& w, std::uint32_t slot, DVec3 position);
+
 // The buoyancy of the submerged part, and its stiffness: d(force)/d(motion) = -stiffness, without terms that would lower
 // the stiffness.
 void add_buoyancy(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyState& state,

@@ -23,7 +23,9 @@ SmoothBody describe(const RigidWorld& w, std::uint32_t i, Arena& arena) {
   body.body = i;
   body.mass = double(mass.mass);
   body.inertia = to_double(mass.inertia);
-  body.inverse_inertia = inverse(body.inertia);
+  // A body without moments of inertia does not turn.
+  const bool turns = mass.inertia.xx > 0.0f && mass.inertia.yy > 0.0f && mass.inertia.zz > 0.0f;
+  body.inverse_inertia = turns ? inverse(body.inertia) : Tensor{};
   body.acceleration =
       double(forces.gravity_scale) * DVec3(w.settings.gravity) + DVec3(forces.force) / body.mass;
   body.torque = DVec3(forces.torque);
@@ -232,7 +234,7 @@ Members group_bodies(const RigidWorld& w, const SolveBatch& batch,
 // Forces that depend on velocities need more evaluations.
 bool feels_velocity(const RigidWorld& w, const SmoothBody& body) {
   bool feels = body.linear_damping > 0.0 || body.angular_damping > 0.0;
-  for (const std::uint32_t slot : body.fields) feels = feels || w.fields[slot].is_medium();
+  for (const std::uint32_t slot : body.fields) feels = feels || w.fields[slot].is_medium() || w.fields[slot].is_magnetic();
   return feels;
 }
 

@@ -46,11 +46,25 @@ void visit_joint_edge(const JointRecord& joint, Fn&& fn) {
     fn(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
 }
 
-// Visits the island edges of all contacts and joints.
+// Couplings connect the bodies of their joints in a row.
+template <class Fn>
+void visit_coupling_edges(const RigidWorld& w, Fn&& fn) {
+  for (const CouplingRecord& coupling : w.couplings) {
+    if (!is_coupling_enabled(w, coupling)) continue;
+    std::uint32_t before = kNoIndex;
+    for_each_body_of_coupling(w, coupling, [&](std::uint32_t body) {
+      if (before != kNoIndex && before != body) fn(before, body);
+      before = body;
+    });
+  }
+}
+
+// Visits the island edges of all contacts, joints and couplings.
 template <class Fn>
 void for_each_island_edge(const RigidWorld& w, Fn&& fn) {
   for (const Contact& contact : w.contacts.contacts) visit_contact_edge(contact, fn);
   w.joints.ids.for_each_live([&](std::uint32_t slot) { visit_joint_edge(w.joints.records[slot], fn); });
+  visit_coupling_edges(w, fn);
 }
 // Visits the island edges of active contacts and joints in the same order. Edges between sleeping bodies may be among
 // them. If fn wakes a body, its edges that come later in the order are visited, too.
@@ -63,6 +77,7 @@ void for_each_active_edge(const RigidWorld& w, Fn&& fn) {
   for (std::size_t slot = links.joints.find_next(0); slot < links.joints.size();
        slot = links.joints.find_next(slot + 1))
     if (w.joints.ids.live(std::uint32_t(slot))) visit_joint_edge(w.joints.records[slot], fn);
+  visit_coupling_edges(w, fn);
 }
 
 // True if the body wakes sleeping bodies that it touches: it is dynamic and awake, or kinematic and moving.

@@ -63,7 +63,7 @@ JointDrives find_joint_drives(const RigidWorld& w, std::uint32_t body, float rad
   for (const std::uint32_t slot : joints_of(w.bodies, body)) {
     const JointRecord& joint = w.joints.records[slot];
     const JointDetail* const detail = detail_of(w.joints, slot);
-    if (detail != nullptr && detail->disabled) continue;
+    if (!is_joint_enabled(w, slot)) continue;
     if (joint.is_spring || joint.stiffness > 0.0f) drives.any = true;
     const bool is_linear = joint.kind == JointKind::slider || joint.kind == JointKind::path ||
                            joint.kind == JointKind::distance || joint.kind == JointKind::pulley;

@@ -4,6 +4,8 @@
 #include "solver/joint/joint_blocks.h"
 #include "solver/joint/pose_drive.h"
 
+#include <cmath>
+
 namespace gyre {
 
 namespace {
@@ -18,6 +20,13 @@ bool is_listed(const AxisConstraint& x) { return x.in_articulation || can_do_wor
 float worked_impulse(const JointAxisRecord& axis) {
   const float stops = axis.limit_frequency > 0.0f ? axis.low_impulse - axis.high_impulse : 0.0f;
   return axis.spring_impulse + axis.motor_impulse + stops;
+}
+
+// The work of a motor is bounded by its force, that of a spring is not.
+bool is_motor(const JointSolve& solve, const ActuatedRow& row) {
+  if (row.axis == kDriveRow) return false;
+  const JointAxisRecord& axis = solve.works.work[row.place].axes[std::size_t(row.axis)].axis;
+  return axis.motor_force > 0.0f && !has_spring(axis) && !(axis.limit_frequency > 0.0f);
 }
 
 RowState state_of(const JointSolve& solve, const ActuatedRow& row) {
@@ -66,15 +75,17 @@ void begin_actuated_rows(const JointSolve& solve, std::span<ActuatedRow> rows, b
   }
 }
 
-double actuated_work(const JointSolve& solve, std::span<const ActuatedRow> rows) {
-  double twice = 0.0;
+ActuatedWork actuated_work(const JointSolve& solve, std::span<const ActuatedRow> rows) {
+  ActuatedWork sum;
   for (const ActuatedRow& row : rows) {
     const RowState now = state_of(solve, row);
-    twice += 2.0 * (now.worked - row.begun.worked);
-    twice += double(dot(now.push - row.begun.push, now.speed + row.begun.speed));
-    twice += double(dot(now.turn - row.begun.turn, now.turning + row.begun.turning));
+    const double work = now.worked - row.begun.worked +
+                        0.5 * double(dot(now.push - row.begun.push, now.speed + row.begun.speed)) +
+                        0.5 * double(dot(now.turn - row.begun.turn, now.turning + row.begun.turning));
+    sum.net += work;
+    if (is_motor(solve, row)) sum.of_motors += std::abs(work);
   }
-  return 0.5 * twice;
+  return sum;
 }
 
 }  // namespace gyre

@@ -29,9 +29,13 @@ bool can_do_work(const JointRecord& joint, const JointDetail* detail);
 std::size_t count_actuated_rows(const JointSolve& solve, std::uint32_t place);
 void list_actuated_rows(const JointSolve& solve, std::uint32_t place, std::span<ActuatedRow> rows);
 
-// Called before and after a stage that changes impulses. `is_warm`: the stage applies the whole of each impulse again. Returns the work
-// (J).
+// J: the sum over all rows, and the sum of the magnitudes over motors.
+struct ActuatedWork {
+  double net = 0.0, of_motors = 0.0;
+};
+
+// Called before and after a stage that changes impulses. `is_warm`: the stage applies the whole of each impulse again.
 void begin_actuated_rows(const JointSolve& solve, std::span<ActuatedRow> rows, bool is_warm);
-double actuated_work(const JointSolve& solve, std::span<const ActuatedRow> rows);
+ActuatedWork actuated_work(const JointSolve& solve, std::span<const ActuatedRow> rows);
 
 }  // namespace gyre

@@ -367,10 +367,14 @@ double energy_of_errors(const BodyStore& bodies, const JointIsland& island, floa
   return 0.5 * (square(double(rate)) * sum + bent);
 }
 
+// Share of the work of motors by which the gain may be off. The rows of light links between heavy bodies yield to a motor's force in one
+// stage and take the yielding back in the next. So work passes between the motor and these rows, and is not all the motor's own.
+constexpr float kMotorShare = 0.25f;
+
 // Limits a gain that exceeds `most` times the energy before it, which counts as `least` or more. Then the island keeps `left` times that
 // energy of its gain, and the rest is removed. True if the gain was limited.
 bool bound_gain(BodyStore& bodies, JointIsland& island, float most, float left, double least = 0.0) {
-  if (!(island.energy_gain > 0.0)) return false;
+  if (!(island.energy_gain > double(kMotorShare) * island.motor_work)) return false;
   const double energy = kinetic_energy(bodies, island), before = max(energy - island.energy_gain, least);
   if (!(island.energy_gain > double(most) * before)) return false;
   const double kept = double(left) * before;
@@ -435,9 +439,10 @@ void begin_work(const JointSolve& solve, JointIsland& island, bool is_warm) {
     island.spin = angular_momentum(solve.w.bodies, island, center_of(solve.w.bodies, island.bodies[0]));
 }
 void end_work(const JointSolve& solve, JointIsland& island) {
-  const double worked = actuated_work(solve, island.worked);
+  const ActuatedWork work = actuated_work(solve, island.worked);
+  island.motor_work += work.of_motors;
   if (island.frame == IslandFrame::rigid) keep_angular_momentum(solve.w.bodies, island);
-  island.energy_gain += kinetic_energy(solve.w.bodies, island) - island.before - worked;
+  island.energy_gain += kinetic_energy(solve.w.bodies, island) - island.before - work.net;
 }
 
 }  // namespace
@@ -467,7 +472,7 @@ void remove_energy_gain(const JointSolve& solve, int begin, int end) {
     // this would be the whole gain. Beside fast rotation it is little.
     if (!island.is_pushed || island.is_bounded || any_turns_far(solve, island))
       bound_gain(solve.w.bodies, island, kMaxEnergyGain, 0.0f);
-    island.energy_gain = 0.0;
+    island.energy_gain = island.motor_work = 0.0;
   }
 }
 void forget_limited_impulses(const JointSolve& solve) {

@@ -31,6 +31,7 @@ struct JointIsland {
   bool is_pushed = false;          // contacts or fields act between the stages of joints
   bool is_bounded = false;         // the gain was limited before bodies moved
   double energy_gain = 0.0;        // J, by passive rows in this sub-step
+  double motor_work = 0.0;         // J, turned over by motors in this sub-step
   double before = 0.0;             // J, before the present stage of joints
   DVec3 spin{};                    // kg m^2/s: angular momentum then, about the first body's centre of mass
 };

@@ -64,12 +64,16 @@ struct BodyForces {
 // pose in each sub-step.
 constexpr std::uint8_t kNotConstrained = 0, kConstrained = 1, kPoseRead = 2;
 
+// Values of BodyFlags::frozen: the state stopped being finite, so the body no longer moves; or the user disabled the body, so its shapes are
+// in no broad phase and its joints idle.
+constexpr std::uint8_t kNotFrozen = 0, kFrozen = 1, kDisabled = 2;
+
 struct BodyFlags {
   BodyType type = BodyType::fixed;
   std::uint8_t awake = 0;
   std::uint8_t can_sleep = 1;
   std::uint8_t continuous = 0;
-  std::uint8_t frozen = 0;          // the state stopped being finite; the body no longer moves
+  std::uint8_t frozen = kNotFrozen;
   std::uint8_t locked_linear = 0;   // bits 0 to 2: world x, y, z
   std::uint8_t locked_angular = 0;
   std::uint8_t constraint_use = 0;  // in the last step: kNotConstrained, kConstrained or kPoseRead
@@ -164,6 +168,7 @@ void refresh_awake(BodyStore& store);
 inline bool inertia_rotates(const BodyMass& mass, const BodyFlags& flags) {
   return mass.isotropic == 0 || flags.locked_angular != 0;
 }
+inline bool is_disabled(const BodyFlags& flags) { return flags.frozen == kDisabled; }
 inline bool is_movable(const BodyFlags& flags) { return flags.type == BodyType::dynamic && flags.frozen == 0; }
 // True if the step moves this body: an awake dynamic or kinematic one. For other bodies the delta position and
 // rotation may be stale.

@@ -14,6 +14,14 @@ const char* to_string(FieldKind kind) {
       return "drag";
     case FieldKind::buoyancy:
       return "buoyancy";
+    case FieldKind::magnetic:
+      return "magnetic";
+    case FieldKind::magnetic_dipole:
+      return "magnetic_dipole";
+    case FieldKind::stokes:
+      return "stokes";
+    case FieldKind::grid:
+      return "grid";
   }
   return "unknown";
 }

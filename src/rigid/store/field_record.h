@@ -28,7 +28,19 @@ struct FieldRecord {
   double offset = 0.0;
 
   bool is_live() const { return (generation & 1) != 0; }
-  bool is_medium() const { return kind != FieldKind::radial; }
+  bool is_medium() const {
+    return kind == FieldKind::stokes || (kind <= FieldKind::buoyancy && kind != FieldKind::radial);
+  }
+  bool is_magnetic() const { return kind == FieldKind::magnetic || kind == FieldKind::magnetic_dipole; }
+};
+
+// The grid of a field of kind grid: a part of the list of all vectors.
+struct FieldGrid {
+  std::uint32_t first = 0, count = 0;
+  std::int32_t points[3] = {};
+};
+struct FieldVector {
+  Vec3 value;
 };
 
 // `def` must have passed the checks. The caller sets the generation.

@@ -11,6 +11,7 @@
 #include "math/standard_gravity.h"
 #include "rigid/store/active_constraints.h"
 #include "rigid/store/body_store.h"
+#include "rigid/store/coupling_record.h"
 #include "rigid/store/field_record.h"
 #include "rigid/store/shape_store.h"
 #include "rigid/store/solver_settings.h"
@@ -132,6 +133,9 @@ struct RigidWorld {
   std::uint16_t world_number = 0;  // part of the ids in events
   // Part of the state, like the columns at the beginning.
   Array<IgnoredPair> ignored_pairs;  // sorted by (a, b)
+  Array<CouplingRecord> couplings;   // by slot
+  Array<FieldGrid> field_grids;      // by slot of field; short if later fields have none
+  Array<FieldVector> field_vectors;  // of all grids, one after the other
 };
 
 inline MotionSettings motion_settings(const RigidWorld& w) {
@@ -155,6 +159,40 @@ inline ShapeId shape_id(const RigidWorld& w, std::uint32_t shape) {
 }
 inline JointId joint_id(const RigidWorld& w, std::uint32_t joint) {
   return {joint, std::uint16_t(w.joints.ids.generation(joint)), w.world_number};
+}
+
+// True if the joint acts: neither it nor one of its bodies is disabled.
+inline bool is_joint_enabled(const RigidWorld& w, std::uint32_t slot) {
+  const JointDetail* const detail = detail_of(w.joints, slot);
+  if (detail != nullptr && detail->disabled) return false;
+  const JointRecord& joint = w.joints.records[slot];
+  const auto is_off = [&](std::int32_t body) {
+    return body != kNoBody && is_disabled(w.bodies.flags[std::size_t(body)]);
+  };
+  return !is_off(joint.body_a) && !is_off(joint.body_b);
+}
+
+// Calls fn(body) for a moving body of each joint of a coupling.
+template <class Fn>
+void for_each_body_of_coupling(const RigidWorld& w, const CouplingRecord& coupling, Fn&& fn) {
+  for (std::uint32_t i = 0; i < coupling.count; ++i) {
+    const JointRecord& joint = w.joints.records[coupling.joints[i]];
+    const auto moves = [&](std::int32_t body) {
+      return body != kNoBody && is_movable(w.bodies.flags[std::size_t(body)]);
+    };
+    if (moves(joint.body_b)) {
+      fn(std::uint32_t(joint.body_b));
+    } else if (moves(joint.body_a)) {
+      fn(std::uint32_t(joint.body_a));
+    }
+  }
+}
+// True if all joints of the coupling act.
+inline bool is_coupling_enabled(const RigidWorld& w, const CouplingRecord& coupling) {
+  if (!coupling.is_live()) return false;
+  for (std::uint32_t i = 0; i < coupling.count; ++i)
+    if (!is_joint_enabled(w, coupling.joints[i])) return false;
+  return true;
 }
 
 // The surface of a pair of shapes, from the table of pairs or by the combine rules.

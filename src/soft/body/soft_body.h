@@ -12,6 +12,7 @@
 #include "base/container/array.h"
 #include "soft/body/continuum.h"
 #include "soft/body/sliced_rows.h"
+#include "soft/body/visual_links.h"
 
 #include <gyre/math.h>
 
@@ -98,6 +99,7 @@ struct SoftBody {
   Array<double>
       moved[3];  // m, in the last sub-step: what Verlet's scheme knows instead of velocities; else empty
   Array<HeldParticle> held;
+  VisualLinks visual;    // of the visual scheme; derived
   float damping = 0.0f;  // s: stress grows by this times its rate of change
 };
 

@@ -36,7 +36,7 @@ class PairFinder {
       return double(of[v[0]] + max(of[v[1]], max(of[v[2]], of[v[3]])));
     };
     const double limit = largest(limits_), radius = largest(radii_), far = length_squared(closest.point);
-    if (far > square(limit + radius)) return;
+    if (far > square(limit + radius) || is_new(one, 1, far)) return;
     const PlacedSurface& b = candidates_.surfaces[one.surface_b];
     const bool touches = touches_triangle(p, closest, b, one.b - candidates_.bases[one.surface_b].triangle);
     if (!touches && far > square(limit + least_gap_ * radius)) return;
@@ -60,7 +60,7 @@ class PairFinder {
       return double(max(of[v[0]], of[v[1]]) + max(of[v[2]], of[v[3]]));
     };
     const double limit = largest(limits_), radius = largest(radii_), far = length_squared(apart);
-    if (far > square(limit + radius)) return;
+    if (far > square(limit + radius) || is_new(one, 2, far)) return;
     const bool touches = closest.s > 0.0 && closest.s < 1.0 && closest.t > 0.0 && closest.t < 1.0 &&
                          touches_edge(one.surface_a, one.a, origin + closest.on_a, -apart) &&
                          touches_edge(one.surface_b, one.b, origin + closest.on_b, apart);
@@ -74,6 +74,16 @@ class PairFinder {
   }
 
  private:
+  // True for features of a crack that has not opened.
+  bool is_new(const SurfaceCandidate& one, int on_a, double far) const {
+    if (one.surface_a != one.surface_b || !candidates_.surfaces[one.surface_a].surface->breaks) return false;
+    float least[2] = {radii_[one.vertex[0]], radii_[one.vertex[3]]};
+    for (int k = 0; k < 4; ++k) {
+      float& of = least[k < on_a ? 0 : 1];
+      of = min(of, radii_[one.vertex[k]]);
+    }
+    return far < square(0.5 * least_gap_ * double(least[0] + least[1]));
+  }
   SurfacePair& add(const SurfaceCandidate& one, bool touches) {
     SurfacePair& pair = pairs_.emplace_back();
     for (int n = 0; n < 4; ++n) pair.vertex[n] = one.vertex[n];

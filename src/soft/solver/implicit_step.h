@@ -6,8 +6,8 @@
 // has the scale h^2 alone, since turning is not damped. The system is solved by conjugate gradients, preconditioned by the inverse of
 // each particle's own block. Sums are taken in a fixed order, so the bits do not depend on the number of threads or the width.
 //
-// Iterations end when the residual, measured as the kinetic energy that is wrong, is below the square of `tolerance` times that of the
-// change that gravity and the forces ask for; at least `least_iterations` are made and at most `most_iterations`.
+// Iterations end when the energy of the error, as the last ones show it, is below the square of `tolerance` times that of the change that gravity
+// and the forces ask for; at least `least_iterations` are made and at most `most_iterations`.
 //
 // A body that is held nowhere and carries nothing keeps its momentum: at the end the change of velocity is made to have exactly the linear and angular momentum
 // that the forces from outside give, by a rigid motion. So both are right at any number of iterations. (Backward Euler itself loses angular
@@ -36,6 +36,9 @@ struct ImplicitSettings {
   int least_iterations = 3;
   int most_iterations = 50;
   std::span<const CarriedInertia> carried{};
+  // A stage of a scheme of several (soft/solver/sdirk_step.h): the elements give no moment where the stage ends, as they do in truth, so that the scheme keeps
+  // its order. Else the moment where the sub-step begins is none, with which backward Euler keeps angular momentum.
+  bool is_stage = false;
 };
 
 struct ImplicitReport {

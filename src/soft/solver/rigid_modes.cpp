@@ -24,14 +24,19 @@ DVec3 turn_of(const double (&inertia)[6], DVec3 momentum) {
 
 }  // namespace
 
-void keep_momentum(const Particles& particles, const VectorRows& impulses, const VectorRows& change) {
+void keep_momentum(const Particles& particles, const VectorRows& impulses, const VectorRows& change,
+                   double ahead) {
   double mass = 0.0;
   DVec3 first{}, linear{};
   const DVec3 origin = particles.count > 0 ? particles.place(0) : DVec3{};
+  const auto place = [&](int i) {
+    return ahead == 0.0 ? particles.place(i)
+                        : particles.place(i) + ahead * (DVec3(particles.velocity(i)) + row_of(change, i));
+  };
   for (int i = 0; i < particles.count; ++i) {
     const double m = double(particles.mass[i]);
     mass += m;
-    first += m * (particles.place(i) - origin);
+    first += m * (place(i) - origin);
     linear += row_of(impulses, i) - m * row_of(change, i);
   }
   if (!(mass > 0.0)) return;
@@ -40,7 +45,7 @@ void keep_momentum(const Particles& particles, const VectorRows& impulses, const
   DVec3 angular{};
   for (int i = 0; i < particles.count; ++i) {
     const double m = double(particles.mass[i]);
-    const DVec3 arm = particles.place(i) - center;
+    const DVec3 arm = place(i) - center;
     inertia[0] += m * (arm.y * arm.y + arm.z * arm.z);
     inertia[1] += m * (arm.x * arm.x + arm.z * arm.z);
     inertia[2] += m * (arm.x * arm.x + arm.y * arm.y);
@@ -51,7 +56,7 @@ void keep_momentum(const Particles& particles, const VectorRows& impulses, const
   }
   const DVec3 push = linear / mass, turn = turn_of(inertia, angular);
   for (int i = 0; i < particles.count; ++i) {
-    const DVec3 more = push + cross(turn, particles.place(i) - center);
+    const DVec3 more = push + cross(turn, place(i) - center);
     change.x[i] = float(double(change.x[i]) + more.x);
     change.y[i] = float(double(change.y[i]) + more.y);
     change.z[i] = float(double(change.z[i]) + more.z);

@@ -7,8 +7,9 @@
 namespace gyre {
 
 // Adds to the changes of velocity the rigid motion with which they have the linear and the angular momentum, about the centre of mass, of the
-// impulses from outside.
-void keep_momentum(const Particles& particles, const VectorRows& impulses, const VectorRows& change);
+// impulses from outside. Arms are those `ahead` seconds later, at the velocities with these changes.
+void keep_momentum(const Particles& particles, const VectorRows& impulses, const VectorRows& change,
+                   double ahead = 0.0);
 // The same for the linear momentum of particles and of what they carry, by a translation.
 void keep_linear_momentum(const Particles& particles, std::span<const CarriedInertia> carried,
                           const VectorRows& impulses, const VectorRows& change);

@@ -92,10 +92,36 @@ class RopeSolver {
       take_solution();
       ++report.iterations;
       report.longest = largest_error();
-      if (report.longest < kSmallError) break;
+      if (report.longest < kSmallError && report.iterations >= settings_.least_iterations) break;
     }
     for (int i = 0; i < particles_.count; ++i) particles_.set_velocity(i, to_float(at(speed_, i)));
     return report;
+  }
+
+  // Changes the velocities at the end, and no place.
+  void keep_lengths() {
+    for (double& entry : band_.entries) entry = 0.0;
+    for (double& one : right_) one = 0.0;
+    for (int i = 0; i < particles_.count; ++i) {
+      for (int c = 0; c < 3; ++c) band_.add(kUnknowns * i + c, kUnknowns * i + c, double(particles_.mass[i]));
+    }
+    band_.add(3, 3, 1.0);
+    for (int s = 0; s < segments(); ++s) {
+      const DVec3 n = add_axis(s);
+      const int t = kUnknowns * (s + 1) + 3;
+      band_.add(t, t, -compliance_ * chain_.rest_length[s] / (h_ * h_));
+      right_[std::size_t(t)] = -dot(n, at(speed_, s + 1) - at(speed_, s));
+      if (held(s) && held(s + 1)) band_.column(t)[0] = 1.0, right_[std::size_t(t)] = 0.0;
+    }
+    for (const CarriedInertia& one : settings_.carried) add_inertia(one);
+    for (const HeldParticle& one : body_.held) fix(one.particle);
+    band_.factor();
+    band_.solve(right_.data());
+    for (int i = 0; i < particles_.count; ++i) {
+      const double* const d = &right_[std::size_t(kUnknowns * i)];
+      at(speed_, i) += DVec3{d[0], d[1], d[2]};
+      particles_.set_velocity(i, to_float(at(speed_, i)));
+    }
   }
 
  private:
@@ -136,23 +162,27 @@ class RopeSolver {
     for (const HeldParticle& one : body_.held) fix(one.particle);
   }
 
-  void add_carried(const CarriedInertia& one) {
+  void add_inertia(const CarriedInertia& one) {
     const Sym3& m = one.inertia;
     const double block[3][3] = {{double(m.xx), double(m.xy), double(m.xz)},
                                 {double(m.xy), double(m.yy), double(m.yz)},
                                 {double(m.xz), double(m.yz), double(m.zz)}};
     band_.add_block(one.particle, one.particle, block);
+  }
+  void add_carried(const CarriedInertia& one) {
+    add_inertia(one);
     const DVec3 off = DVec3(one.target) - at(speed_, one.particle);
-    const double push[3] = {off.x, off.y, off.z};
+    const Sym3& m = one.inertia;
     double* const right = &right_[std::size_t(kUnknowns * one.particle)];
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) right[r] += block[r][c] * push[c];
-    }
+    right[0] += double(m.xx) * off.x + double(m.xy) * off.y + double(m.xz) * off.z;
+    right[1] += double(m.xy) * off.x + double(m.yy) * off.y + double(m.yz) * off.z;
+    right[2] += double(m.xz) * off.x + double(m.yz) * off.y + double(m.zz) * off.z;
   }
 
-  void add_segment(int s) {
+  // The direction of a segment, which its tension acts along.
+  DVec3 add_axis(int s) {
     const DVec3 edge = at(place_, s + 1) - at(place_, s);
-    const double span = length(edge), rest = chain_.rest_length[s];
+    const double span = length(edge);
     const DVec3 n = span > 0.0 ? edge / span : DVec3{1, 0, 0};
     const double axis[3] = {n.x, n.y, n.z};
     const int t = kUnknowns * (s + 1) + 3;
@@ -160,6 +190,15 @@ class RopeSolver {
       if (!held(s)) band_.add(t, kUnknowns * s + c, -axis[c]);
       if (!held(s + 1)) band_.add(t, kUnknowns * (s + 1) + c, axis[c]);
     }
+    return n;
+  }
+
+  void add_segment(int s) {
+    const DVec3 edge = at(place_, s + 1) - at(place_, s);
+    const double span = length(edge), rest = chain_.rest_length[s];
+    const DVec3 n = add_axis(s);
+    const double axis[3] = {n.x, n.y, n.z};
+    const int t = kUnknowns * (s + 1) + 3;
     const double error = span - rest;
     // With the part of damping: it alone can hold a load, and turns with the segment as the rest does.
     const double tension = chain_.tension[s];
@@ -283,7 +322,7 @@ void invert_in_band(Band<Width> factor, Band<Width> inverse) {
 RopeStep begin_rope(SoftBody& body, const RopeSettings& settings, Arena& arena) {
   RopeStep step;
   const std::size_t count = std::size_t(body.particles.count);
-  step.h = double(settings.step);
+  step.h = step.move = double(settings.step);
   step.has_bending = body.chain.bend_stiffness > 0.0;
   step.band = arena.make<double>(kUnknowns * count * (step.has_bending ? 11 : 8));
   step.right = arena.make<double>(kUnknowns * count);
@@ -330,10 +369,19 @@ void add_rope_change(SoftBody& body, RopeStep& step, std::span<const Vec3> chang
   for (int i = 0; i < p.count; ++i) {
     const DVec3 own = scale * DVec3(change[std::size_t(i)]);
     step.velocity[std::size_t(i)] += own;
-    step.place[std::size_t(i)] += step.h * own;
+    step.place[std::size_t(i)] += step.move * own;
     p.set_velocity(i, to_float(step.velocity[std::size_t(i)]));
-    if (i > 0) body.chain.tension[i - 1] += scale * step.right[kUnknowns * std::size_t(i) + 3] / step.h;
+    if (i > 0) body.chain.tension[i - 1] += scale * step.right[kUnknowns * std::size_t(i) + 3] / step.move;
   }
+}
+
+void keep_lengths(SoftBody& body, const RopeSettings& settings, RopeStep& step, Arena& arena) {
+  if (body.chain.stretch_stiffness > 0.0) return;
+  const ArenaScope scope(arena);
+  RopeStep own = step;
+  own.band = arena.make<double>(kUnknowns * step.place.size() * 8);
+  own.right = arena.make<double>(step.right.size());
+  RopeSolver<7>(body, settings, own).keep_lengths();
 }
 
 void finish_rope(SoftBody& body, const RopeStep& step) {

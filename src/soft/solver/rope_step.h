@@ -23,6 +23,7 @@ struct RopeSettings {
   float step = 0.0f;  // s
   Vec3 gravity{};     // m/s^2
   int most_iterations = 3;
+  int least_iterations = 1;  // the stiffness of the tension is that of the iteration before
   std::span<const CarriedInertia> carried{};
 };
 
@@ -35,6 +36,7 @@ struct RopeReport {
 struct RopeStep {
   RopeReport report;
   double h = 0.0;
+  double move = 0.0;  // s, for which a change of velocity moves the particles
   bool has_bending = false;
   std::span<double> band, right;
   std::span<DVec3> place, velocity;  // at the end of the sub-step
@@ -50,6 +52,9 @@ void find_rope_inverse_masses(RopeStep& step, Arena& arena);
 void respond_rope(SoftBody& body, RopeStep& step, std::span<const Vec3> impulses, std::span<Vec3> change);
 // Adds a change that respond_rope() found.
 void add_rope_change(SoftBody& body, RopeStep& step, std::span<const Vec3> change, double scale);
+// Takes the part of the velocities that changes the lengths of segments where these end, by impulses along them. The scheme of two stages asks for it: the velocities of its last stage have
+// an error along the segments, of the first order of the step, which would make the next stage push where the rope pulls. The place where it ends stays.
+void keep_lengths(SoftBody& body, const RopeSettings& settings, RopeStep& step, Arena& arena);
 // Moves the particles.
 void finish_rope(SoftBody& body, const RopeStep& step);
 

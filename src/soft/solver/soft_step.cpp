@@ -2,6 +2,7 @@
 
 #include "soft/solver/explicit_step.h"
 #include "soft/solver/soft_pass.h"
+#include "soft/solver/visual_step.h"
 
 namespace gyre {
 
@@ -10,6 +11,8 @@ namespace {
 // Iterations by which impulses spread through a body. Each reaches the neighbours of those before; what is missing is found by the rows of the
 // next half-step.
 constexpr int kSpreadIterations = 8;
+// Iterations of Newton's for ropes, whose tension differs between the stages of a scheme.
+constexpr int kStageIterations = 3;
 constexpr double kSpreadTolerance = 1.0e-4;  // of the square of the error
 
 ExplicitScheme scheme_of(SoftIntegrator integrator) {
@@ -45,6 +48,50 @@ void carry_explicitly(SoftEntry& entry, const SoftStep& step) {
   }
 }
 
+// A step of backward Euler, of a rope or of anything else.
+void begin_implicit_step(SoftEntry& entry, const SoftStepSettings& settings, bool is_stage, SoftStep& step,
+                         const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
+  if (entry.kind == SoftKind::rope) {
+    step.method = SoftMethod::rope;
+    step.rope = begin_rope(entry.body,
+                           {.step = settings.step,
+                            .gravity = settings.gravity,
+                            .least_iterations = is_stage ? kStageIterations : 1,
+                            .carried = settings.carried},
+                           arena);
+    return;
+  }
+  step.method = SoftMethod::conjugate_gradients;
+  ImplicitSettings implicit;
+  implicit.step = settings.step;
+  implicit.gravity = settings.gravity;
+  implicit.carried = settings.carried;
+  implicit.is_stage = is_stage;
+  step.implicit = begin_implicit(entry.body, implicit, kernels, arena, tasks);
+}
+
+void begin_two_stages(SoftEntry& entry, const SoftStepSettings& settings, SoftStep& step,
+                      const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
+  SoftStepSettings stage = settings;
+  stage.step = float(kSdirkShare * double(settings.step));
+  step.stages = begin_sdirk(entry.body, settings.carried, arena);
+  {
+    const ArenaScope scope(arena);
+    begin_implicit_step(entry, stage, true, step, kernels, arena, tasks);
+    if (entry.kind == SoftKind::rope) finish_rope(entry.body, step.rope);
+    if (entry.kind != SoftKind::rope) finish_implicit(entry.body, step.implicit, kernels, tasks);
+  }
+  turn_sdirk(entry.body, step.stages);
+  stage.carried = step.stages.carried;
+  begin_implicit_step(entry, stage, true, step, kernels, arena, tasks);
+  step.rope.move = double(settings.step);
+  if (entry.kind == SoftKind::rope)
+    keep_lengths(entry.body,
+                 {.step = settings.step, .gravity = settings.gravity, .carried = settings.carried}, step.rope,
+                 arena);
+  end_sdirk(entry.body, step.stages);
+}
+
 }  // namespace
 
 SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, const SoftKernels& kernels,
@@ -53,23 +100,20 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
   step.h = settings.step;
   step.carried = settings.carried;
   const SoftIntegrator integrator = entry.settings().integrator;
-  if (integrator != SoftIntegrator::implicit) {
+  if (!is_implicit(integrator)) {
     step.method = SoftMethod::explicit_scheme;
-    step_explicit(entry.body, {settings.step, settings.gravity, scheme_of(integrator)}, kernels, arena,
-                  tasks);
+    if (integrator == SoftIntegrator::visual) step_visual(entry.body, settings.step, settings.gravity, arena);
+    if (integrator != SoftIntegrator::visual)
+      step_explicit(entry.body, {settings.step, settings.gravity, scheme_of(integrator)}, kernels, arena,
+                    tasks);
     carry_explicitly(entry, step);
-  } else if (entry.kind == SoftKind::rope) {
-    step.method = SoftMethod::rope;
-    step.rope = begin_rope(
-        entry.body, {.step = settings.step, .gravity = settings.gravity, .carried = settings.carried}, arena);
-    if (!entry.contacts.empty() || !entry.attachments.empty()) find_rope_inverse_masses(step.rope, arena);
-  } else {
-    ImplicitSettings implicit;
-    implicit.step = settings.step;
-    implicit.gravity = settings.gravity;
-    implicit.carried = settings.carried;
-    step.implicit = begin_implicit(entry.body, implicit, kernels, arena, tasks);
+    return step;
   }
+  if (integrator == SoftIntegrator::sdirk2) begin_two_stages(entry, settings, step, kernels, arena, tasks);
+  if (integrator == SoftIntegrator::implicit)
+    begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
+  if (step.method == SoftMethod::rope && (!entry.contacts.empty() || !entry.attachments.empty()))
+    find_rope_inverse_masses(step.rope, arena);
   return step;
 }
 
@@ -125,8 +169,10 @@ void add_change(SoftEntry& entry, SoftStep& step, std::span<const Vec3> change, 
 
 void finish_soft_step(SoftEntry& entry, SoftStep& step, const SoftKernels& kernels, TaskSystem& tasks) {
   if (step.method == SoftMethod::rope) finish_rope(entry.body, step.rope);
-  if (step.method == SoftMethod::conjugate_gradients)
+  if (step.method == SoftMethod::conjugate_gradients) {
     finish_implicit(entry.body, step.implicit, kernels, tasks);
+    if (!step.stages.empty()) move_by_impulses(entry.body, step.stages, double(step.h));
+  }
 }
 
 }  // namespace gyre

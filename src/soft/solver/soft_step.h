@@ -1,11 +1,13 @@
 // A sub-step of any rope, cloth or solid in four parts, so that contacts can act between them: begin() finds the velocities at the end of the
 // sub-step as if nothing touched it; respond() tells how impulses would change them; add_change() adds such a change; finish() moves the
 // particles. Ropes are solved exactly (soft/solver/rope_step.h), other implicit bodies by conjugate gradients (implicit_step.h), explicit ones
-// answer with their masses alone (explicit_step.h).
+// answer with their masses alone (explicit_step.h). The scheme of two stages (sdirk_step.h) makes the first of them and all but the moves of
+// the second in begin().
 #pragma once
 
 #include "soft/solver/implicit_step.h"
 #include "soft/solver/rope_step.h"
+#include "soft/solver/sdirk_step.h"
 #include "soft/store/soft_store.h"
 
 namespace gyre {
@@ -25,6 +27,7 @@ struct SoftStep {
   std::span<const CarriedInertia> carried{};
   ImplicitStep implicit;
   RopeStep rope;
+  SdirkStages stages;  // of the scheme of two stages
 };
 
 SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, const SoftKernels& kernels,

@@ -243,14 +243,12 @@ std::shared_ptr<const SoftSurface> make_surface(const SoftEntry& entry, const So
   const float radius = entry.kind == SoftKind::solid ? kSolidRadius * entry.size : entry.radius;
   SoftSurface surface = make_surface(places, entry.triangles, radius);
   const SoftSettings& settings = entry.settings();
+  surface.touches_soft = settings.integrator != SoftIntegrator::visual;
   surface.static_friction = settings.static_friction;
   surface.dynamic_friction = settings.dynamic_friction;
   if (const ClothDef* const cloth = std::get_if<ClothDef>(&def))
     surface.self_collision = cloth->self_collision;
-  // New faces lie on each other, which the bounds on moves would take for a crossing.
-  if (const SolidDef* const solid = std::get_if<SolidDef>(&def);
-      solid != nullptr && solid->fracture_stress > 0.0f)
-    surface.self_collision = false;
+  if (const SolidDef* const solid = std::get_if<SolidDef>(&def)) surface.breaks = solid->fracture_stress > 0.0f;
   return std::make_shared<const SoftSurface>(std::move(surface));
 }
 

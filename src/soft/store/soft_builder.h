@@ -23,7 +23,8 @@ SoftEntry build_soft(std::shared_ptr<const SoftDef> def);
 SoftBody build_elements(const SoftDef& def, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> roots);
 // Where the particles of such a body are at rest.
 Array<DVec3> rest_places(const SoftDef& def, std::span<const std::uint32_t> roots);
-// The triangles of the surface, from elements, and what contacts need of them.
+// The triangles of the surface, from elements, and what contacts need of them. The particles are where they are at rest, so that it is the same
+// whenever it is made.
 void build_surface(SoftEntry& entry, std::span<const std::uint32_t> corners);
 
 }  // namespace gyre

@@ -249,6 +249,8 @@ Error check_soft(const ClothDef& def) {
   if (e.ok()) e = not_negative("thickness", def.thickness);
   if (e.ok() && def.pressure) e = good_gas(def);
   if (e.ok()) e = not_negative("tear_strain", def.tear_strain);
+  if (e.ok() && def.settings.integrator == SoftIntegrator::visual && (def.links == ClothLinks::membrane || def.pressure))
+    e = refused("settings.integrator is visual; it moves cloths of springs or rods without gas");
   return e ? e : good_settings(def.settings, vertices);
 }
 
@@ -281,6 +283,8 @@ Error check_soft(const SolidDef& def) {
     e = refused("fracture_stress is given for a filled surface; only boxes and tetrahedra break");
   if (e.ok() && def.yield_stress > 0.0f && def.model == SolidModel::linear)
     e = refused("yield_stress is given for the linear model; corotated and neo_hookean yield");
+  if (e.ok() && def.settings.integrator == SoftIntegrator::visual)
+    e = refused("settings.integrator is visual; it moves ropes and cloths, not solids");
   return e ? e : good_settings(def.settings, vertices);
 }
 

@@ -235,9 +235,13 @@ class Tear {
     }
   }
 
+  // The surface is that of the places at rest, as after a snapshot is loaded.
   void rebuild(const Particles& before) {
     SoftBody next = build_elements(*entry_.def, entry_.damage.corners, entry_.damage.roots);
-    Particles& p = next.particles;
+    next.held = entry_.body.held;
+    entry_.body = std::move(next);
+    build_surface(entry_, entry_.damage.corners);
+    Particles& p = entry_.body.particles;
     for (int i = 0; i < p.count; ++i) {
       const int from = int(splitter_.source(std::uint32_t(i)));
       p.set_place(i, before.place(from));
@@ -245,9 +249,6 @@ class Tear {
       p.mass[i] = entry_.damage.mass[i];
       p.loose[i] = std::uint32_t(i) < count_ ? before.loose[i] : 1.0f;
     }
-    next.held = entry_.body.held;
-    entry_.body = std::move(next);
-    build_surface(entry_, entry_.damage.corners);
   }
 
   // Parts of a vertex move towards the elements around them, about the centre of mass of all; one that is held stays.

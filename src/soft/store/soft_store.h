@@ -30,6 +30,20 @@ struct SoftAttachment {
   Vec3 impulse{};  // N s on the vertex in the last half-step, where the body yields: the warm start
 };
 
+// A vertex that does not touch the body that holds it or its neighbours, since it began inside it.
+struct SoftInside {
+  std::uint32_t particle = 0;
+  std::int32_t body = 0;
+};
+
+// A vertex stays within `distance` of its target (m; below 0: it is free), and in front of the plane that lies `backstop` behind it.
+struct SoftLimit {
+  DVec3 target{};          // m
+  float distance = -1.0f;  // m
+  Vec3 normal{};           // unit; zero: there is no plane
+  float backstop = 0.0f;   // m
+};
+
 // How a contact held its vertex in the last sub-step.
 enum class SoftGrip : std::uint8_t { open, slides, sticks };
 
@@ -48,6 +62,11 @@ struct SoftContact {
   Vec3 impulse{};           // N s on the vertex in the last half-step: the warm start
   SoftGrip grip = SoftGrip::open;
 };
+
+// True for the integrators that solve a system of equations, whose stability does not depend on the step.
+inline bool is_implicit(SoftIntegrator integrator) {
+  return integrator == SoftIntegrator::implicit || integrator == SoftIntegrator::sdirk2;
+}
 
 // Rest, as of bodies.
 struct SoftRest {
@@ -96,6 +115,8 @@ struct SoftEntry {
   SoftBody body;
   Array<SoftAttachment> attachments;  // ascending by particle
   Array<SoftContact> contacts;        // ascending by particle, then shape
+  Array<SoftInside> inside;           // ascending by particle, then body
+  Array<SoftLimit> limits;            // by vertex; none: there are no limits
   Array<std::uint32_t>
       triangles;  // of the surface, three vertices each, seen from outside counter-clockwise; none of a rope
   std::shared_ptr<const SoftSurface> contact_surface;  // of the triangles; null: there are none
@@ -172,6 +193,14 @@ void for_each_damage_array(Entry& entry, Visitor&& visit) {
   visit(entry.damage.mass);
   visit(entry.damage.flow);
 }
+
+// State that most entries do not have. Files of before have none for any, so it stands behind all entries.
+template <class Entry, class Visitor>
+void for_each_rare_array(Entry& entry, Visitor&& visit) {
+  visit(entry.inside);
+  visit(entry.limits);
+}
+inline bool has_rare_state(const SoftEntry& entry) { return !entry.inside.empty() || !entry.limits.empty(); }
 
 // Begins to move again, and does not fall asleep for a while.
 inline void wake(SoftEntry& entry) { entry.rest[0] = {}; }

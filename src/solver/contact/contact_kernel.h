@@ -368,6 +368,9 @@ GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
   const bool begins = (block.has_fresh | block.has_rolling) != 0;
   PairMotion<W, kHasA> pair =
       begins ? reduce_pair<kHasA>(begin_pair<W>(block, substep)) : load_pair<W, kHasA>(block);
+  if constexpr (kHasA) {
+    if ((block.carried_a | block.carried_b) != 0) move_arms<W>(block, pair, substep);
+  }
   const bool still = !begins && is_still<W>(pair) && is_undisplaced<W, kHasA>(block);
   if (!still || block.is_settled == 0) {
     SavedImpulses<W> saved;

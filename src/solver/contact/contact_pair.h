@@ -42,6 +42,8 @@ struct ContactBlockCold {
   // Rolling friction.
   Wide<W> rolling_friction, rolling_mass;
   Vec3W<W> rolling;
+  // m: how far the arms on A and B have moved since the step began, in the lanes of `carried_a` and `carried_b`.
+  Vec3W<W> moved_a, moved_b;
   alignas(64) float nowhere[kRecordFloats];
 };
 
@@ -60,9 +62,9 @@ struct alignas(64) ContactBlock {
   std::int32_t is_settled = 0;  // a solve with resting bodies left all impulses unchanged, and so will
                                 // the next
   // Lanes as bits: with a body that cannot move along some axes; with a jointed body; with a body A, B; with a movable body A, B; with friction at its
-  // limit; with a row for a point; that are speculative; of these, those that would push.
+  // limit; with a row for a point; that are speculative; of these, those that would push; whose arms on A, B move.
   std::uint16_t locked = 0, jointed = 0, has_a = 0, has_b = 0, movable_a = 0, movable_b = 0, slides = 0,
-                rows[kMaxManifoldPoints] = {}, speculative = 0, pushing = 0;
+                rows[kMaxManifoldPoints] = {}, speculative = 0, pushing = 0, carried_a = 0, carried_b = 0;
   Vec3W<W> normal, tangent_1, tangent_2;
   // Friction at the centre of pressure.
   Vec3W<W> friction_from_a, friction_from_b;
@@ -227,12 +229,48 @@ struct BodyDisplacement {
     delta_rotation = {columns[3], columns[4], columns[5]};
   }
 };
+
+// A support that turns carries what lies on it: the point of contact stays where it is on the body whose centre is nearer, and moves over
+// the other one, whose arm changes by the motion of the two centres against each other. Both bodies then act at one point, so their
+// angular momentum is kept, and the surface has the velocity of the place where the carried body is. Displacements use the mean of the
+// arm's first and last value: for two bodies that turn about a common axis they are then right to second order.
+template <int W>
+__attribute__((noinline)) void move_arms(ContactBlock<W>& block, const PairMotion<W>& pair, float substep) {
+  const BodyDisplacement<W> a(block.read_a), b(block.read_b);
+  // In the middle of the sub-step, where speeds are taken.
+  const Vec3W<W> moved =
+      (b.delta_position - a.delta_position) + Wide<W>(0.5f * substep) * (pair.linear_b - pair.linear_a);
+  const auto move = [&](std::uint16_t lanes, Vec3W<W> now, Vec3W<W>& before, Vec3W<W>& friction_arm,
+                        Vec3W<W>& arm_shift) {
+    const auto carried = Mask<W>::of_bits(lanes);
+    const Vec3W<W> change = now - before;
+    friction_arm = select<W>(carried, friction_arm + change, friction_arm);
+    arm_shift = select<W>(carried, arm_shift + cross(change, block.normal), arm_shift);
+    before = select<W>(carried, now, before);
+  };
+  move(block.carried_a, moved, block.cold->moved_a, block.friction_from_a, block.arm_shift_a);
+  move(block.carried_b, -moved, block.cold->moved_b, block.friction_from_b, block.arm_shift_b);
+}
+// The difference that the mean arm makes to the displacement along the normal.
+template <int W>
+__attribute__((noinline)) Wide<W> mean_arm_excess(const ContactBlock<W>& block, const BodyDisplacement<W>& a,
+                                                  const BodyDisplacement<W>& b) {
+  const Vec3W<W> half = Wide<W>(0.5f) * (b.delta_position - a.delta_position);
+  const Wide<W> of_a = dot(a.delta_rotation, cross(block.cold->moved_a - half, block.normal)),
+                of_b = dot(b.delta_rotation, cross(block.cold->moved_b + half, block.normal));
+  return keep(Mask<W>::of_bits(block.carried_a), of_a) - keep(Mask<W>::of_bits(block.carried_b), of_b);
+}
+
 template <int W, bool kHasA>
 GYRE_INLINE NormalMotion<W> normal_displacements(const ContactBlock<W>& block) {
   const BodyDisplacement<W> b(block.read_b);
   if constexpr (kHasA) {
     const BodyDisplacement<W> a(block.read_a);
-    return normal_motion<W>(block, b.delta_position - a.delta_position, a.delta_rotation, b.delta_rotation);
+    NormalMotion<W> motion =
+        normal_motion<W>(block, b.delta_position - a.delta_position, a.delta_rotation, b.delta_rotation);
+    if ((block.carried_a | block.carried_b) != 0)
+      motion.common = motion.common + mean_arm_excess<W>(block, a, b);
+    return motion;
   } else {
     return normal_motion<W>(block, b.delta_position, b.delta_rotation);
   }

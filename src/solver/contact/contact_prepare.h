@@ -20,6 +20,9 @@ constexpr float kLowerShare = 0.7f;
 constexpr float kShortestMean = 0.5f;
 constexpr float kLongestMean = 1.0f;
 
+// In sizes of the contact: paths that deviate less from their tangent in a step count as straight. What lies on a turntable then creeps
+// outward by 3e-4 sizes a second at most, at 60 steps a second.
+constexpr float kMinBend = 0.5e-5f;
 // A patch narrower than this share of the size has no spinning friction.
 constexpr float kMinPatch = 1.0e-3f;
 // Friction coefficients are bounded by this, because their inverse must not vanish.
@@ -413,6 +416,22 @@ GYRE_INLINE Mask<W> choose_arm_origin(ContactBlock<W>& block, const PointArms<W>
   return nearer_a;
 }
 
+// Finds the lanes in which the body whose centre is farther turns, and carries the other along an arc.
+template <int W>
+__attribute__((noinline)) void find_carried(ContactBlock<W>& block, Mask<W> nearer_a,
+                                            const PointArms<W>& arms, Wide<W> size, float step) {
+  const Wide<W> zero(0.0f), half_step_squared(0.5f * step * step);
+  const PairMotion<W> pair = load_pair<W>(block);
+  const Wide<W> radius = length(arms.from_a - arms.from_b);
+  const auto bends = [&](Vec3W<W> spin) {
+    return half_step_squared * length_squared(spin) * radius > Wide<W>(kMinBend) * size;
+  };
+  const auto pairs = Mask<W>::of_bits(std::uint32_t(block.has_a & block.has_b));
+  block.carried_a = lane_bits<W>(pairs & ~nearer_a & bends(pair.angular_a));
+  block.carried_b = lane_bits<W>(pairs & nearer_a & bends(pair.angular_b));
+  block.cold->moved_a = block.cold->moved_b = {zero, zero, zero};
+}
+
 template <int W>
 void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
                    ContactBodies bodies, const ContactSettings& settings) {
@@ -449,6 +468,8 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   gather_columns<4, W>(records.constraint, kConstraintSize, in);
   const Wide<W> size = in[0];
   block.pushout_speed = in[1];
+  block.carried_a = block.carried_b = 0;
+  if ((block.has_a & block.has_b) != 0) find_carried<W>(block, nearer_a, arms[0], size, settings.step);
   gather_columns<4, W>(records.constraint, kConstraintVelocity, in);
   const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
   // Not -0: a surface at rest is left out, and that must give the same bits.
@@ -556,7 +577,8 @@ void write_block_impulse(void* memory, int index, int lane, const ContactImpulse
   };
   block.is_settled = 0;
   for (int k = 0; k < kMaxManifoldPoints; ++k) {
-    if (impulse.normal[k] > 0.0f) block.speculative = static_cast<std::uint16_t>(block.speculative & ~(1u << lane));
+    if (impulse.normal[k] > 0.0f)
+      block.speculative = static_cast<std::uint16_t>(block.speculative & ~(1u << lane));
     replace(block.impulses[k], block.totals[k], impulse.normal[k]);
   }
   replace(block.friction_1, block.total_1, dot(impulse.friction, get_lane(block.tangent_1, lane)));

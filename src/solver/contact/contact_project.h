@@ -82,8 +82,12 @@ GYRE_INLINE NormalMotion<W> displacements_so_far(const ContactBlock<W>& block,
   const Vec3W<W> rotation_b = b.delta_rotation + pair.angular_b;
   if constexpr (kHasA) {
     const BodyDisplacement<W> a(block.read_a);
-    return normal_motion<W>(block, (b.delta_position - a.delta_position) + (pair.linear_b - pair.linear_a),
-                            a.delta_rotation + pair.angular_a, rotation_b);
+    NormalMotion<W> motion =
+        normal_motion<W>(block, (b.delta_position - a.delta_position) + (pair.linear_b - pair.linear_a),
+                         a.delta_rotation + pair.angular_a, rotation_b);
+    if ((block.carried_a | block.carried_b) != 0)
+      motion.common = motion.common + mean_arm_excess<W>(block, a, b);
+    return motion;
   } else {
     return normal_motion<W>(block, b.delta_position + pair.linear_b, rotation_b);
   }

@@ -72,6 +72,8 @@ void copy_block_lane(const ContactBlock<W>& from, ContactBlock<W>& to, int lane)
   copy_bit(from.slides, to.slides);
   for (int k = 0; k < kMaxManifoldPoints; ++k) copy_bit(from.rows[k], to.rows[k]);
   copy_bit(0, to.speculative);
+  // Its arms are those of the impact already.
+  copy_bit(0, to.carried_a), copy_bit(0, to.carried_b);
   to.has_rolling |= from.has_rolling, to.has_surface_velocity |= from.has_surface_velocity;
   copy_cold_lane<W>(*from.cold, *to.cold, lane);
 }
@@ -100,7 +102,7 @@ void solve_lane_anew(void* memory, int index, int lane, const ContactConstraint&
   for (std::uint32_t& each : order) each = 0xffffffffu;
   order[lane] = 0;
   prepare_block<W>(own, &constraint, order, bodies, settings);
-  own.speculative = 0;
+  own.speculative = own.carried_a = own.carried_b = 0;
   own.has_a != 0 ? solve_block<W, true>(own, settings.substep) : solve_block<W, false>(own, settings.substep);
   add_missing_points<W>(block, constraint.point_count == 3 ? 4 : constraint.point_count);
   copy_block_lane<W>(own, block, lane);

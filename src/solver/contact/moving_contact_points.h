@@ -245,6 +245,8 @@ void advance_points(void* memory, int index, const AdvancedArmsLane* moving, int
   prepare_normals<W>(updated, exists);
   write_back<W>(block, updated, lanes, load);
   mark_uneven_points<W>(block);
+  block.carried_a = std::uint16_t(block.carried_a & ~lanes.bits);
+  block.carried_b = std::uint16_t(block.carried_b & ~lanes.bits);
   block.is_settled = 0;
 }
 

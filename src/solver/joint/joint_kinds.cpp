@@ -139,10 +139,67 @@ Quat pinion_reference(const JointDetail& detail, Quat frame_b) {
   return frame_b * conjugate(detail.reference_b) * detail.reference_a;
 }
 
-float gear_error(const JointDetail& detail, Quat frame_a, Quat frame_b) {
-  const double a = rotation_about_x(detail.reference_a, frame_a, detail.axes[3].position);
-  const double b = rotation_about_x(detail.reference_b, frame_b, detail.axes[4].position);
-  return float(a + double(detail.ratio) * b);
+// The axes of a gear's shafts, and the frames on them that turn with the housing.
+struct GearShafts {
+  Vec3 a, b;
+  Quat frame_a, frame_b;
+};
+Quat frame_about(Vec3 x, Vec3 toward) {
+  const Vec3 y = normalized(toward - dot(toward, x) * x, any_perpendicular(x));
+  return from_matrix({x, y, cross(x, y)});
+}
+GearShafts shafts_of(GearFrame frame, const RowPose& pose) {
+  GearShafts shafts{rotate(pose.frame_a, {1, 0, 0}), rotate(pose.frame_b, {1, 0, 0}), {}, {}};
+  if (frame == GearFrame::world) return shafts;
+  const bool centres = frame == GearFrame::centres;
+  shafts.frame_a = frame_about(shafts.a, centres ? pose.anchor_offset : shafts.b);
+  shafts.frame_b = frame_about(shafts.b, centres ? pose.anchor_offset : shafts.a);
+  return shafts;
+}
+
+struct GearTurns {
+  double a, b;
+};
+GearTurns gear_turns(const JointDetail& detail, const RowPose& pose) {
+  const GearShafts shafts = shafts_of(gear_frame(detail), pose);
+  return {rotation_about_x(shafts.frame_a * detail.reference_a, pose.frame_a, detail.axes[3].position),
+          rotation_about_x(shafts.frame_b * detail.reference_b, pose.frame_b, detail.axes[4].position)};
+}
+
+float gear_error(const JointDetail& detail, const RowPose& pose) {
+  const GearTurns turns = gear_turns(detail, pose);
+  return float(turns.a + double(detail.ratio) * turns.b);
+}
+
+// The wrench between the wheels, equal and opposite: its torque is -1 about the shaft of a and `ratio` about that of b, and the housing
+// bears the rest at the bearings. So no motion of all three together moves the row. Between shafts that are not parallel it is a couple;
+// between parallel shafts it is the force of the teeth at the pitch point.
+JointRow gear_row(const JointDetail& detail, const JointConstraint& work, Vec3 a, Vec3 b) {
+  const float ratio = detail.ratio, along = dot(a, b);
+  JointRow row;
+  switch (gear_frame(detail)) {
+    case GearFrame::world:
+      row.angular_a = -a;
+      row.angular_b = ratio * b;
+      break;
+    case GearFrame::shafts:
+      row.angular_a = row.angular_b =
+          (1.0f / (1.0f - along * along)) * ((ratio + along) * b - (1.0f + ratio * along) * a);
+      break;
+    case GearFrame::centres: {
+      // The least wrench at the middle of the line n between the shafts; couples count over the length of n.
+      const Vec3 half = 0.5f * work.error, arm_a = cross(a, half), arm_b = -cross(b, half);
+      const float square_n = length_squared(work.error);
+      const float aa = length_squared(arm_a) + square_n, bb = length_squared(arm_b) + square_n,
+                  ab = dot(arm_a, arm_b) + square_n * along, scale = 1.0f / (aa * bb - ab * ab);
+      const float of_a = -scale * (bb + ratio * ab), of_b = scale * (ab + ratio * aa);
+      const Vec3 couple = square_n * (of_a * a + of_b * b);
+      row.direction = of_a * arm_a + of_b * arm_b;
+      row.angular_a = cross(work.from_a + half, row.direction) + couple;
+      row.angular_b = cross(work.from_b - half, row.direction) + couple;
+    }
+  }
+  return row;
 }
 
 float rack_error(const JointDetail& detail, const RowPose& pose) {
@@ -282,18 +339,26 @@ void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pa
   }
 }
 
+void start_gear(JointDetail& detail, GearFrame frame, const RowPose& pose) {
+  const GearShafts shafts = shafts_of(frame, pose);
+  detail.path_orientation = PathOrientation(frame);
+  detail.reference_a = conjugate(shafts.frame_a) * pose.frame_a;
+  detail.reference_b = conjugate(shafts.frame_b) * pose.frame_b;
+}
+
 void prepare_gear(JointRecord& joint, JointConstraint& work) {
   JointDetail& detail = *work.detail;
-  detail.reference_a = followed(detail.reference_a, work.frame_a);
-  detail.reference_b = followed(detail.reference_b, work.frame_b);
-  JointRow row;
-  row.error = gear_error(detail, work.frame_a, work.frame_b);
-  row.angular_a = -rotate(work.frame_a, {1, 0, 0});
-  row.angular_b = detail.ratio * rotate(work.frame_b, {1, 0, 0});
-  detail.axes[3].position =
-      float(rotation_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
-  detail.axes[4].position =
-      float(rotation_about_x(detail.reference_b, work.frame_b, detail.axes[4].position));
+  if (gear_frame(detail) == GearFrame::world) {
+    detail.reference_a = followed(detail.reference_a, work.frame_a);
+    detail.reference_b = followed(detail.reference_b, work.frame_b);
+  }
+  const RowPose pose{work.error, {}, work.frame_a, work.frame_b};
+  JointRow row = gear_row(detail, work, rotate(work.frame_a, {1, 0, 0}), rotate(work.frame_b, {1, 0, 0}));
+  row.error = gear_error(detail, pose);
+  const GearTurns turns = gear_turns(detail, pose);
+  detail.axes[3].position = float(turns.a);
+  detail.axes[4].position = float(turns.b);
+  work.from_a += work.error;  // to b's anchor
   work.position = joint.position = detail.axes[3].position;
   work.rows->count = 0;
   add_row(*work.rows, row);
@@ -400,7 +465,7 @@ void measure_rows(const JointRecord& joint, const JointConstraint& work, const R
   const JointRows& rows = *work.rows;
   switch (joint.kind) {
     case JointKind::gear:
-      errors[0] = gear_error(detail, pose.frame_a, pose.frame_b);
+      errors[0] = gear_error(detail, pose);
       return;
     case JointKind::rack_and_pinion:
       errors[0] = rack_error(detail, pose);

@@ -26,6 +26,8 @@ void prepare_six_axes(JointRecord& joint, JointConstraint& work, const JointPair
                       const JointSettings& settings);
 void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair,
                   const JointSettings& settings);
+// Counts the turns of a gear from this pose on.
+void start_gear(JointDetail& detail, GearFrame frame, const RowPose& pose);
 void prepare_gear(JointRecord& joint, JointConstraint& work);
 void prepare_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair,
                   const JointOffsets& offsets);

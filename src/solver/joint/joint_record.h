@@ -81,12 +81,20 @@ struct JointAxisRecord {
   float total = 0.0f;     // of all impulses over the last step
 };
 
+// What a gear counts turns against.
+enum class GearFrame : std::uint8_t {
+  world,
+  centres,  // the line from shaft to shaft, which turns with the housing
+  shafts,   // the plane of two shafts that are not parallel
+};
+
 struct JointDetail {
   bool used = false;
   bool disabled = false;
   bool path_closed = false;
   bool has_swing = false;
-  PathOrientation path_orientation = PathOrientation::free;
+  PathOrientation path_orientation =
+      PathOrientation::free;  // path; gear: its GearFrame, so that snapshots keep their layout
   // Fields that each step reads come first.
   float friction = 0.0f;  // N m, against all rotation: ball, cone
   float swing_y = 0.0f;   // rad
@@ -98,7 +106,9 @@ struct JointDetail {
   Vec3 drive_torque_impulse;
   Vec3 friction_impulse;
   float ratio = 1.0f;
-  Quat reference_a;  // world_from_joint when the joint was added; of gears and pinions, it follows the axis
+  Quat
+      reference_a;  // world_from_joint when the joint was added; of gears and pinions, it follows the axis; of
+                    // gears in a housing, from the frame of the shafts
   Quat reference_b;
   float start = 0.0f;  // rack_and_pinion: m, initial position of the rack
   DVec3 ground_a;      // pulley
@@ -114,6 +124,8 @@ struct PathPoint {
   float along = 0.0f;  // m, length of the curve from the first point
   Vec3 up;             // unit, normal to the curve; transported without twist
 };
+
+inline GearFrame gear_frame(const JointDetail& detail) { return GearFrame(detail.path_orientation); }
 
 // Clears what the last step left in the record, as if the joint were new.
 void clear_impulses(JointRecord& joint);

@@ -22,6 +22,8 @@ const files = {
   'later.gyrec': Buffer.concat([Buffer.from('GYREPLAY'), Buffer.from([9, 0, 0, 0]), Buffer.alloc(64)]),
   'world.gyresnap': Buffer.concat([Buffer.from('GYRESNAP'), Buffer.alloc(64)]),
   'good.gyre.json': stack,
+  'bad.glb': Buffer.concat([Buffer.from('glTF'), Buffer.alloc(40)]),
+  'no_buffer.gltf': '{"asset": {"version": "2.0"}, "buffers": [{"uri": "missing.bin", "byteLength": 4}]}',
 };
 const viewer = viewerTests({ files });
 
@@ -40,6 +42,8 @@ const cases = [
   ['later.gyre.json', /found 9, expected 1/],
   ['later.gyrec', /format 9; this version reads format 1/],
   ['world.gyresnap', /is a snapshot/],
+  ['bad.glb', /version 0 of glTF/],
+  ['no_buffer.gltf', /missing\.bin/],
   ['nowhere.gyre.json', /There is no nowhere\.gyre\.json/],
 ];
 

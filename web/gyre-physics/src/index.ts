@@ -5,6 +5,7 @@ import { type Build, Runtime } from './runtime.js';
 import { Scene, type SceneOptions } from './scene.js';
 
 export * from './generated.js';
+export { type GltfOptions, type ImportedScene, importGltf } from './gltf.js';
 export type { LoadOptions } from './load.js';
 export type { Build } from './runtime.js';
 export { Scene, type SceneHold, type SceneOptions, type SceneSettings, type SceneView } from './scene.js';

@@ -63,6 +63,20 @@ function unpack(variant: Variant): Uint8Array<ArrayBuffer> {
   return decompress(bytes);
 }
 
+/** Starts a module of the package. */
+export async function instantiate(variant: Variant, more: Record<string, unknown> = {}): Promise<Pick<Engine, 'exports' | 'memory'>> {
+  const made = await variant.default({
+    wasmBinary: unpack(variant),
+    print: (text: string) => console.log(text),
+    printErr: (text: string) => {
+      // Said of the thread that waits for a world's workers to end. They do so at once.
+      if (!text.startsWith('Blocking on the main thread')) console.warn(text);
+    },
+    ...more,
+  });
+  return { exports: made as unknown as EngineExports, memory: made['wasmMemory'] as WebAssembly.Memory };
+}
+
 interface ThreadWorker {
   onmessage: ((event: { data: unknown }) => void) | null;
   onerror: ((event: unknown) => void) | null;
@@ -81,14 +95,7 @@ interface Workshop {
 async function start(build: Build, workers: number): Promise<Engine> {
   const variant = await variants[build]();
   if (variant.wasm === '') throw new Error(`load: the build '${build}' was left out of this copy of the package`);
-  const module: Record<string, unknown> = {
-    wasmBinary: unpack(variant),
-    print: (text: string) => console.log(text),
-    printErr: (text: string) => {
-      // Said of the thread that waits for a world's workers to end. They do so at once.
-      if (!text.startsWith('Blocking on the main thread')) console.warn(text);
-    },
-  };
+  const module: Record<string, unknown> = {};
   let workshop: Workshop | undefined;
   if (build === 'threads') {
     workshop = inNode ? await nodeWorkshop(variant.worker) : pageWorkshop(variant.worker);
@@ -97,15 +104,14 @@ async function start(build: Build, workers: number): Promise<Engine> {
     module['createWorker'] = () => workshop!.create();
   }
   try {
-    const made = await variant.default(module);
+    const { exports, memory } = await instantiate(variant, module);
     workshop?.settle();
-    const exports = made as unknown as EngineExports;
     if (exports['_gyre_bindings_version']?.() !== bindingsVersion) {
       throw new Error(`load: the build '${build}' was made from other headers than this JavaScript: run tools/build_web.sh`);
     }
     return {
       exports,
-      memory: made['wasmMemory'] as WebAssembly.Memory,
+      memory,
       build,
       workers,
       close: () => workshop?.close(),

@@ -402,6 +402,69 @@ test('a force of a scene acts when it is due', () => {
   close(scene.linearVelocity(scene.sceneBodies[0]), [0.1, 0, 0], 1e-6);
 });
 
+test('bodies and shapes change at run time', () => {
+  const { world, ground, body } = boxOnGround();
+  const [shape] = world.shapes(body);
+  assert.equal(Math.round(world.massProperties(body).mass), 1000);
+  world.setDensity(shape, 500);
+  assert.equal(Math.round(world.massProperties(body).mass), 500);
+  world.setMass(body, { mass: 10, inertia: [1, 2, 3, 0, 0, 0] });
+  assert.equal(world.massProperties(body).mass, 10);
+  close(world.massProperties(body).inertia, [1, 2, 3, 0, 0, 0]);
+  world.setLockedAxes(body, { linear: [true, false, false] });
+  assert.deepEqual(world.lockedAxes(body).linear, [true, false, false]);
+  world.addImpulse(body, [50, 0, 0]);
+  world.step(second);
+  assert.equal(world.pose(body).position[0], 0);
+  world.setUserData(body, 2n ** 60n);
+  world.setShapeUserData(shape, 7);
+  assert.equal(world.userData(body), 2n ** 60n);
+  assert.equal(world.shapeUserData(shape), 7n);
+  world.setPairIgnored(body, ground, true);
+  assert.equal(world.pairIgnored(ground, body), true);
+  for (let i = 0; i < 30; ++i) world.step(second);
+  assert.ok(world.pose(body).position[1] < 0, 'it falls through the ground');
+  const kept = world.saveSnapshotWith(new Uint8Array([1, 2, 3]));
+  assert.deepEqual([...api.snapshotUserBytes(kept)], [1, 2, 3]);
+  world.setPose(body, { position: [0, 3, 0] });
+  world.setEnabled(body, false);
+  assert.equal(world.enabled(body), false);
+  assert.equal(world.castRay([0, 3, 5], [0, 0, -10]), undefined);
+  for (let i = 0; i < 10; ++i) world.step(second);
+  close(world.pose(body).position, [0, 3, 0]);
+  world.setEnabled(body, true);
+  assert.ok(world.castRay([0, 3, 5], [0, 0, -10]));
+});
+
+test('couplings, articulations and named laws', () => {
+  const world = api.createWorld({ gravity: [0, 0, 0] });
+  const mass = { mass: 1, inertia: [1, 1, 1, 0, 0, 0] };
+  const [left, right] = [-1, 1].map((x) => world.addBody({ pose: { position: [x, 0, 0] }, canSleep: false, ...mass }));
+  const slider = (b, x) => world.addJoint({ kind: JointKind.slider, b, anchor: [x, 0, 0], axis: [1, 0, 0] });
+  const [a, b] = [slider(left, -1), slider(right, 1)];
+  const axis = gyre.JointAxis.linearX;
+  const coupling = world.addCoupling({ terms: [{ joint: a, axis, coefficient: 1 }, { joint: b, axis, coefficient: 2 }] });
+  assert.deepEqual([...world.couplings()], [coupling]);
+  for (let i = 0; i < 30; ++i) {
+    world.addJointLoad(a, axis, 5);
+    world.step(second);
+  }
+  close([world.linearVelocity(right)[0] * 2], [-world.linearVelocity(left)[0]], 1e-4);
+  assert.ok(world.couplingState(coupling).force < 0);
+  world.setMotor(a, { targetVelocity: 0, maxForce: 3 });
+  world.step(second);
+  close([Math.abs(world.jointAxisState(a, axis).motor)], [3], 1e-4);
+  assert.throws(() => world.addCoupling({ terms: [{ joint: a, axis }] }), /2 to 8/);
+  const table = world.readArticulation(left);
+  assert.deepEqual([...table.massMatrix], [1]);
+  close([...world.inverseDynamics(left, [4])], [4]);
+  assert.equal(world.pointJacobian(left, [0, 0, 0]).length, 6);
+  const charge = world.addBody({ linearVelocity: [1, 0, 0], canSleep: false });
+  world.addField({ kind: gyre.FieldKind.magnetic, strength: 2, axis: [0, 0, 1] });
+  for (let i = 0; i < 60; ++i) world.step(second);
+  close(world.linearVelocity(charge), [Math.cos(2), -Math.sin(2), 0], 1e-3);
+});
+
 test('seeing inside: tables, drawing, times, reasons', () => {
   const { world, body } = boxOnGround();
   world.setTiming(true);

@@ -31,6 +31,9 @@ test('what a page fetches is below a megabyte and a quarter', () => {
     const size = modules + packed(join(dist, 'engine', name));
     assert.ok(size < 1.25e6, `${name} with the rest: ${size} bytes`);
   }
+  // The reader of glTF comes on top, for a page that opens such a file.
+  const gltf = packed(join(dist, 'engine/gltf.js'));
+  assert.ok(gltf > 1000 && gltf < 0.3e6, `gltf.js: ${gltf} bytes`);
   // Three builds of the engine in one file, of which a page fetches one: 1 MB each.
   assert.ok(statSync(tarball).size < 3.4e6, `${statSync(tarball).size} bytes`);
 });
@@ -48,7 +51,7 @@ test("the README's first example prints what it says", () => {
 });
 
 test("the README's other examples run", async () => {
-  const [, , soft, rest] = readme.split('```js\n').map((part) => part.split('```')[0]);
+  const [, , soft, rest, gltf] = readme.split('```js\n').map((part) => part.split('```')[0]);
   writeFileSync(join(folder, 'soft.js'), soft);
   const height = Number(execFileSync(process.execPath, ['soft.js'], { cwd: folder, encoding: 'utf8', timeout: 60000 }));
   assert.ok(Math.abs(height - 0.5) < 0.02, `the middle of the cloth is at ${height} m`);
@@ -61,6 +64,10 @@ console.log('ran');
 `;
   writeFileSync(join(folder, 'more.js'), code);
   assert.match(execFileSync(process.execPath, ['more.js'], { cwd: folder, encoding: 'utf8', timeout: 60000 }), /ran/);
+  const robot = JSON.stringify(readFileSync(join(root, 'scenes/formats/playground.gltf'), 'utf8'));
+  const fetched = `globalThis.fetch = async () => ({ arrayBuffer: async () => new TextEncoder().encode(${robot}).buffer });`;
+  writeFileSync(join(folder, 'gltf.js'), `${fetched}\n${gltf}\nconsole.log(robot.bodyNames.length > 0 && 'ran');`);
+  assert.match(execFileSync(process.execPath, ['gltf.js'], { cwd: folder, encoding: 'utf8', timeout: 60000 }), /ran/);
 });
 
 test('a program with threads ends by itself', { skip: !made('threads') && 'the build with threads is not made' }, () => {

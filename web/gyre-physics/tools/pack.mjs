@@ -1,7 +1,7 @@
 // Makes one JavaScript file of what emscripten wrote: the loader, and the WebAssembly module, packed with zstd (12 % smaller than the
 // smallest gzip, and unpacked as soon) and in base64.
 //
-//   node pack.mjs simd|threads|plain FROM TO     FROM is the folder of emscripten's output; "none" makes an empty build
+//   node pack.mjs simd|threads|plain|gltf FROM TO     FROM is the folder of emscripten's output; "none" makes an empty build
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -9,7 +9,7 @@ import { gzipSync } from 'node:zlib';
 import { transformSync } from 'esbuild';
 
 const [build, from, to] = process.argv.slice(2);
-if (!to) throw new Error('usage: pack.mjs simd|threads|plain FROM TO');
+if (!to) throw new Error('usage: pack.mjs simd|threads|plain|gltf FROM TO');
 
 if (from === 'none') {
   mkdirSync(to, { recursive: true });
@@ -23,12 +23,19 @@ function replace(text, what, by) {
   return text.replace(what, by);
 }
 
-let glue = readFileSync(join(from, 'gyre_web.mjs'), 'utf8');
+const program = build === 'gltf' ? 'gyre_import' : 'gyre_web';
+let glue = readFileSync(join(from, `${program}.mjs`), 'utf8');
 // Twice more, for size: 1.4 % of a packed module, where -Oz, here or for emscripten's link, leaves fewer bytes that pack worse. Nothing
 // lies in the first 1,024 bytes (GLOBAL_BASE, ../../bindings), so what is added to an address can go into the access: another 1.2 %.
-const module = join(from, 'gyre_web.small.wasm');
-const features = { simd: ['--enable-simd'], threads: ['--enable-simd', '--enable-threads', '--enable-bulk-memory', '--enable-sign-ext'], plain: [] }[build];
-execFileSync('wasm-opt', ['--enable-mutable-globals', ...features, '--low-memory-unused', '-Os', '-Os', join(from, 'gyre_web.wasm'), '-o', module]);
+const module = join(from, `${program}.small.wasm`);
+// The reader of glTF may come from a folder with SIMD; nothing is added where it does not.
+const features = {
+  simd: ['--enable-simd'],
+  threads: ['--enable-simd', '--enable-threads', '--enable-bulk-memory', '--enable-sign-ext'],
+  plain: [],
+  gltf: ['--enable-simd'],
+}[build];
+execFileSync('wasm-opt', ['--enable-mutable-globals', ...features, '--low-memory-unused', '-Os', '-Os', join(from, `${program}.wasm`), '-o', module]);
 const wasm = readFileSync(module);
 const packed = execFileSync('zstd', ['--ultra', '-22', '--no-check', '-q', '-c', module], { maxBuffer: wasm.length });
 

@@ -14,6 +14,8 @@ async function open(viewer: Viewer, source: Source, play: boolean): Promise<bool
     await viewer.playback.open(source);
     document.title = `${store.scene.peek()!.title} – Gyre`;
     store.playing.value = play;
+    const { notes } = store.scene.peek()!;
+    if (notes.length > 0) store.notice.value = { title: 'Not all of it is simulated', text: notes.join('\n'), fatal: false };
     return true;
   } catch (error) {
     store.notice.value = { title: `${source.name} cannot be opened`, text: (error as Error).message, fatal: store.scene.peek() === null };

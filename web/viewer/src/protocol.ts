@@ -116,6 +116,7 @@ export interface SettingChoices {
 export interface SceneDescription {
   title: string;
   file: string;
+  notes: string[]; // of an imported file: what is not simulated
   live: boolean; // false: a recording, which can be looked at but not changed
   origin: Vec3;
   bounds: Box; // around what there is to see; relative to origin

@@ -12,7 +12,7 @@ const HAND: [string, string][] = [
   ['Wheel or pinch', 'nearer, farther'],
   ['Click', 'select a body and ask why it is awake'],
   ['Double-click', 'follow a body'],
-  ['Drop a file', 'open a scene (.gyre.json) or a recording (.gyrec)'],
+  ['Drop a file', 'open a scene (.gyre.json), a recording (.gyrec) or glTF (.glb)'],
 ];
 
 export function Help(): JSX.Element | null {

@@ -35,7 +35,7 @@ export function SceneDrawer({ viewer }: { viewer: Viewer }): JSX.Element | null 
         <input
           ref={input}
           type="file"
-          accept=".json,.gyrec"
+          accept=".json,.gyrec,.glb,.gltf"
           hidden
           onChange={(event) => {
             const file = event.currentTarget.files?.[0];

@@ -143,6 +143,7 @@ export class LiveSession implements Session {
     const settings = { ...this.settings, ...this.runSettings() };
     return {
       title: this.scene.name || this.source.file,
+      notes: this.source.notes,
       file: this.source.file,
       live: true,
       origin: this.origin,

@@ -1,4 +1,6 @@
-// Where a scene or recording comes from: bytes from the visitor, or an address, with the mesh files that lie beside it.
+// Where a scene or recording comes from: bytes from the visitor, or an address, with the files that lie beside it. A glTF file becomes the
+// text of a scene here.
+import { importGltf } from 'gyre-physics';
 import type { Source } from '../protocol';
 
 export interface SceneText {
@@ -6,6 +8,7 @@ export interface SceneText {
   text: string;
   files: Record<string, Uint8Array>;
   json: SceneJson;
+  notes: string[]; // of an imported file: what is not simulated
 }
 
 // What the worker itself reads of a scene; the engine checks all of it.
@@ -40,24 +43,59 @@ export function isRecording(bytes: Uint8Array, name: string): boolean {
   return name.endsWith('.gyrec') || beginsWith(bytes, 'GYREPLAY');
 }
 
+function isGltf(bytes: Uint8Array, name: string): boolean {
+  return /\.(glb|gltf)$/i.test(name) || beginsWith(bytes, 'glTF');
+}
+
+async function gltfText(source: Source, bytes: Uint8Array): Promise<SceneText> {
+  const file = source.name;
+  const named = beginsWith(bytes, 'glTF') ? [] : bufferFiles(sceneJson(new TextDecoder().decode(bytes)));
+  const { text, notes } = await importGltf(bytes, { file, files: await filesBeside(source, named) });
+  return { file, text, files: {}, json: sceneJson(text), notes };
+}
+
 export async function sceneText(source: Source, bytes: Uint8Array): Promise<SceneText> {
+  if (isGltf(bytes, source.name)) return gltfText(source, bytes);
   const file = source.name;
   let text: string;
   try {
     text = new TextDecoder('utf-8', { fatal: true }).decode(bytes);
   } catch {
-    throw new Error(`${file} is neither a scene (a text file, .gyre.json) nor a recording (.gyrec).`);
+    throw new Error(`${file} is neither a scene (a text file, .gyre.json), nor a recording (.gyrec), nor glTF (.glb).`);
   }
   const json = sceneJson(text);
+  return { file, text, files: await filesBeside(source, meshFiles(json)), json, notes: [] };
+}
+
+// The bytes of the files that another one names, by these names.
+async function filesBeside(source: Source, names: string[]): Promise<Record<string, Uint8Array>> {
   const files: Record<string, Uint8Array> = {};
-  for (const mesh of meshFiles(json)) {
+  for (const name of names) {
     if (source.kind === 'bytes') {
-      throw new Error(`${file} needs the mesh file ${mesh}, which a page cannot find beside it. Open it with: gyre view ${file}`);
+      throw new Error(`${source.name} needs the file ${name}, which a page cannot find beside it. Open it with: gyre view ${source.name}`);
     }
-    if (/^[a-z]+:|^\/|\\|(^|\/)\.\.(\/|$)/i.test(mesh)) throw new Error(`${file}: the mesh file ${mesh} lies outside the scene's folder.`);
-    files[mesh] = await fetchBytes(new URL(mesh.split('/').map(encodeURIComponent).join('/'), source.url).href, mesh);
+    if (/^[a-z]+:|^\/|\\|(^|\/)\.\.(\/|$)/i.test(name)) throw new Error(`${source.name}: the file ${name} lies outside its folder.`);
+    files[name] = await fetchBytes(new URL(name.split('/').map(encodeURIComponent).join('/'), source.url).href, name);
   }
-  return { file, text, files, json };
+  return files;
+}
+
+// The files of binary data that a glTF file names. The reader knows them without the escapes of addresses.
+function bufferFiles(json: unknown): string[] {
+  const { buffers } = json as { buffers?: unknown };
+  if (!Array.isArray(buffers)) return [];
+  return (buffers as ({ uri?: unknown } | null)[])
+    .map((buffer) => buffer?.uri)
+    .filter((uri): uri is string => typeof uri === 'string' && !uri.startsWith('data:'))
+    .map(unescaped);
+}
+
+function unescaped(uri: string): string {
+  try {
+    return decodeURIComponent(uri);
+  } catch {
+    return uri;
+  }
 }
 
 // Of a file that is no scene, nothing: the engine's reader says what is wrong and where, in better words.

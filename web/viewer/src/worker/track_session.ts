@@ -69,6 +69,7 @@ export class TrackSession implements Session {
     const here = (place: readonly number[]): Vec3 => place.map((value, i) => value - origin[i]!) as Vec3;
     return {
       title: this.note.name || this.file,
+      notes: [],
       file: this.file,
       live: false,
       origin,

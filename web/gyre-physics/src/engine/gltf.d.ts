@@ -1,0 +1,1 @@
+export { default, wasm, worker } from './variant.js';
