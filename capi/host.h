@@ -1,6 +1,7 @@
 // The objects behind the handles of the C interface, and the last error of each thread.
 #pragma once
 
+#include <gyre/articulation.h>
 #include <gyre/debug.h>
 #include <gyre/gyre.h>
 #include <gyre/replay.h>

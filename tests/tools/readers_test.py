@@ -32,9 +32,10 @@ READERS_OF_SETTERS = {
     "set_velocity": "linear_velocity", "set_damping": "linear_damping", "set_joint_axis": "joint_axis_def", "set_sleeping": "def", "set_awake": "is_awake", "set_integrator": "def", "set_springs": "def",
     "set_time_stepping": "def", "set_solver": "def", "set_combine_rules": "def", "set_threads": "def", "set_broad_phase": "def",
     "set_mass": "mass_properties", "set_sensor": "is_sensor", "set_break_load": "joint_info", "set_vertices": "vertices",
-    "set_emitters": "gas_def",
+    "set_emitters": "gas_def", "set_fluid_pose": "fluid_info", "set_fluid_velocity": "fluid_info",
 }
-WITHOUT_READER = {"set_problem_hook": "it belongs to the program and not to the world"}
+WITHOUT_READER = {"set_problem_hook": "it belongs to the program and not to the world",
+                  "set_vertex_limits": "the program sets them anew in each step; the vertices show what they do"}
 READERS = {
     "MassDef.mass": "mass_properties", "MassDef.center_of_mass": "mass_properties", "MassDef.inertia": "mass_properties",
     "Stepping.substeps": "substeps", "Stepping.integrator": "def", "Stepping.springs": "def", "Stepping.time": "def", "Stepping.tolerance": "def",
