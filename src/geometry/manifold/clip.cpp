@@ -202,7 +202,7 @@ int clip_segments(const FacePair& pair, ManifoldPoint* out) {
   return points;
 }
 
-int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
+int reduce_points(ManifoldPoint* points, int count, Vec3 normal, float fade) {
   if (count <= kMaxManifoldPoints) return count;
   float value[kMaxClipPoints + 1];
   int chosen[kMaxManifoldPoints] = {-1, -1, -1, -1};
@@ -228,19 +228,21 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
   if (!choose(0, -deepest, -kUnbounded, kEqualDepth * std::sqrt(width_squared))) chosen[0] = 0;
   const Vec3 p0 = points[chosen[0]].position;
   int chosen_count = 1;
+  float weight[kMaxClipPoints + 1];
+  for (int i = 0; i < count; ++i) weight[i] = 1.0f / (1.0f + fade * (points[i].separation - deepest));
 
   // Second: the point farthest from the first. Third: the largest triangle with both. Fourth: the largest addition to
   // that area.
   float farthest = 0.0f, widest = 0.0f, added = 0.0f;
   for (int i = 0; i < count; ++i) {
-    value[i] = length_squared(points[i].position - p0);
+    value[i] = weight[i] * length_squared(points[i].position - p0);
     farthest = max(farthest, value[i]);
   }
   if (choose(1, farthest, 1.0e-12f * width_squared, kEqualSpan * farthest)) {
     ++chosen_count;
     const Vec3 p1 = points[chosen[1]].position, beside = cross(normal, p1 - p0);
     for (int i = 0; i < count; ++i) {
-      value[i] = absolute(dot(beside, points[i].position - p0));
+      value[i] = weight[i] * absolute(dot(beside, points[i].position - p0));
       widest = max(widest, value[i]);
     }
     if (choose(2, widest, 1.0e-6f * farthest, kEqualSpan * widest)) {
@@ -251,7 +253,7 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
                  out20 = winding * cross(normal, p0 - p2);
       for (int i = 0; i < count; ++i) {
         const Vec3 p = points[i].position;
-        value[i] = max(max(dot(out01, p - p0), dot(out12, p - p1)), dot(out20, p - p2));
+        value[i] = weight[i] * max(max(dot(out01, p - p0), dot(out12, p - p1)), dot(out20, p - p2));
         added = max(added, value[i]);
       }
       if (choose(3, added, 1.0e-4f * widest, kEqualSpan * added)) ++chosen_count;

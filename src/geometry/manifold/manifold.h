@@ -99,7 +99,8 @@ int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, f
 int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                    PairCache& cache, LocalManifold* out, CachedTriangles* triangles = nullptr);
 
-// Reduces `count` candidate points (at most 64) to four at most: the deepest, and those that span the largest area.
-int reduce_points(ManifoldPoint* points, int count, Vec3 normal);
+// Reduces `count` candidate points (at most 64) to four at most: the deepest, and those that span the largest area. Points that lie
+// 1 / `fade` metres above the deepest count half.
+int reduce_points(ManifoldPoint* points, int count, Vec3 normal, float fade = 0.0f);
 
 }  // namespace gyre

@@ -3,13 +3,13 @@
 
 namespace gyre {
 
-void ManifoldGroups::add_point(Group& group, const ManifoldPoint& point) {
+void ManifoldGroups::add_point(Group& group, const ManifoldPoint& point) const {
   for (int i = 0; i < group.count; ++i) {
     if (group.points[i].feature != point.feature) continue;
     if (point.separation < group.points[i].separation) group.points[i] = point;
     return;
   }
-  if (group.count == kPointRoom) group.count = reduce_points(group.points, group.count, group.normal);
+  if (group.count == kPointRoom) group.count = reduce_points(group.points, group.count, group.normal, fade_);
   group.points[group.count++] = point;
 }
 
@@ -75,7 +75,7 @@ int ManifoldGroups::finish(Vec3 position, LocalManifold* out) {
     LocalManifold& manifold = out[i];
     manifold.normal = group.normal;
     manifold.triangle = group.triangle;
-    manifold.count = reduce_points(group.points, group.count, group.normal);
+    manifold.count = reduce_points(group.points, group.count, group.normal, fade_);
     for (int k = 0; k < manifold.count; ++k) {
       manifold.points[k] = group.points[k];
       manifold.points[k].position += position;

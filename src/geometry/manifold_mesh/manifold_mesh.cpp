@@ -166,7 +166,7 @@ class MeshCollider {
   std::uint8_t apart_[MeshCandidates::kRoom / TriangleBatch::kCount];
   MeshPoints points_;
   AxisScratch scratch_;
-  ManifoldGroups groups_;
+  ManifoldGroups groups_{convex_.size()};
 };
 
 void MeshCollider::set_side(Vec3 normal) {

@@ -12,10 +12,17 @@ namespace gyre {
 // Cosine (of two degrees) between the normals of contacts on one level piece of ground.
 constexpr float kSameNormal = 0.9994f;
 
+// A point of uneven ground counts half if it lies this much above the deepest, in sizes of the shape: of five points under a face those
+// near it decide how it rocks.
+constexpr float kNearPoint = 1.0e-3f;
+
 class ManifoldGroups {
  public:
   static constexpr int kRoom = 16;
   static constexpr int kPointRoom = 56;
+
+  // `size`: of the shape.
+  explicit ManifoldGroups(float size) : fade_(1.0f / (kNearPoint * size)) {}
 
   void add(Vec3 normal, std::uint32_t triangle, const MeshPoints& points);
   // The smallest separation; infinity if there are no contacts.
@@ -42,9 +49,10 @@ class ManifoldGroups {
     Group() {}
   };
 
-  static void add_point(Group& group, const ManifoldPoint& point);
+  void add_point(Group& group, const ManifoldPoint& point) const;
   void merge_nearest();
 
+  float fade_;  // 1/m, as in reduce_points()
   int count_ = 0;
   Group groups_[kRoom];
 };

@@ -360,17 +360,28 @@ void feature_points(const LocalTriangle& t, const LocalConvex& convex, const Fea
   FacePolygon face;
   convex.face_towards(-d, face);
   const Emitter emit{d, t.v[0], convex.radius(), max_separation, out};
+  const bool flush = face.count >= 3 && dot(face.normal, d) < -kFlushShare;
+  // The other ridges under a face, too: it may rock from one to the other.
+  const auto add_other_edges = [&](int but) {
+    for (int i = 0; i < 3; ++i) {
+      if (i != but && (t.edge[i] == EdgeKind::convex || t.edge[i] == EdgeKind::open))
+        EdgeContact{t, i, face, d, emit}.under_polygon();
+    }
+  };
   for (int i = 0; i < 3; ++i) {
-    if (axis.corners == 1u << i) return corner_points(t, i, convex, axis, face, emit);
+    if (axis.corners != 1u << i) continue;
+    corner_points(t, i, convex, axis, face, emit);
+    if (flush && axis.source != AxisSource::nearest_pair) add_other_edges(-1);
+    return;
   }
   const int edge = axis.corners == 3 ? 0 : (axis.corners == 6 ? 1 : 2);
-  if (face.count >= 3 && dot(face.normal, d) < -kFlushShare) {
+  if (flush) {
     // Also if an edge of the shape touches: the other end of that face is over the triangle's edge too, and with only
     // one of the two points the shape would rock on it from step to step.
     EdgeContact{t, edge, face, d, emit}.under_polygon();
     const bool is_nearest =
         axis.source != AxisSource::shape_edge || out.deepest() <= axis.separation + kAxisBias * convex.size();
-    if (out.count > 0 && is_nearest) return;
+    if (out.count > 0 && is_nearest) return add_other_edges(edge);
     out.count = 0;
   }
   FacePolygon narrow;
