@@ -78,6 +78,7 @@ class ContactGatherer {
     const Contact& contact = w_.contacts.contacts[slot];
     const Ends ends = find_ends(contact);
     const bool speculative = in_lanes_ && is_speculative(w_, contact);
+    const bool unseen = !speculative && is_far_ahead(w_, contact);
     // Bounces and speculative contacts act at present poses, with the inertia of present orientations.
     const bool reads_pose = speculative || contact.surface.restitution > 0.0f;
     touch_body(contact.body_a, ends.active_a, reads_pose ? kPoseRead : kConstrained);
@@ -90,7 +91,7 @@ class ContactGatherer {
       lists_.pairs[index] = pair;
       lists_.slots[index++] = slot;
       describe(contact, ends, constraint);
-      if (!add_manifold(contact, manifold, constraint)) constraint.manifold = nullptr;
+      if (unseen || !add_manifold(contact, manifold, constraint)) constraint.manifold = nullptr;
       constraint.speculative = speculative;
       found.speculative = found.speculative || speculative;
       found.gaps = found.gaps || constraint.manifold == nullptr;

@@ -172,5 +172,17 @@ TEST(CutShot, LeavesAlongTheLineOfCentres) {
   EXPECT_TRUE(limit_row("cut shot: energy", worst.energy, 1e-4, 1e-6));
 }
 
+// Balls that approach by up to eight radii a step.
+TEST(CutShot, OfFastBallsLeavesAlongTheLineOfCentres) {
+  Random random;
+  double worst = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const float radius = 0.01f * std::pow(100.0f, random.real(0, 1));
+    const Shot shot = shoot(radius, radius * random.real(1.0f, 8.0f) / kStep, double(random.real(-0.9f, 0.9f)), double(random.real(0, 1)));
+    worst = std::max(worst, shot.direction);
+  }
+  EXPECT_TRUE(limit_row("fast cut shot: direction (degrees)", worst / double(kDegree), 1.0, 0.15));
+}
+
 }  // namespace
 }  // namespace gyre::laws::passing_test

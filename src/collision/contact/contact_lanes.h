@@ -119,6 +119,7 @@ struct Group {
   // As in Closing, in world axes.
   Vec3W<W> closing_translation, closing_rotation;
   Wide<W> lever, arc_deviation;
+  Wide<W> max_sizes;  // the largest approach that is seen ahead, in sizes
 };
 
 template <int W>
@@ -138,6 +139,8 @@ GYRE_INLINE void load_group(const PairInput* pairs, int count, Group<W>& group) 
     centers_b[i] = floats(pair.center_b);
     record[i] = floats(pair.contact);
     group.counts[i] = pair.contact->manifold_count;
+    const bool bounces = pair.contact->manifold_room == 1 && pair.contact->surface.restitution > 0.0f;
+    group.max_sizes.set(i, bounces ? kUnbounded : kMaxApproach);
   }
   group.a = load_side<W>(bodies_a, centers_a);
   group.b = load_side<W>(bodies_b, centers_b);
@@ -208,7 +211,7 @@ GYRE_INLINE void find_view(Group<W>& group) {
       b_origin_from_a + rotate(b.orientation, b.center) - rotate(a.orientation, a.center);
   const Wide<W> by_own_rotation = approach_bound<W>(group, spin_a, spin_b);
   const Wide<W> margin = Wide<W>(kSpeculativeShare) * group.size,
-                approach_limit = Wide<W>(kMaxApproach) * group.size;
+                approach_limit = group.max_sizes * group.size;
   find_closing<W>(b_from_a, margin + min(by_own_rotation, approach_limit), spin_a, spin_b, group);
   group.max_approach =
       min(by_own_rotation, length(group.closing_translation) + length(group.closing_rotation) * group.lever +

@@ -20,7 +20,8 @@ namespace gyre {
 
 // In sizes of the pair (inner radius of the smaller shape). Surfaces nearer than this touch.
 constexpr float kTouch = 0.005f;
-// Faster approaches, in sizes a step, are left to CCD (continuous.h).
+// Faster approaches, in sizes a step, are left to CCD (continuous.h). Two convex shapes that bounce are seen ahead at any speed, since they go on
+// from where they meet within the step (solver/contact/impact.h).
 constexpr float kMaxApproach = 1.0f;
 
 // How far a full update searches beyond the speculative distance, so that the contact may be recycled while the pair

@@ -76,7 +76,7 @@ void collide_in_view(const PairInput& pair, const PairView& view, float max_dist
 // The distance below which contacts along a normal matter. Contacts within min_near() always do.
 float min_near(const PairView& view) { return (kSpeculativeShare + kPointMargin) * view.size; }
 float near_along(const PairView& view, Vec3 normal) {
-  return min_near(view) + min(min(view.closing.along(normal), view.max_approach), kMaxApproach * view.size);
+  return min(min_near(view) + view.closing.along(normal), view.speculative + kPointMargin * view.size);
 }
 
 // As collide_in_view, for two sharp boxes. If they stay too far apart along the axis of largest separation, nothing is

@@ -1,5 +1,6 @@
 #include "rigid/solve/speculative_contacts.h"
 
+#include "collision/broadphase/fat_box.h"
 #include "collision/contact/contact_update.h"
 #include "collision/continuous/swept_surface.h"
 #include "math/rotation.h"
@@ -146,12 +147,24 @@ bool slides_on_static(const RigidWorld& w, const Contact& contact) {
   return slides;
 }
 
+bool has_plane(const RigidWorld& w, const Contact& contact) {
+  return w.shapes.colliders[contact.shape_a].shape.kind == ShapeKind::plane ||
+         w.shapes.colliders[contact.shape_b].shape.kind == ShapeKind::plane;
+}
+
 }  // namespace
 
+bool is_far_ahead(const RigidWorld& w, const Contact& contact) {
+  if (contact.manifold_room != 1 || contact.manifold_count == 0) return false;
+  const float farthest = (kSpeculativeShare + kMaxApproach) * contact.size;
+  const Manifold& manifold = w.contacts.manifolds[contact.first_manifold];
+  for (int k = 0; k < manifold.count; ++k)
+    if (manifold.points[k].separation <= farthest) return false;
+  return manifold.count > 0;
+}
+
 bool is_speculative(const RigidWorld& w, const Contact& contact) {
-  if (contact.recycled != 0 || contact.manifold_count == 0) return false;
-  for (const std::uint32_t shape : {contact.shape_a, contact.shape_b})
-    if (w.shapes.colliders[shape].shape.kind == ShapeKind::plane) return false;
+  if (contact.recycled != 0 || contact.manifold_count == 0 || has_plane(w, contact)) return false;
   for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
     for (int k = 0; k < manifold.count; ++k)
       if (manifold.points[k].normal_impulse > 0.0f) return false;

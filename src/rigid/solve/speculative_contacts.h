@@ -16,6 +16,9 @@ namespace gyre {
 // True if the features of the contact may be found anew within the step: it bears no load and is apart.
 bool is_speculative(const RigidWorld& w, const Contact& contact);
 
+// True for a contact that is farther ahead than any but a speculative one counts: its nearest features are not those that will meet.
+bool is_far_ahead(const RigidWorld& w, const Contact& contact);
+
 // Finds the manifold of a speculative contact where its shapes meet within the half-step; false if they do not meet.
 bool find_meeting(const ContactSolve& s, std::uint32_t constraint);
 
