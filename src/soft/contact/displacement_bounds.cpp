@@ -71,7 +71,7 @@ class MoveBounds {
       const bool there = moves_[v] == goals[v] - moves[v];
       const DVec3 sum = there ? goals[v] : moves[v] + moves_[v];
       all &= there;
-      if (held_[v] == 0 && length(sum) > double(limits[v])) continue;
+      if (!limits.empty() && held_[v] == 0 && length(sum) > double(limits[v])) continue;
       any |= !(moves_[v] == DVec3{});
       at_[v] += moves_[v];
       moves[v] = sum;
@@ -161,8 +161,9 @@ BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec
   const std::span<DVec3> asked = arena.make<DVec3>(moves.size());
   for (std::size_t v = 0; v < moves.size(); ++v) {
     asked[v] = moves[v];
+    if (limits.empty() || held[v] != 0) continue;
     const double far = length(moves[v]), limit = kSafe * double(limits[v]);
-    if (held[v] == 0 && far > limit) moves[v] = (limit / far) * moves[v];
+    if (far > limit) moves[v] = (limit / far) * moves[v];
   }
   const std::span<DVec3> goals = arena.make<DVec3>(moves.size());
   for (std::size_t v = 0; v < moves.size(); ++v) {
