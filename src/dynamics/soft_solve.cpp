@@ -520,7 +520,10 @@ void solve_soft_rows(SoftSolve& s, int, int) {
     prepare_row(s, row);
     any_contact = any_contact || row.is_contact;
   }
-  if (any_contact) solve_contacts_in_rounds(s);
+  if (any_contact) {
+    solve_contacts_in_rounds(s);
+    for (int turn = 0; turn < kTurns && solve_soft_surfaces_again(s); ++turn) solve_contacts_in_rounds(s);
+  }
   set_grips(s);
   for (VelocityChange& pending : s.scratch->pending) pending = {};
 }

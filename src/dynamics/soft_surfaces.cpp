@@ -149,7 +149,8 @@ void bound_soft_surfaces(SoftSolve& s, int, int) {
       if (p.loose[i] == 0.0f) continue;
       const DVec3 held_back = all.positions[v] - all.targets[v] - DVec3(all.contacts.pushes[v]);
       if (held_back == DVec3{}) continue;
-      p.vx[i] += float(rate * held_back.x), p.vy[i] += float(rate * held_back.y), p.vz[i] += float(rate * held_back.z);
+      p.vx[i] += float(rate * held_back.x), p.vy[i] += float(rate * held_back.y),
+          p.vz[i] += float(rate * held_back.z);
     }
   });
 }

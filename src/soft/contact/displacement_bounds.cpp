@@ -7,7 +7,7 @@ namespace gyre {
 namespace {
 
 constexpr double kSafe = 1.0 - 0x1p-20;  // more than any rounding here takes
-constexpr int kAdvances = 6;  // in which the room that others have left is given anew
+constexpr int kAdvances = 6;             // in which the room that others have left is given anew
 
 // How far each vertex of a pair may go towards the other feature, m.
 struct PairRoom {

@@ -17,8 +17,8 @@ struct SurfaceCandidate {
 };
 
 struct FilterVertex {
-  float x, y, z;  // m, from a common origin
-  float reach;    // m, with what rounding may take
+  float x, y, z;                 // m, from a common origin
+  float reach;                   // m, with what rounding may take
   float move_x, move_y, move_z;  // m: features within reach and the difference of their moves are kept
   float unused;
 };

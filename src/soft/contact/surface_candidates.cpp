@@ -29,7 +29,8 @@ class CandidateSearch {
     const std::uint32_t* const corner = b.surface->triangles[k].corner;
     for (unsigned c = 0; c < 3; ++c) {
       const std::uint32_t v = from.corner[c];
-      if ((from.owned_corners >> c & 1u) == 0 || !may_meet(a.vertices[v], a.end_vertices[v], b.triangles[k], b.end_triangles[k]))
+      if ((from.owned_corners >> c & 1u) == 0 ||
+          !may_meet(a.vertices[v], a.end_vertices[v], b.triangles[k], b.end_triangles[k]))
         continue;
       if (s == t && (v == corner[0] || v == corner[1] || v == corner[2])) continue;
       out_.corners.push_back({{a.first + v, b.first + corner[0], b.first + corner[1], b.first + corner[2]},

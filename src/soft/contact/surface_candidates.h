@@ -41,12 +41,11 @@ std::span<float> spread_over_features(std::span<const PlacedSurface> surfaces, s
 // Makes the list anew unless it has all for `reach` (m, by vertex, spread over features) at these positions and moves. A new one is made for `ahead`, likewise
 // spread, which is no less.
 void update_candidates(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
-                       std::span<const DVec3> moves, std::span<const float> reach, std::span<const float> ahead, Arena& arena,
-                       SurfaceCandidates& candidates);
+                       std::span<const DVec3> moves, std::span<const float> reach,
+                       std::span<const float> ahead, Arena& arena, SurfaceCandidates& candidates);
 
 // Input of the filter of pairs.
 void fill_filter(std::span<const DVec3> positions, std::span<const DVec3> moves, std::span<const float> reach,
-                 DVec3 origin,
-                 std::span<FilterVertex> out);
+                 DVec3 origin, std::span<FilterVertex> out);
 
 }  // namespace gyre

@@ -36,8 +36,7 @@ void cut_moves(std::span<const PlacedSurface> surfaces, std::span<const float> i
   for (const PlacedSurface& placed : surfaces) {
     for (int i = 0; i < placed.surface->vertices; ++i) {
       const std::size_t v = placed.first + std::size_t(i);
-      const double most =
-          kMaxMoveOfEdge * double(max(placed.surface->mean_edge, placed.surface->radius[i]));
+      const double most = kMaxMoveOfEdge * double(max(placed.surface->mean_edge, placed.surface->radius[i]));
       const double far = length(moves[v]);
       if (inverse_mass[v] > 0.0f && far > most) moves[v] = (most / far) * moves[v];
     }
@@ -50,9 +49,9 @@ void set_limits(std::span<const PlacedSurface> surfaces, std::span<const float> 
   for (const PlacedSurface& placed : surfaces) {
     for (int i = 0; i < placed.surface->vertices; ++i) {
       const std::size_t v = placed.first + std::size_t(i);
-      limits[v] = inverse_mass[v] > 0.0f ? kLimitOfMove * float(length(plan[v])) +
-                                               kLimitOfRadius * placed.surface->radius[i]
-                                         : 0.0f;
+      limits[v] = inverse_mass[v] > 0.0f
+                      ? kLimitOfMove * float(length(plan[v])) + kLimitOfRadius * placed.surface->radius[i]
+                      : 0.0f;
     }
   }
 }

@@ -41,7 +41,8 @@ struct SurfaceContactSettings {
   float step = 0.0f;  // s: of the sub-step
   int iterations = 4;
   float pushout = 0.25f;  // share of the overlap removed in a sub-step
-  int most_rounds = 4;    // of finding pairs, for vertices that end farther from their plan than they were looked for
+  int most_rounds =
+      4;  // of finding pairs, for vertices that end farther from their plan than they were looked for
   BoundSettings bounds{};
 };
 

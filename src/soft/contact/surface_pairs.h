@@ -40,7 +40,7 @@ struct SurfacePair {
 
 // `candidates` is brought up to date where it must be; what is found does not depend on it.
 void find_surface_pairs(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
-                        std::span<const DVec3> moves, std::span<const float> limits, float least_gap, Arena& arena,
-                        SurfaceCandidates& candidates, Array<SurfacePair>& pairs);
+                        std::span<const DVec3> moves, std::span<const float> limits, float least_gap,
+                        Arena& arena, SurfaceCandidates& candidates, Array<SurfacePair>& pairs);
 
 }  // namespace gyre
