@@ -12,6 +12,8 @@ namespace {
 
 // Rounds of a half-step, and sweeps over all contacts in each.
 constexpr int kRounds = 2, kSweeps = 2;
+// In which contacts of surfaces and those with shapes are solved again: what a shape stops, the layer above it runs into.
+constexpr int kTurns = 2;
 // Rounds end when they would take less than this share of the energy that a fall in the half-step gives to the vertices in contact.
 constexpr double kContactTolerance = 1.0e-3;
 // The inertia of a fixed body that a vertex carries, in its own masses: beyond what hangs on it, below what rounding would show.
