@@ -9,7 +9,17 @@ namespace {
 // Collects the pairs of features whose boxes overlap.
 class CandidateSearch {
  public:
-  CandidateSearch(std::span<const SurfaceBoxes> boxes, SurfaceCandidates& out) : boxes_(boxes), out_(out) {}
+  CandidateSearch(std::span<const SurfaceBoxes> boxes, std::size_t edges, SurfaceCandidates& out,
+                  Arena& arena)
+      : boxes_(boxes), out_(out), edges_(arena.make<EdgeBox>(edges)) {
+    std::size_t next = 0;
+    for (const SurfaceBoxes& one : boxes) {
+      for (const SurfaceEdge& edge : one.surface->edges) {
+        edges_[next++] = {merge(one.vertices[edge.a], one.vertices[edge.b]),
+                          merge(one.end_vertices[edge.a], one.end_vertices[edge.b])};
+      }
+    }
+  }
 
   void search(std::uint32_t a, std::uint32_t b) {
     if (a == b && !boxes_[a].surface->self_collision) return;
@@ -46,16 +56,14 @@ class CandidateSearch {
     for (const std::int32_t one : a.surface->triangles[i].owned_edge) {
       if (one < 0) continue;
       const SurfaceEdge e = a.surface->edges[one];
-      const Aabb box = merge(a.vertices[e.a], a.vertices[e.b]),
-                 end = merge(a.end_vertices[e.a], a.end_vertices[e.b]);
-      if (!may_meet(box, end, b.triangles[k], b.end_triangles[k])) continue;
+      const EdgeBox& box = edges_[out_.bases[s].edge + std::uint32_t(one)];
+      if (!may_meet(box.start, box.end, b.triangles[k], b.end_triangles[k])) continue;
       for (const std::int32_t other : b.surface->triangles[k].owned_edge) {
         if (other < 0) continue;
         const SurfaceEdge f = b.surface->edges[other];
         if (s == t && (e.a == f.a || e.a == f.b || e.b == f.a || e.b == f.b)) continue;
-        if (!may_meet(box, end, merge(b.vertices[f.a], b.vertices[f.b]),
-                      merge(b.end_vertices[f.a], b.end_vertices[f.b])))
-          continue;
+        const EdgeBox& to = edges_[out_.bases[t].edge + std::uint32_t(other)];
+        if (!may_meet(box.start, box.end, to.start, to.end)) continue;
         const std::uint32_t first = out_.bases[s].edge + std::uint32_t(one),
                             second = out_.bases[t].edge + std::uint32_t(other);
         const std::uint32_t p[2] = {a.first + e.a, a.first + e.b}, q[2] = {b.first + f.a, b.first + f.b};
@@ -67,8 +75,13 @@ class CandidateSearch {
     }
   }
 
+  struct EdgeBox {
+    Aabb start, end;
+  };
+
   std::span<const SurfaceBoxes> boxes_;
   SurfaceCandidates& out_;
+  std::span<EdgeBox> edges_;  // by number over all surfaces
 };
 
 // Keeps those that the filter keeps, and sorts them by their numbers.
@@ -177,7 +190,7 @@ void update_candidates(std::span<const PlacedSurface> surfaces, std::span<const 
     base.triangle += std::uint32_t(surfaces[i].surface->triangles.size());
     base.edge += std::uint32_t(surfaces[i].surface->edges.size());
   }
-  CandidateSearch search(boxes, candidates);
+  CandidateSearch search(boxes, base.edge, candidates, arena);
   for (std::uint32_t i = 0; i < std::uint32_t(boxes.size()); ++i) {
     for (std::uint32_t k = i; k < std::uint32_t(boxes.size()); ++k) search.search(i, k);
   }
