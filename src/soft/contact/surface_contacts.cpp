@@ -67,7 +67,9 @@ bool keeps_plan(std::span<const PlacedSurface> surfaces, std::span<const float> 
     const double far = kRounding * length(moves[v] - contacts.plan[v]);
     if (far <= double(contacts.limits[v])) continue;
     keeps = false;
-    if (inverse_mass[v] > 0.0f) limits[v] = max(limits[v], kLimitOfChange * kLimitOfMove * float(far));
+    // What ends elsewhere a second time may go to and fro; it is then looked for at both places.
+    if (inverse_mass[v] > 0.0f && contacts.rounds > 1)
+      limits[v] = max(limits[v], kLimitOfChange * float(far));
   }
   if (keeps) return true;
   for (std::size_t v = 0; v < moves.size(); ++v) {
