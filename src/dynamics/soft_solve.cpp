@@ -13,6 +13,8 @@ namespace {
 
 // Rounds of a half-step, and sweeps over all contacts in each.
 constexpr int kRounds = 2, kSweeps = 2;
+// In which contacts of surfaces and those with shapes are solved again: what a shape stops, the layer above it runs into.
+constexpr int kTurns = 2;
 // Rounds end when they would take less than this share of the energy that a fall in the half-step gives to the vertices in contact.
 constexpr double kContactTolerance = 1.0e-3;
 // The inertia of a fixed body that a vertex carries, in its own masses: beyond what hangs on it, below what rounding would show.
@@ -553,7 +555,10 @@ void solve_soft_rows(SoftSolve& s, int, int) {
     prepare_row(s, row);
     any_contact = any_contact || row.is_contact;
   }
-  if (any_contact) solve_contacts_in_rounds(s);
+  if (any_contact) {
+    solve_contacts_in_rounds(s);
+    for (int turn = 0; turn < kTurns && solve_soft_surfaces_again(s); ++turn) solve_contacts_in_rounds(s);
+  }
   set_grips(s);
   for (VelocityChange& pending : s.scratch->pending) pending = {};
 }

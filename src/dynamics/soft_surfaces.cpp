@@ -130,6 +130,16 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
   push_surfaces(vertices, settings, all.arena, all.contacts);
 }
 
+bool solve_soft_surfaces_again(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  if (!all.active || all.contacts.pairs.empty()) return false;
+  all.arena.reset();
+  gather_velocities(s);
+  solve_surface_contacts(vertices_of(all), settings_of(s), all.arena, all.contacts);
+  give_owed(s);
+  return true;
+}
+
 void bound_soft_surfaces(SoftSolve& s, int, int) {
   SoftSurfaces& all = s.scratch->surfaces;
   if (!all.active) return;
@@ -142,7 +152,17 @@ void bound_soft_surfaces(SoftSolve& s, int, int) {
       move_surfaces(all.placed, vertices_of(all), all.targets, settings_of(s), all.arena, all.contacts);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     Particles& p = entry_at(s, member).body.particles;
-    for (int i = 0; i < p.count; ++i) p.set_place(i, all.positions[first + std::uint32_t(i)]);
+    const double rate = 1.0 / double(s.h);
+    for (int i = 0; i < p.count; ++i) {
+      const std::uint32_t v = first + std::uint32_t(i);
+      p.set_place(i, all.positions[v]);
+      if (p.loose[i] == 0.0f) continue;
+      // Velocities follow what the bounds took, or they would go on stretching the body.
+      const DVec3 held_back = all.positions[v] - all.targets[v] - DVec3(all.contacts.pushes[v]);
+      if (held_back == DVec3{}) continue;
+      p.vx[i] += float(rate * held_back.x), p.vy[i] += float(rate * held_back.y),
+          p.vz[i] += float(rate * held_back.z);
+    }
   });
 }
 

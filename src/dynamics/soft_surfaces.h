@@ -43,6 +43,9 @@ void add_forces_of_surfaces(SoftSolve& s, std::uint32_t member);
 // every step: it looks at all of them.
 long count_soft_crossings(const SoftStore& store, Arena& arena);
 
+// Solves the contacts of surfaces again for what contacts with shapes changed. False if surfaces have no pairs.
+bool solve_soft_surfaces_again(SoftSolve& s);
+
 // Stages, each of one block.
 void solve_soft_surfaces(SoftSolve& s, int begin, int end);
 void bound_soft_surfaces(SoftSolve& s, int begin, int end);

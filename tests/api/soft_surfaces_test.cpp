@@ -22,12 +22,13 @@ World make_world(int threads = 1) {
   return world;
 }
 
-SoftId add_sheet(World& world, float size, int cells, DVec3 at, float thickness = 0.01f) {
+SoftId add_sheet(World& world, float size, int cells, DVec3 at, float thickness = 0.01f,
+                 float damping = 1.0e-3f) {
   ClothDef def;
   def.grid = ClothGrid{{size, size}, {cells, cells}};
   def.pose.position = at;
   def.thickness = thickness;
-  def.settings.damping = 1.0e-3f;
+  def.settings.damping = damping;
   return world.add_cloth(def);
 }
 
@@ -58,6 +59,11 @@ double height_of(const World& world, SoftId id) {
   return sum / double(v.size());
 }
 
+double energy_of(const World& world) {
+  const Energy energy = world.energy();
+  return energy.kinetic + energy.potential + energy.elastic + energy.soft_elastic;
+}
+
 TEST(SoftSurfaces, ASheetFallsOverABallOntoTheGround) {
   World world = make_world();
   scenes::add_fixed(world, {0, 0.15, 0}, Sphere{0.15f});
@@ -65,6 +71,31 @@ TEST(SoftSurfaces, ASheetFallsOverABallOntoTheGround) {
   for (int n = 0; n < 90; ++n) {
     world.step(kStep);
     ASSERT_EQ(crossings(world), 0) << n;
+  }
+}
+
+// Large sheets fall over a ball and fold, their rims at 4 m/s, three quarters of an edge in a sub-step: energy only ever falls.
+TEST(SoftSurfaces, SheetsThatFallAndFoldGainNoEnergy) {
+  struct Drawn {
+    int cells;
+    double x, z;
+    float radius;
+  };
+  for (const Drawn drawn : {Drawn{24, 0, 0, 0.25f}, Drawn{21, 0.11, 0.07, 0.2f}}) {
+    World world = std::move(*World::create(WorldDef{}));
+    scenes::add_fixed(world, {0, -1, 0}, Box{{20, 1, 20}});
+    scenes::add_fixed(world, {0, 0.5, 0}, Sphere{drawn.radius});
+    add_sheet(world, 2.0f, drawn.cells, {drawn.x, 0.9, drawn.z}, 0.005f, 0.0f);
+    const double start = energy_of(world);
+    double least = start;
+    for (int n = 0; n < 40; ++n) {
+      world.step(kStep);
+      ASSERT_EQ(crossings(world), 0) << n;
+      const double now = energy_of(world);
+      EXPECT_LT(now, least + 0.01 * start) << drawn.cells << " " << n;
+      least = std::min(least, now);
+    }
+    EXPECT_LT(least, 0.5 * start);
   }
 }
 

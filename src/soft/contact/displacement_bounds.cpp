@@ -7,6 +7,7 @@ namespace gyre {
 namespace {
 
 constexpr double kSafe = 1.0 - 0x1p-20;  // more than any rounding here takes
+constexpr int kAdvances = 6;             // in which the room that others have left is given anew
 
 // How far each vertex of a pair may go towards the other feature, m.
 struct PairRoom {
@@ -40,15 +41,46 @@ double approach_of(const SurfacePair& pair, int k, std::span<const DVec3> moves)
 
 class MoveBounds {
  public:
-  MoveBounds(std::span<const SurfacePair> pairs, std::span<const std::uint8_t> held, std::span<DVec3> moves,
-             Arena& arena)
-      : pairs_(pairs), held_(held), moves_(moves), rooms_(arena.make<PairRoom>(pairs.size())) {}
-
-  void give_rooms(std::span<const DVec3> positions, double least_gap, BoundReport& report) {
-    for (std::size_t i = 0; i < pairs_.size(); ++i)
-      rooms_[i] = give_room(pairs_[i], planes_of(pairs_[i], positions), least_gap, report);
+  MoveBounds(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
+             std::span<const std::uint8_t> held, double least_gap, Arena& arena)
+      : pairs_(pairs),
+        held_(held),
+        at_(arena.make<DVec3>(positions.size())),
+        moves_(arena.make<DVec3>(positions.size())),
+        shares_(arena.make<double>(positions.size())),
+        rooms_(arena.make<PairRoom>(pairs.size())),
+        least_(arena.make<double>(pairs.size())) {
+    for (std::size_t v = 0; v < positions.size(); ++v) at_[v] = positions[v];
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const double gap = planes_of(pairs[i], at_).gap;
+      crossed_ += !(gap > 0.0);
+      least_[i] = min(gap, least_gap * double(pairs[i].thickness));
+    }
   }
 
+  // Goes from the present places as far toward `goals` as the rooms of the present gaps let it, and adds that to `moves`. False if there is no more
+  // to go.
+  bool advance(std::span<const DVec3> goals, std::span<const float> limits, int passes,
+               std::span<DVec3> moves, BoundReport& report) {
+    for (std::size_t v = 0; v < moves.size(); ++v) moves_[v] = goals[v] - moves[v];
+    for (std::size_t i = 0; i < pairs_.size(); ++i) rooms_[i] = give_room(i, report);
+    for (int pass = 0; pass < passes; ++pass) turn();
+    shorten();
+    bool any = false, all = true;
+    for (std::size_t v = 0; v < moves.size(); ++v) {
+      const bool there = moves_[v] == goals[v] - moves[v];
+      const DVec3 sum = there ? goals[v] : moves[v] + moves_[v];
+      all &= there;
+      if (!limits.empty() && held_[v] == 0 && length(sum) > double(limits[v])) continue;
+      any |= !(moves_[v] == DVec3{});
+      at_[v] += moves_[v];
+      moves[v] = sum;
+    }
+    return any && !all;
+  }
+  long crossed() const { return crossed_; }
+
+ private:
   // Turns moves that go too far along the plane.
   void turn() {
     for_each_bound([&](std::uint32_t v, DVec3 toward, double approach, double room) {
@@ -57,21 +89,20 @@ class MoveBounds {
   }
 
   // Shortens moves that still go too far. The share of a vertex is the least of all its bounds'.
-  void shorten(std::span<double> shares) {
-    for (double& share : shares) share = 1.0;
+  void shorten() {
+    for (double& share : shares_) share = 1.0;
     for_each_bound([&](std::uint32_t v, DVec3, double approach, double room) {
-      shares[v] = min(shares[v], kSafe * room / approach);
+      shares_[v] = min(shares_[v], kSafe * room / approach);
     });
-    for (std::size_t v = 0; v < shares.size(); ++v) {
-      if (shares[v] < 1.0) moves_[v] = shares[v] * moves_[v];
+    for (std::size_t v = 0; v < shares_.size(); ++v) {
+      if (shares_[v] < 1.0) moves_[v] = shares_[v] * moves_[v];
     }
   }
 
- private:
-  PairRoom give_room(const SurfacePair& pair, const PairPlanes& planes, double least_gap,
-                     BoundReport& report) const {
-    double free = planes.gap - least_gap * double(pair.thickness);
-    if (!(planes.gap > 0.0)) ++report.crossed;
+  PairRoom give_room(std::size_t number, BoundReport& report) const {
+    const SurfacePair& pair = pairs_[number];
+    const PairPlanes planes = planes_of(pair, at_);
+    double free = planes.gap - least_[number];
     // The room that each feature asks for, and the room that its held vertices take.
     double asked[2] = {}, taken[2] = {};
     for (int k = 0; k < 4; ++k) {
@@ -113,8 +144,11 @@ class MoveBounds {
 
   std::span<const SurfacePair> pairs_;
   std::span<const std::uint8_t> held_;
-  std::span<DVec3> moves_;
+  std::span<DVec3> at_, moves_;  // where vertices are, and how they would go on
+  std::span<double> shares_;
   std::span<PairRoom> rooms_;
+  std::span<double> least_;  // by pair, m: gap of the planes that stays
+  long crossed_ = 0;
 };
 
 }  // namespace
@@ -127,13 +161,20 @@ BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec
   const std::span<DVec3> asked = arena.make<DVec3>(moves.size());
   for (std::size_t v = 0; v < moves.size(); ++v) {
     asked[v] = moves[v];
+    if (limits.empty() || held[v] != 0) continue;
     const double far = length(moves[v]), limit = kSafe * double(limits[v]);
-    if (held[v] == 0 && far > limit) moves[v] = (limit / far) * moves[v];
+    if (far > limit) moves[v] = (limit / far) * moves[v];
   }
-  MoveBounds bounds(pairs, held, moves, arena);
-  bounds.give_rooms(positions, settings.least_gap, report);
-  for (int pass = 0; pass < settings.passes; ++pass) bounds.turn();
-  bounds.shorten(arena.make<double>(moves.size()));
+  const std::span<DVec3> goals = arena.make<DVec3>(moves.size());
+  for (std::size_t v = 0; v < moves.size(); ++v) {
+    goals[v] = moves[v];
+    moves[v] = {};
+  }
+  MoveBounds bounds(pairs, positions, held, settings.least_gap, arena);
+  report.crossed = bounds.crossed();
+  for (int n = 0; n < kAdvances; ++n) {
+    if (!bounds.advance(goals, limits, settings.passes, moves, report)) break;
+  }
   for (std::size_t v = 0; v < moves.size(); ++v) report.shortened += !(moves[v] == asked[v]);
   return report;
 }

@@ -1,16 +1,21 @@
 // Bounds on moves: shortens the moves of vertices so that no two features of soft surfaces cross on the way, and none comes nearer than
 // a share of its thickness.
 //
-// In: pairs from find_surface_pairs() for limits, these, and the moves of the vertices. Out: moves that are bounded.
+// In: pairs from find_surface_pairs(), and the moves of the vertices. Out: moves that are bounded. Where pairs were found for moves up to
+// limits about no move at all, these limits; where they were found for a plan, none: the caller sees how far moves end from it.
 //
 // Proof. Let n be the normal of a pair, a the least n.x over the vertices of its feature A and b the greatest over those of B; g = a - b. If g > 0, n
 // separates the features: n.p >= a for every point p of A, since p is a mean of its vertices, and n.p <= b on B. Each pair is given two numbers r, s >= 0
 // with r + s <= max(0, g - least gap). Moves m are made such that each vertex x of A has n.(x + m) >= a - r, and each of B
 // n.(x + m) <= b + s. The set of such m is convex and contains 0, so it also contains t m for every t in [0, 1]: all along the straight way from
-// x to x + m the features are apart by g - r - s, at least the smaller of g and the least gap. Vertices
-// move no further than their limits, so pairs that were not found stay apart by their least gap. Two surfaces that do not
+// x to x + m the features are apart by g - r - s, at least the smaller of g and the least gap. Pairs that
+// were not found stay apart by their least gap (surface_pairs.h). Two surfaces that do not
 // cross can begin to do so only where such a pair (a vertex and a triangle, or two edges, without a common vertex) comes to distance 0. Hence no
 // crossing comes into being, but for vertices that are told where to go and leave others no room.
+//
+// Moves advance several times, each from where the last one led, with the room that is left there: a layer goes on into the room that the next one has
+// left. The planes of a pair then stand elsewhere at the end than at the start; in between they move straight, and so do the vertices, so that what
+// holds at both ends holds all along.
 //
 // Nothing here depends on the closest points being exact: a and b are taken from the vertices, whatever the normal.
 //
@@ -39,7 +44,7 @@ struct BoundReport {
   long crossed = 0;    // pairs that no plane separates: they cross or touch
 };
 
-// `limits`: by vertex, m: how far it may go. `held`: by vertex, 1 if it goes where it is told, whatever the bounds.
+// `limits`: by vertex, m: how far it may go; none: as far as the pairs allow. `held`: by vertex, 1 if it goes where it is told, whatever the bounds.
 BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
                         std::span<const float> limits, std::span<const std::uint8_t> held,
                         const BoundSettings& settings, std::span<DVec3> moves, Arena& arena);

@@ -17,8 +17,10 @@ struct SurfaceCandidate {
 };
 
 struct FilterVertex {
-  float x, y, z;  // m, from a common origin
-  float reach;    // m, with what rounding may take
+  float x, y, z;                 // m, from a common origin
+  float reach;                   // m, with what rounding may take
+  float move_x, move_y, move_z;  // m: features within reach and the difference of their moves are kept
+  float unused;
 };
 
 // Write the indices of pairs that may be within reach, ascending; return how many there are. `kept` has room for `count` rounded up to eight.

@@ -13,15 +13,17 @@ inline namespace GYRE_TARGET_NAMESPACE {
 template <int W>
 struct PairLanes {
   Vec3W<W> p[4];  // p[0] is zero
+  Vec3W<W> move[4];
   Wide<W> reach[4];
 
   GYRE_INLINE PairLanes(const SurfaceCandidate* pairs, int first, int count, const FilterVertex* vertices) {
-    alignas(64) float lanes[4][4][W];
+    alignas(64) float lanes[4][7][W];
     for (int i = 0; i < W; ++i) {
       const SurfaceCandidate& pair = pairs[first + i < count ? first + i : count - 1];
       for (int k = 0; k < 4; ++k) {
         const FilterVertex& v = vertices[pair.vertex[k]];
         lanes[k][0][i] = v.x, lanes[k][1][i] = v.y, lanes[k][2][i] = v.z, lanes[k][3][i] = v.reach;
+        lanes[k][4][i] = v.move_x, lanes[k][5][i] = v.move_y, lanes[k][6][i] = v.move_z;
       }
     }
     const Vec3W<W> origin{Wide<W>::load(lanes[0][0]), Wide<W>::load(lanes[0][1]), Wide<W>::load(lanes[0][2])};
@@ -29,6 +31,7 @@ struct PairLanes {
       const Vec3W<W> at{Wide<W>::load(lanes[k][0]), Wide<W>::load(lanes[k][1]), Wide<W>::load(lanes[k][2])};
       p[k] = at - origin;
       reach[k] = Wide<W>::load(lanes[k][3]);
+      move[k] = {Wide<W>::load(lanes[k][4]), Wide<W>::load(lanes[k][5]), Wide<W>::load(lanes[k][6])};
     }
   }
 };
@@ -45,6 +48,18 @@ GYRE_INLINE Mask<W> is_apart(Vec3W<W> way, Wide<W> low, Wide<W> high, Wide<W> re
   return (gap > Wide<W>(0.0f)) & (square(gap) > square(reach) * dot(way, way));
 }
 
+// Square of the difference of two moves.
+template <int W>
+GYRE_INLINE Wide<W> difference_of(Vec3W<W> a, Vec3W<W> b) {
+  const Vec3W<W> d = a - b;
+  return dot(d, d);
+}
+// What a difference of moves adds to the reach, with its rounding.
+template <int W>
+GYRE_INLINE Wide<W> reach_of_moves(Wide<W> squared) {
+  return Wide<W>(1.0f + 0x1p-20f) * sqrt(squared);
+}
+
 template <int W>
 GYRE_INLINE Mask<W> edges_apart(const PairLanes<W>& pair) {
   const Vec3W<W> along = pair.p[1], other = pair.p[3] - pair.p[2];
@@ -56,7 +71,11 @@ GYRE_INLINE Mask<W> edges_apart(const PairLanes<W>& pair) {
   const Vec3W<W> way = s * along - (pair.p[2] + t * other);
   const Wide<W> low = min(Wide<W>(0.0f), dot(way, along));
   const Wide<W> high = max(dot(way, pair.p[2]), dot(way, pair.p[3]));
-  return is_apart(way, low, high, max(pair.reach[0], pair.reach[1]) + max(pair.reach[2], pair.reach[3]));
+  const auto& m = pair.move;
+  const Wide<W> far = max(max(difference_of(m[0], m[2]), difference_of(m[0], m[3])),
+                          max(difference_of(m[1], m[2]), difference_of(m[1], m[3])));
+  const Wide<W> reach = max(pair.reach[0], pair.reach[1]) + max(pair.reach[2], pair.reach[3]);
+  return is_apart(way, low, high, reach + reach_of_moves(far));
 }
 
 template <int W>
@@ -80,7 +99,11 @@ GYRE_INLINE Mask<W> corner_apart(const PairLanes<W>& pair) {
   way = {select(over, -(height * normal.x), way.x), select(over, -(height * normal.y), way.y),
          select(over, -(height * normal.z), way.z)};
   const Wide<W> high = max(dot(way, a), max(dot(way, b), dot(way, c)));
-  return is_apart(way, zero, high, pair.reach[0] + max(pair.reach[1], max(pair.reach[2], pair.reach[3])));
+  const auto& m = pair.move;
+  const Wide<W> far =
+      max(difference_of(m[0], m[1]), max(difference_of(m[0], m[2]), difference_of(m[0], m[3])));
+  const Wide<W> reach = pair.reach[0] + max(pair.reach[1], max(pair.reach[2], pair.reach[3]));
+  return is_apart(way, zero, high, reach + reach_of_moves(far));
 }
 
 template <int W, Mask<W> (*apart)(const PairLanes<W>&)>

@@ -92,6 +92,40 @@ Aabb vertex_box(DVec3 p, double pad) {
   return {{low(p.x), low(p.y), low(p.z)}, {high(p.x), high(p.y), high(p.z)}};
 }
 
+// Fits the boxes of the tree to those of the triangles; returns the box of all.
+Aabb fit_nodes(const SoftSurface& surface, std::span<const Aabb> triangles, std::span<StaticNode> nodes,
+               Arena& arena) {
+  // The children of a node have higher numbers.
+  const Aabb none{{kNoFloat, kNoFloat, kNoFloat}, {kNoFloat, kNoFloat, kNoFloat}};
+  const std::span<Aabb> whole = arena.make<Aabb>(nodes.size());
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    const StaticNode& from = surface.tree.nodes[n];
+    StaticNode& node = nodes[n];
+    bool any = false;
+    for (int lane = 0; lane < StaticNode::kWidth; ++lane) {
+      const std::uint32_t child = from.child[lane];
+      Aabb box = none;
+      if (child != StaticNode::kNoChild && is_leaf(child)) {
+        const std::uint32_t first = leaf_first(child);
+        box = triangles[first];
+        for (std::uint32_t i = first + 1; i < first + leaf_count(child); ++i) box = merge(box, triangles[i]);
+      } else if (child != StaticNode::kNoChild) {
+        box = whole[child];
+      }
+      if (child != StaticNode::kNoChild) {
+        whole[n] = any ? merge(whole[n], box) : box;
+        any = true;
+      }
+      node.child[lane] = child;
+      for (int axis = 0; axis < 3; ++axis) {
+        node.low[axis][lane] = box.low[axis];
+        node.high[axis][lane] = box.high[axis];
+      }
+    }
+  }
+  return nodes.empty() ? none : whole[0];
+}
+
 }  // namespace
 
 SoftSurface make_surface(std::span<const DVec3> places, std::span<const std::uint32_t> triangles,
@@ -122,54 +156,32 @@ SoftSurface make_surface(std::span<const DVec3> places, std::span<const std::uin
 }
 
 SurfaceBoxes fit_boxes(const PlacedSurface& placed, std::span<const DVec3> positions,
-                       std::span<const float> pads, DVec3 origin, Arena& arena) {
+                       std::span<const float> pads, DVec3 origin, Arena& arena,
+                       std::span<const DVec3> moves) {
   const SoftSurface& surface = *placed.surface;
   SurfaceBoxes out;
   out.surface = &surface;
   out.first = placed.first;
-  const std::size_t vertices = std::size_t(surface.vertices);
-  out.vertices = arena.make<Aabb>(vertices);
-  out.triangles = arena.make<Aabb>(surface.triangles.size());
-  out.nodes = arena.make<StaticNode>(surface.tree.nodes.size());
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const std::size_t place = placed.first + v;
-    out.vertices[v] = vertex_box(positions[place] - origin, pads.empty() ? 0.0 : double(pads[place]));
-  }
-  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-    const std::uint32_t* const corner = surface.triangles[i].corner;
-    out.triangles[i] =
-        merge(merge(out.vertices[corner[0]], out.vertices[corner[1]]), out.vertices[corner[2]]);
-  }
-  // The children of a node have higher numbers.
-  const Aabb none{{kNoFloat, kNoFloat, kNoFloat}, {kNoFloat, kNoFloat, kNoFloat}};
-  const std::span<Aabb> whole = arena.make<Aabb>(surface.tree.nodes.size());
-  for (std::size_t n = out.nodes.size(); n-- > 0;) {
-    const StaticNode& from = surface.tree.nodes[n];
-    StaticNode& node = out.nodes[n];
-    bool any = false;
-    for (int lane = 0; lane < StaticNode::kWidth; ++lane) {
-      const std::uint32_t child = from.child[lane];
-      Aabb box = none;
-      if (child != StaticNode::kNoChild && is_leaf(child)) {
-        const std::uint32_t first = leaf_first(child);
-        box = out.triangles[first];
-        for (std::uint32_t i = first + 1; i < first + leaf_count(child); ++i)
-          box = merge(box, out.triangles[i]);
-      } else if (child != StaticNode::kNoChild) {
-        box = whole[child];
-      }
-      if (child != StaticNode::kNoChild) {
-        whole[n] = any ? merge(whole[n], box) : box;
-        any = true;
-      }
-      node.child[lane] = child;
-      for (int axis = 0; axis < 3; ++axis) {
-        node.low[axis][lane] = box.low[axis];
-        node.high[axis][lane] = box.high[axis];
-      }
+  const auto fit = [&](bool ends, std::span<Aabb>& vertices, std::span<Aabb>& triangles,
+                       std::span<StaticNode>& nodes, Aabb& box) {
+    vertices = arena.make<Aabb>(std::size_t(surface.vertices));
+    triangles = arena.make<Aabb>(surface.triangles.size());
+    nodes = arena.make<StaticNode>(surface.tree.nodes.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      const std::size_t place = placed.first + v;
+      const DVec3 at = ends ? positions[place] + moves[place] : positions[place];
+      vertices[v] = vertex_box(at - origin, pads.empty() ? 0.0 : double(pads[place]));
     }
-  }
-  out.box = out.nodes.empty() ? none : whole[0];
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+      const std::uint32_t* const corner = surface.triangles[i].corner;
+      triangles[i] = merge(merge(vertices[corner[0]], vertices[corner[1]]), vertices[corner[2]]);
+    }
+    box = fit_nodes(surface, triangles, nodes, arena);
+  };
+  fit(false, out.vertices, out.triangles, out.nodes, out.box);
+  out.end_vertices = out.vertices, out.end_triangles = out.triangles, out.end_nodes = out.nodes;
+  out.end_box = out.box;
+  if (!moves.empty()) fit(true, out.end_vertices, out.end_triangles, out.end_nodes, out.end_box);
   return out;
 }
 

@@ -56,27 +56,54 @@ struct PlacedSurface {
   std::uint32_t first = 0;  // its vertex 0
 };
 
-// The boxes of one surface at the present positions.
+// The boxes of one surface at the present positions, and at the ends of moves (the same boxes where nothing moves).
 struct SurfaceBoxes {
   const SoftSurface* surface = nullptr;
   std::uint32_t first = 0;
-  std::span<StaticNode> nodes;
-  std::span<Aabb> vertices, triangles;
-  Aabb box{};
+  std::span<StaticNode> nodes, end_nodes;
+  std::span<Aabb> vertices, end_vertices, triangles, end_triangles;
+  Aabb box{}, end_box{};
 };
 
-// The boxes hold each vertex and a margin of `pads[v]` about it (none: no margin). Positions are measured from `origin`, and
-// rounding only enlarges a box. Memory is the arena's.
-SurfaceBoxes fit_boxes(const PlacedSurface& placed, std::span<const DVec3> positions,
-                       std::span<const float> pads, DVec3 origin, Arena& arena);
+// False if one axis separates the boxes at both ends of a move, the same way round: as all in them moves straight, they then never meet.
+constexpr bool may_meet(const Aabb& a, const Aabb& a_end, const Aabb& b, const Aabb& b_end) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (a.high[axis] < b.low[axis] && a_end.high[axis] < b_end.low[axis]) return false;
+    if (b.high[axis] < a.low[axis] && b_end.high[axis] < a_end.low[axis]) return false;
+  }
+  return true;
+}
+// A bit for each child that may meet the box.
+inline unsigned meeting_mask(const StaticNode& node, const StaticNode& end, const Aabb& box,
+                             const Aabb& box_end) {
+  constexpr int kHalf = 4;
+  using Floats = Wide<kHalf>;
+  unsigned mask = 0;
+  for (int i = 0; i < StaticTree::kWidth; i += kHalf) {
+    const auto meets = [&](int axis) {
+      return ((Floats::load_unaligned(node.low[axis] + i) <= Floats(box.high[axis])) |
+              (Floats::load_unaligned(end.low[axis] + i) <= Floats(box_end.high[axis]))) &
+             ((Floats(box.low[axis]) <= Floats::load_unaligned(node.high[axis] + i)) |
+              (Floats(box_end.low[axis]) <= Floats::load_unaligned(end.high[axis] + i)));
+    };
+    mask |= to_bits(meets(0) & meets(1) & meets(2)) << i;
+  }
+  return mask;
+}
 
-// Calls visit(i, k) for pairs of triangles whose boxes overlap: i of `a`, k of `b`; of one surface (a and b the same) each pair once, with
+// The boxes hold each vertex and a margin of `pads[v]` about it (none: no margin). Positions are measured from `origin`, and
+// rounding only enlarges a box. `moves` (none: nothing moves) lead to the ends. Memory is the arena's.
+SurfaceBoxes fit_boxes(const PlacedSurface& placed, std::span<const DVec3> positions,
+                       std::span<const float> pads, DVec3 origin, Arena& arena,
+                       std::span<const DVec3> moves = {});
+
+// Calls visit(i, k) for pairs of triangles whose boxes may meet: i of `a`, k of `b`; of one surface (a and b the same) each pair once, with
 // i < k. The order follows from the trees alone.
 template <class Visit>
 void for_each_triangle_pair(const SurfaceBoxes& a, const SurfaceBoxes& b, Visit&& visit) {
-  if (a.nodes.empty() || b.nodes.empty() || !overlap(a.box, b.box)) return;
+  if (a.nodes.empty() || b.nodes.empty() || !may_meet(a.box, a.end_box, b.box, b.end_box)) return;
   const bool same = &a == &b;
-  const auto visit_leaf = [&](std::uint32_t first, std::uint32_t count, const Aabb& box) {
+  const auto visit_leaf = [&](std::uint32_t first, std::uint32_t count, const Aabb& box, const Aabb& end) {
     std::uint32_t stack[StaticTree::kStackSize];
     int depth = 0;
     stack[depth++] = 0;
@@ -84,7 +111,7 @@ void for_each_triangle_pair(const SurfaceBoxes& a, const SurfaceBoxes& b, Visit&
       const std::uint32_t child = stack[--depth];
       if (!is_leaf(child)) {
         const StaticNode& node = b.nodes[child];
-        for (unsigned mask = overlap_mask(node, box); mask != 0;) {
+        for (unsigned mask = meeting_mask(node, b.end_nodes[child], box, end); mask != 0;) {
           const int lane = int(std::bit_width(mask)) - 1;
           mask ^= 1u << lane;
           // Leaves before this one have been there already.
@@ -97,18 +124,19 @@ void for_each_triangle_pair(const SurfaceBoxes& a, const SurfaceBoxes& b, Visit&
       const std::uint32_t other = leaf_first(child), others = leaf_count(child);
       for (std::uint32_t i = first; i < first + count; ++i) {
         for (std::uint32_t k = same && other <= i ? i + 1 : other; k < other + others; ++k) {
-          if (overlap(a.triangles[i], b.triangles[k])) visit(i, k);
+          if (may_meet(a.triangles[i], a.end_triangles[i], b.triangles[k], b.end_triangles[k])) visit(i, k);
         }
       }
     }
   };
-  for (const StaticNode& node : a.nodes) {
+  for (std::size_t n = 0; n < a.nodes.size(); ++n) {
+    const StaticNode &node = a.nodes[n], &end_node = a.end_nodes[n];
     for (int lane = 0; lane < StaticNode::kWidth; ++lane) {
       const std::uint32_t child = node.child[lane];
       if (child == StaticNode::kNoChild || !is_leaf(child)) continue;
-      const Aabb box{{node.low[0][lane], node.low[1][lane], node.low[2][lane]},
-                     {node.high[0][lane], node.high[1][lane], node.high[2][lane]}};
-      if (same || overlap(box, b.box)) visit_leaf(leaf_first(child), leaf_count(child), box);
+      const Aabb box = child_box(node, lane), end = child_box(end_node, lane);
+      if (same || may_meet(box, end, b.box, b.end_box))
+        visit_leaf(leaf_first(child), leaf_count(child), box, end);
     }
   }
 }

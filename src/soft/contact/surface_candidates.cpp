@@ -9,7 +9,17 @@ namespace {
 // Collects the pairs of features whose boxes overlap.
 class CandidateSearch {
  public:
-  CandidateSearch(std::span<const SurfaceBoxes> boxes, SurfaceCandidates& out) : boxes_(boxes), out_(out) {}
+  CandidateSearch(std::span<const SurfaceBoxes> boxes, std::size_t edges, SurfaceCandidates& out,
+                  Arena& arena)
+      : boxes_(boxes), out_(out), edges_(arena.make<EdgeBox>(edges)) {
+    std::size_t next = 0;
+    for (const SurfaceBoxes& one : boxes) {
+      for (const SurfaceEdge& edge : one.surface->edges) {
+        edges_[next++] = {merge(one.vertices[edge.a], one.vertices[edge.b]),
+                          merge(one.end_vertices[edge.a], one.end_vertices[edge.b])};
+      }
+    }
+  }
 
   void search(std::uint32_t a, std::uint32_t b) {
     if (a == b && !boxes_[a].surface->self_collision) return;
@@ -29,7 +39,9 @@ class CandidateSearch {
     const std::uint32_t* const corner = b.surface->triangles[k].corner;
     for (unsigned c = 0; c < 3; ++c) {
       const std::uint32_t v = from.corner[c];
-      if ((from.owned_corners >> c & 1u) == 0 || !overlap(a.vertices[v], b.triangles[k])) continue;
+      if ((from.owned_corners >> c & 1u) == 0 ||
+          !may_meet(a.vertices[v], a.end_vertices[v], b.triangles[k], b.end_triangles[k]))
+        continue;
       if (s == t && (v == corner[0] || v == corner[1] || v == corner[2])) continue;
       out_.corners.push_back({{a.first + v, b.first + corner[0], b.first + corner[1], b.first + corner[2]},
                               a.first + v,
@@ -44,13 +56,14 @@ class CandidateSearch {
     for (const std::int32_t one : a.surface->triangles[i].owned_edge) {
       if (one < 0) continue;
       const SurfaceEdge e = a.surface->edges[one];
-      const Aabb box = merge(a.vertices[e.a], a.vertices[e.b]);
-      if (!overlap(box, b.triangles[k])) continue;
+      const EdgeBox& box = edges_[out_.bases[s].edge + std::uint32_t(one)];
+      if (!may_meet(box.start, box.end, b.triangles[k], b.end_triangles[k])) continue;
       for (const std::int32_t other : b.surface->triangles[k].owned_edge) {
         if (other < 0) continue;
         const SurfaceEdge f = b.surface->edges[other];
         if (s == t && (e.a == f.a || e.a == f.b || e.b == f.a || e.b == f.b)) continue;
-        if (!overlap(box, merge(b.vertices[f.a], b.vertices[f.b]))) continue;
+        const EdgeBox& to = edges_[out_.bases[t].edge + std::uint32_t(other)];
+        if (!may_meet(box.start, box.end, to.start, to.end)) continue;
         const std::uint32_t first = out_.bases[s].edge + std::uint32_t(one),
                             second = out_.bases[t].edge + std::uint32_t(other);
         const std::uint32_t p[2] = {a.first + e.a, a.first + e.b}, q[2] = {b.first + f.a, b.first + f.b};
@@ -62,8 +75,13 @@ class CandidateSearch {
     }
   }
 
+  struct EdgeBox {
+    Aabb start, end;
+  };
+
   std::span<const SurfaceBoxes> boxes_;
   SurfaceCandidates& out_;
+  std::span<EdgeBox> edges_;  // by number over all surfaces
 };
 
 // Keeps those that the filter keeps, and sorts them by their numbers.
@@ -88,25 +106,31 @@ void filter_and_sort(Array<SurfaceCandidate>& pairs, std::span<const FilterVerte
   for (std::size_t i = 0; i < count; ++i) pairs[i] = copy[order[i]];
 }
 
-// True if the candidates are those of these surfaces, and no feature has moved out of what it was thought to reach. All may have moved together.
+// True if the candidates are those of these surfaces, and no feature has moved out of what it was thought to reach, nor is to move out of it. All may
+// have moved together.
 bool covers(const SurfaceCandidates& candidates, std::span<const PlacedSurface> surfaces,
-            std::span<const DVec3> positions, std::span<const float> reach, Arena& arena) {
+            std::span<const DVec3> positions, std::span<const DVec3> moves, std::span<const float> reach,
+            Arena& arena) {
   if (candidates.surfaces.size() != surfaces.size() || candidates.positions.size() != positions.size())
     return false;
-  DVec3 sum{};
+  DVec3 sum{}, sum_of_moves{};
   double count = 0.0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const PlacedSurface& now = surfaces[i];
     if (candidates.surfaces[i].surface != now.surface || candidates.surfaces[i].first != now.first)
       return false;
-    for (std::size_t v = now.first; v < now.first + std::size_t(now.surface->vertices); ++v)
+    for (std::size_t v = now.first; v < now.first + std::size_t(now.surface->vertices); ++v) {
       sum += positions[v] - candidates.positions[v];
+      sum_of_moves += moves[v] - candidates.moves[v];
+    }
     count += double(now.surface->vertices);
   }
-  const DVec3 mean = count > 0.0 ? sum / count : DVec3{};
+  const double share = count > 0.0 ? 1.0 / count : 0.0;
+  const DVec3 mean = share * sum, mean_of_moves = share * sum_of_moves;
   const std::span<float> moved = arena.make<float>(positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    const float far = float(length(positions[v] - candidates.positions[v] - mean));
+    const float far = float(length(positions[v] - candidates.positions[v] - mean) +
+                            length(moves[v] - candidates.moves[v] - mean_of_moves));
     moved[v] = far * (1.0f + 0x1p-20f);
   }
   const std::span<const float> most = spread_over_features(surfaces, moved, arena);
@@ -135,41 +159,43 @@ std::span<float> spread_over_features(std::span<const PlacedSurface> surfaces, s
   return out;
 }
 
-void fill_filter(std::span<const DVec3> positions, std::span<const float> reach, DVec3 origin,
-                 std::span<FilterVertex> out) {
+void fill_filter(std::span<const DVec3> positions, std::span<const DVec3> moves, std::span<const float> reach,
+                 DVec3 origin, std::span<FilterVertex> out) {
   constexpr float kRounding = 0x1p-20f;  // of the coordinates: their rounding to float
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const Vec3 p = difference(positions[v], origin);
     const Vec3 size = absolute(p);
-    out[v] = {p.x, p.y, p.z, reach[v] + kRounding * (size.x + size.y + size.z + reach[v])};
+    const Vec3 move = to_float(moves[v]), far = absolute(move);
+    const float rounding = size.x + size.y + size.z + far.x + far.y + far.z + reach[v];
+    out[v] = {p.x, p.y, p.z, reach[v] + kRounding * rounding, move.x, move.y, move.z, 0.0f};
   }
 }
 
 void update_candidates(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
-                       std::span<const float> reach, std::span<const float> ahead, Arena& arena,
-                       SurfaceCandidates& candidates) {
+                       std::span<const DVec3> moves, std::span<const float> reach,
+                       std::span<const float> ahead, Arena& arena, SurfaceCandidates& candidates) {
   const ArenaScope scope(arena);
-  if (covers(candidates, surfaces, positions, reach, arena)) return;
+  if (covers(candidates, surfaces, positions, moves, reach, arena)) return;
   candidates.corners.clear(), candidates.edges.clear(), candidates.bases.clear();
-  candidates.surfaces.assign(surfaces), candidates.positions.assign(positions),
-      candidates.reach.assign(ahead);
+  candidates.surfaces.assign(surfaces), candidates.positions.assign(positions);
+  candidates.moves.assign(moves), candidates.reach.assign(ahead);
   ++candidates.made;
   if (surfaces.empty() || positions.empty()) return;
   const DVec3 origin = positions[surfaces[0].first];
   const std::span<SurfaceBoxes> boxes = arena.make<SurfaceBoxes>(surfaces.size());
   FeatureBase base;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    boxes[i] = fit_boxes(surfaces[i], positions, ahead, origin, arena);
+    boxes[i] = fit_boxes(surfaces[i], positions, ahead, origin, arena, moves);
     candidates.bases.push_back(base);
     base.triangle += std::uint32_t(surfaces[i].surface->triangles.size());
     base.edge += std::uint32_t(surfaces[i].surface->edges.size());
   }
-  CandidateSearch search(boxes, candidates);
+  CandidateSearch search(boxes, base.edge, candidates, arena);
   for (std::uint32_t i = 0; i < std::uint32_t(boxes.size()); ++i) {
     for (std::uint32_t k = i; k < std::uint32_t(boxes.size()); ++k) search.search(i, k);
   }
   const std::span<FilterVertex> vertices = arena.make<FilterVertex>(positions.size());
-  fill_filter(positions, ahead, origin, vertices);
+  fill_filter(positions, moves, ahead, origin, vertices);
   const FeatureFilters& filters = select_feature_filters();
   filter_and_sort(candidates.corners, vertices, filters.corners, arena);
   filter_and_sort(candidates.edges, vertices, filters.edges, arena);

@@ -6,38 +6,77 @@ namespace gyre {
 
 namespace {
 
-// Vertices are looked for a little further than they move, so that impulses may change their moves.
-constexpr float kLimitOfMove = 1.25f;
+// Vertices are looked for a little beyond their plans, so that impulses and bounds may change their moves.
+constexpr float kLimitOfMove = 0.2f;
 constexpr float kLimitOfRadius = 0.1f;
-constexpr float kMaxLimitOfEdge = 1.0f;
+constexpr float kLimitOfChange = 1.25f;  // where they ended farther from the plan
+constexpr float kMoveAhead = 1.25f;      // rows of what approaches
+constexpr double kMaxMoveOfEdge = 4.0;
+constexpr double kRounding = 1.0 + 0x1p-20;
 constexpr float kNearOfThickness = 0.1f;   // pairs nearer than this have rows whatever their velocity
 constexpr float kSlopOfThickness = 0.01f;  // overlap that stays
 constexpr float kMaxPushOfThickness = 0.25f;
 
-// The mean of the moves: surfaces that fly together do not look far.
-DVec3 mean_of(std::span<const PlacedSurface> surfaces, std::span<const DVec3> moves) {
+// Takes the mean from the moves: surfaces that fly together do not look far. Returns it.
+DVec3 take_mean(std::span<const PlacedSurface> surfaces, std::span<DVec3> moves) {
   DVec3 sum{};
   double count = 0.0;
   for (const PlacedSurface& placed : surfaces) {
     for (int v = 0; v < placed.surface->vertices; ++v) sum += moves[placed.first + std::size_t(v)];
     count += double(placed.surface->vertices);
   }
-  return count > 0.0 ? sum / count : DVec3{};
+  const DVec3 mean = count > 0.0 ? sum / count : DVec3{};
+  for (DVec3& move : moves) move = move - mean;
+  return mean;
 }
 
-// Limits for these moves.
-void set_limits(std::span<const PlacedSurface> surfaces, std::span<const float> inverse_mass,
-                std::span<const DVec3> moves, std::span<float> limits) {
+// Shortens the moves that are longer than pairs are looked for.
+void cut_moves(std::span<const PlacedSurface> surfaces, std::span<const float> inverse_mass,
+               std::span<DVec3> moves) {
   for (const PlacedSurface& placed : surfaces) {
-    const float most = kMaxLimitOfEdge * placed.surface->mean_edge;
     for (int i = 0; i < placed.surface->vertices; ++i) {
       const std::size_t v = placed.first + std::size_t(i);
-      const float radius = placed.surface->radius[i], far = float(length(moves[v]));
-      limits[v] = inverse_mass[v] > 0.0f
-                      ? min(kLimitOfMove * far + kLimitOfRadius * radius, max(most, radius))
-                      : kLimitOfMove * far;
+      const double most = kMaxMoveOfEdge * double(max(placed.surface->mean_edge, placed.surface->radius[i]));
+      const double far = length(moves[v]);
+      if (inverse_mass[v] > 0.0f && far > most) moves[v] = (most / far) * moves[v];
     }
   }
+}
+
+// Limits about this plan.
+void set_limits(std::span<const PlacedSurface> surfaces, std::span<const float> inverse_mass,
+                std::span<const DVec3> plan, std::span<float> limits) {
+  for (const PlacedSurface& placed : surfaces) {
+    for (int i = 0; i < placed.surface->vertices; ++i) {
+      const std::size_t v = placed.first + std::size_t(i);
+      limits[v] = inverse_mass[v] > 0.0f
+                      ? kLimitOfMove * float(length(plan[v])) + kLimitOfRadius * placed.surface->radius[i]
+                      : 0.0f;
+    }
+  }
+}
+
+// True if all moves end within the limits about the plan. Else the moves become the plan, and limits grow where they were too low.
+bool keeps_plan(std::span<const PlacedSurface> surfaces, std::span<const float> inverse_mass,
+                std::span<const DVec3> moves, SurfaceContacts& contacts, Arena& arena) {
+  const ArenaScope scope(arena);
+  const std::span<float> limits = arena.make<float>(moves.size());
+  set_limits(surfaces, inverse_mass, moves, limits);
+  bool keeps = true;
+  for (std::size_t v = 0; v < moves.size(); ++v) {
+    const double far = kRounding * length(moves[v] - contacts.plan[v]);
+    if (far <= double(contacts.limits[v])) continue;
+    keeps = false;
+    // What ends elsewhere a second time may go to and fro; it is then looked for at both places.
+    if (inverse_mass[v] > 0.0f && contacts.rounds > 1)
+      limits[v] = max(limits[v], kLimitOfChange * float(far));
+  }
+  if (keeps) return true;
+  for (std::size_t v = 0; v < moves.size(); ++v) {
+    contacts.plan[v] = moves[v];
+    contacts.limits[v] = limits[v];
+  }
+  return false;
 }
 
 // Impulses of the pairs that were there before; both lists have ascending keys.
@@ -119,7 +158,7 @@ bool may_touch(const SurfacePair& pair, const SurfaceVertices& vertices, float s
   const float gap = gap_of(pair), near = kNearOfThickness * pair.thickness;
   if (gap < near) return true;
   const Vec3 velocity = sum_of(vertices.velocities, pair.vertex, pair.weight);
-  return gap - near < -kLimitOfMove * step * dot(to_float(pair.normal), velocity);
+  return gap - near < -kMoveAhead * step * dot(to_float(pair.normal), velocity);
 }
 
 void solve_row(Row& row, std::span<Vec3> velocities) {
@@ -148,20 +187,20 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
                            const SurfaceContactSettings& settings, Arena& arena, SurfaceContacts& contacts) {
   const ArenaScope scope(arena);
   const std::size_t count = vertices.positions.size();
-  const std::span<DVec3> moves = arena.make<DVec3>(count);
-  for (std::size_t v = 0; v < count; ++v) moves[v] = double(settings.step) * DVec3(vertices.velocities[v]);
-  const DVec3 mean = mean_of(surfaces, moves);
-  for (std::size_t v = 0; v < count; ++v) moves[v] = moves[v] - mean;
-  contacts.limits.resize(count);
-  set_limits(surfaces, vertices.inverse_mass, moves, contacts.limits);
+  contacts.plan.resize(count), contacts.limits.resize(count);
+  for (std::size_t v = 0; v < count; ++v)
+    contacts.plan[v] = double(settings.step) * DVec3(vertices.velocities[v]);
+  take_mean(surfaces, contacts.plan);
+  cut_moves(surfaces, vertices.inverse_mass, contacts.plan);
+  set_limits(surfaces, vertices.inverse_mass, contacts.plan, contacts.limits);
   const std::span<SurfacePair> before = arena.make<SurfacePair>(contacts.pairs.size());
   const std::span<SurfaceImpulse> impulses = arena.make<SurfaceImpulse>(contacts.impulses.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     before[i] = contacts.pairs[i];
     impulses[i] = contacts.impulses[i];
   }
-  find_surface_pairs(surfaces, vertices.positions, contacts.limits, float(settings.bounds.least_gap), arena,
-                     contacts.candidates, contacts.pairs);
+  find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
+                     float(settings.bounds.least_gap), arena, contacts.candidates, contacts.pairs);
   keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
   sum_impulses(vertices, contacts);
 }
@@ -226,43 +265,41 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
                           Arena& arena, SurfaceContacts& contacts) {
   const ArenaScope scope(arena);
   const std::size_t count = vertices.positions.size();
-  const std::span<DVec3> left = arena.make<DVec3>(count), moves = arena.make<DVec3>(count),
-                         goals = arena.make<DVec3>(count);
+  const std::span<DVec3> goals = arena.make<DVec3>(count), whole = arena.make<DVec3>(count),
+                         asked = arena.make<DVec3>(count), moves = arena.make<DVec3>(count);
   const std::span<std::uint8_t> held = arena.make<std::uint8_t>(count);
   for (std::size_t v = 0; v < count; ++v) {
     held[v] = !(vertices.inverse_mass[v] > 0.0f);
     goals[v] = held[v] != 0 ? targets[v] : targets[v] + contacts.pushes[v];
-    left[v] = goals[v] - vertices.positions[v];
+    whole[v] = goals[v] - vertices.positions[v];
   }
-  const DVec3 mean = mean_of(surfaces, left);
-  for (std::size_t v = 0; v < count; ++v) left[v] = left[v] - mean;
+  const DVec3 mean = take_mean(surfaces, whole);
+  for (std::size_t v = 0; v < count; ++v) asked[v] = whole[v];
+  cut_moves(surfaces, vertices.inverse_mass, asked);
   BoundReport report;
   Array<SurfacePair> found;
   std::span<const SurfacePair> pairs = contacts.pairs;
-  bool again = true;
-  for (contacts.rounds = 1; again; ++contacts.rounds) {
-    for (std::size_t v = 0; v < count; ++v) moves[v] = left[v];
-    const BoundReport one =
-        bound_moves(pairs, vertices.positions, contacts.limits, held, settings.bounds, moves, arena);
-    report = {one.shortened, report.forced + one.forced, contacts.rounds == 1 ? one.crossed : report.crossed};
-    // Those that would go further than they were looked for go on in another round.
-    again = false;
-    for (std::size_t v = 0; v < count; ++v) {
-      again |= held[v] == 0 && length(left[v]) > double(contacts.limits[v]);
-      vertices.positions[v] += moves[v];
-      left[v] = left[v] - moves[v];
+  for (contacts.rounds = 1;; ++contacts.rounds) {
+    const bool last = contacts.rounds > settings.most_rounds;
+    for (std::size_t v = 0; v < count; ++v) moves[v] = asked[v];
+    // The last round is for pairs that are found for any moves no longer than those that are asked for.
+    report = bound_moves(pairs, vertices.positions, last ? contacts.limits.view() : std::span<const float>(),
+                         held, settings.bounds, moves, arena);
+    if (last || keeps_plan(surfaces, vertices.inverse_mass, moves, contacts, arena)) break;
+    if (contacts.rounds == settings.most_rounds) {
+      for (std::size_t v = 0; v < count; ++v) {
+        contacts.plan[v] = {};
+        contacts.limits[v] = float(kRounding * length(asked[v]));
+      }
     }
-    again = again && contacts.rounds < settings.most_rounds;
-    if (!again) break;
-    set_limits(surfaces, vertices.inverse_mass, left, contacts.limits);
-    find_surface_pairs(surfaces, vertices.positions, contacts.limits, float(settings.bounds.least_gap), arena,
-                       contacts.candidates, found);
+    find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
+                       float(settings.bounds.least_gap), arena, contacts.candidates, found);
     pairs = found;
   }
-  // All have moved by the mean less than they should.
   for (std::size_t v = 0; v < count; ++v) {
-    const bool there = held[v] != 0 || left[v] == DVec3{};
-    vertices.positions[v] = there ? goals[v] : vertices.positions[v] + mean;
+    // The mean is given back.
+    const bool there = held[v] != 0 || moves[v] == whole[v];
+    vertices.positions[v] = there ? goals[v] : vertices.positions[v] + (moves[v] + mean);
   }
   return report;
 }

@@ -41,7 +41,8 @@ struct SurfaceContactSettings {
   float step = 0.0f;  // s: of the sub-step
   int iterations = 4;
   float pushout = 0.25f;  // share of the overlap removed in a sub-step
-  int most_rounds = 4;    // of finding pairs, for vertices that move further than they were looked for
+  int most_rounds =
+      4;  // of finding pairs, for vertices that end farther from their plan than they were looked for
   BoundSettings bounds{};
 };
 
@@ -58,7 +59,8 @@ struct SurfaceContacts {
   // body spreads them exactly. And the part of them that the velocities do not have yet.
   Array<Vec3> totals, owed;
   SurfaceCandidates candidates;
-  Array<float> limits;  // m, by vertex: how far it may move before pairs are found again
+  Array<DVec3> plan;    // m, by vertex: the moves for which pairs were found, against the mean of all
+  Array<float> limits;  // m, by vertex: how far it may end from its plan, or pairs are found again
   Array<Vec3> pushes;   // m, by vertex
   int rounds = 0;       // of finding pairs, in the last sub-step
   int touching = 0;     // pairs with an impulse

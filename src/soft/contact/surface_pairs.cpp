@@ -10,18 +10,21 @@ namespace {
 
 constexpr std::uint64_t kEdgePairs = std::uint64_t(1) << 63;  // in keys
 
-// A pair is looked for up to this multiple of the limits of its vertices, so that candidates last.
-constexpr float kAheadOfLimit = 4.0f;
-constexpr float kAheadOfRadius = 0.25f;
+// A pair is looked for further by this share of the radii of its vertices, so that candidates last.
+constexpr float kAheadOfRadius = 0.3f;
+
+DVec3 least_of(DVec3 a, DVec3 b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
+DVec3 most_of(DVec3 a, DVec3 b) { return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; }
 
 // Measures candidates exactly, and keeps the pairs that matter.
 class PairFinder {
  public:
   PairFinder(const SurfaceCandidates& candidates, std::span<const DVec3> positions,
-             std::span<const float> limits, std::span<const float> radii, float least_gap,
-             Array<SurfacePair>& pairs)
+             std::span<const DVec3> moves, std::span<const float> limits, std::span<const float> radii,
+             float least_gap, Array<SurfacePair>& pairs)
       : candidates_(candidates),
         positions_(positions),
+        moves_(moves),
         limits_(limits),
         radii_(radii),
         least_gap_(double(least_gap)),
@@ -36,10 +39,12 @@ class PairFinder {
       return double(of[v[0]] + max(of[v[1]], max(of[v[2]], of[v[3]])));
     };
     const double limit = largest(limits_), radius = largest(radii_), far = length_squared(closest.point);
-    if (far > square(limit + radius) || is_new(one, 1, far)) return;
+    const double move = largest_difference(v, 1);
+    if (far > square(limit + radius + move) || stay_apart(v, 1, limit + radius) || is_new(one, 1, far))
+      return;
     const PlacedSurface& b = candidates_.surfaces[one.surface_b];
     const bool touches = touches_triangle(p, closest, b, one.b - candidates_.bases[one.surface_b].triangle);
-    if (!touches && far > square(limit + least_gap_ * radius)) return;
+    if (!touches && far > square(limit + move + least_gap_ * radius)) return;
     SurfacePair& pair = add(one, touches);
     pair.key = std::uint64_t(one.a) << 32 | one.b;
     pair.on_a = 1;
@@ -60,11 +65,13 @@ class PairFinder {
       return double(max(of[v[0]], of[v[1]]) + max(of[v[2]], of[v[3]]));
     };
     const double limit = largest(limits_), radius = largest(radii_), far = length_squared(apart);
-    if (far > square(limit + radius) || is_new(one, 2, far)) return;
+    const double move = largest_difference(v, 2);
+    if (far > square(limit + radius + move) || stay_apart(v, 2, limit + radius) || is_new(one, 2, far))
+      return;
     const bool touches = closest.s > 0.0 && closest.s < 1.0 && closest.t > 0.0 && closest.t < 1.0 &&
                          touches_edge(one.surface_a, one.a, origin + closest.on_a, -apart) &&
                          touches_edge(one.surface_b, one.b, origin + closest.on_b, apart);
-    if (!touches && far > square(limit + least_gap_ * radius)) return;
+    if (!touches && far > square(limit + move + least_gap_ * radius)) return;
     SurfacePair& pair = add(one, touches);
     pair.key = kEdgePairs | std::uint64_t(one.a) << 32 | one.b;
     pair.on_a = 2;
@@ -84,6 +91,36 @@ class PairFinder {
     }
     return far < square(0.5 * least_gap_ * double(least[0] + least[1]));
   }
+  // Of the moves of a vertex of A, the first `on_a`, and one of B.
+  double largest_difference(const std::uint32_t* v, int on_a) const {
+    double most = 0.0;
+    for (int i = 0; i < on_a; ++i) {
+      for (int k = on_a; k < 4; ++k) most = max(most, length_squared(moves_[v[i]] - moves_[v[k]]));
+    }
+    return std::sqrt(most);
+  }
+  // True if an axis keeps A and B apart by more than `reach` now and at the end of the plan, the same way round.
+  bool stay_apart(const std::uint32_t* v, int on_a, double reach) const {
+    DVec3 low[2][2], high[2][2];  // of A and B, now and at the end
+    for (int k = 0; k < 4; ++k) {
+      const int side = k < on_a ? 0 : 1;
+      const bool first = k == 0 || k == on_a;
+      const DVec3 now = positions_[v[k]] - positions_[v[0]], end = now + (moves_[v[k]] - moves_[v[0]]);
+      for (int n = 0; n < 2; ++n) {
+        const DVec3 at = n == 0 ? now : end;
+        low[side][n] = first ? at : least_of(low[side][n], at);
+        high[side][n] = first ? at : most_of(high[side][n], at);
+      }
+    }
+    const DVec3 above[2] = {low[0][0] - high[1][0], low[0][1] - high[1][1]};
+    const DVec3 below[2] = {low[1][0] - high[0][0], low[1][1] - high[0][1]};
+    return is_beyond(above, reach) || is_beyond(below, reach);
+  }
+  static bool is_beyond(const DVec3 (&gap)[2], double reach) {
+    return (gap[0].x > reach && gap[1].x > reach) || (gap[0].y > reach && gap[1].y > reach) ||
+           (gap[0].z > reach && gap[1].z > reach);
+  }
+
   SurfacePair& add(const SurfaceCandidate& one, bool touches) {
     SurfacePair& pair = pairs_.emplace_back();
     for (int n = 0; n < 4; ++n) pair.vertex[n] = one.vertex[n];
@@ -161,7 +198,7 @@ class PairFinder {
   }
 
   const SurfaceCandidates& candidates_;
-  std::span<const DVec3> positions_;
+  std::span<const DVec3> positions_, moves_;
   std::span<const float> limits_, radii_;
   double least_gap_;
   Array<SurfacePair>& pairs_;
@@ -170,8 +207,8 @@ class PairFinder {
 }  // namespace
 
 void find_surface_pairs(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
-                        std::span<const float> limits, float least_gap, Arena& arena,
-                        SurfaceCandidates& candidates, Array<SurfacePair>& pairs) {
+                        std::span<const DVec3> moves, std::span<const float> limits, float least_gap,
+                        Arena& arena, SurfaceCandidates& candidates, Array<SurfacePair>& pairs) {
   const ArenaScope scope(arena);
   pairs.clear();
   if (surfaces.empty() || positions.empty()) return;
@@ -179,20 +216,19 @@ void find_surface_pairs(std::span<const PlacedSurface> surfaces, std::span<const
   const std::span<float> radii = arena.make<float>(count), reach = arena.make<float>(count),
                          ahead = arena.make<float>(count);
   for (const PlacedSurface& placed : surfaces) {
-    const float edge = 0.5f * placed.surface->mean_edge;
     for (int i = 0; i < placed.surface->vertices; ++i) {
       const std::size_t v = placed.first + std::size_t(i);
       radii[v] = placed.surface->radius[i];
       reach[v] = limits[v] + radii[v];
-      ahead[v] = radii[v] + max(limits[v], min(kAheadOfLimit * limits[v] + kAheadOfRadius * radii[v], edge));
+      ahead[v] = reach[v] + kAheadOfRadius * radii[v];
     }
   }
-  update_candidates(surfaces, positions, spread_over_features(surfaces, reach, arena),
+  update_candidates(surfaces, positions, moves, spread_over_features(surfaces, reach, arena),
                     spread_over_features(surfaces, ahead, arena), arena, candidates);
   const std::span<FilterVertex> vertices = arena.make<FilterVertex>(count);
-  fill_filter(positions, reach, positions[surfaces[0].first], vertices);
+  fill_filter(positions, moves, reach, positions[surfaces[0].first], vertices);
   const FeatureFilters& filters = select_feature_filters();
-  PairFinder finder(candidates, positions, limits, radii, least_gap, pairs);
+  PairFinder finder(candidates, positions, moves, limits, radii, least_gap, pairs);
   const std::span<std::uint32_t> kept =
       arena.make<std::uint32_t>(max(candidates.corners.size(), candidates.edges.size()) + 8);
   int near = filters.corners(candidates.corners.data(), int(candidates.corners.size()), vertices.data(),

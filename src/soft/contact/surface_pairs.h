@@ -1,9 +1,13 @@
 // Pairs of features of soft surfaces that are near each other: a vertex and a triangle, or two edges, without a common vertex, of one surface or of two.
 //
-// In: surfaces, positions, and a limit for each vertex: how far it may move, m. Out: pairs that matter within these moves, in the order of their keys,
-// which do not depend on positions: those at which forces may act, at a distance of at most the sum of limits and radii of both
-// features; and others that could come nearer than a share of their thickness, `least_gap`. Limit and radius of a feature are the largest
-// of its vertices'. Points of a feature move no further than its vertices, so that no pair is missing that comes nearer.
+// In: surfaces, positions, the planned moves of vertices, and a limit for each vertex: how far from its plan it may end, m. Out: pairs that matter within
+// these moves, in the order of their keys, which do not depend on positions: those at which forces may act, which may come within the sum of
+// limits and radii of both features; and others that could come nearer than a share of their thickness, `least_gap`. Limit and radius
+// of a feature are the largest of its vertices'.
+//
+// Points of two features move against each other by no more than the largest difference of the moves of two of their vertices; so a pair that is farther
+// apart than this difference and the limits is missing. So is one that an axis keeps apart by more than the limits at both ends of the
+// plan, the same way round, since all moves are straight. Features that move alike are pairs only where they are near each other.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -36,7 +40,7 @@ struct SurfacePair {
 
 // `candidates` is brought up to date where it must be; what is found does not depend on it.
 void find_surface_pairs(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
-                        std::span<const float> limits, float least_gap, Arena& arena,
-                        SurfaceCandidates& candidates, Array<SurfacePair>& pairs);
+                        std::span<const DVec3> moves, std::span<const float> limits, float least_gap,
+                        Arena& arena, SurfaceCandidates& candidates, Array<SurfacePair>& pairs);
 
 }  // namespace gyre

@@ -14,25 +14,46 @@ namespace {
 using namespace surface_test;
 using testing_random::Mixed;
 
+Array<DVec3> still(const Surfaces& all) {
+  Array<DVec3> moves;
+  moves.assign(all.positions.size(), DVec3{});
+  return moves;
+}
+
 // Numbers of pairs (vertex and triangle, edge and edge) within a distance.
 struct Counted {
   long corners = 0, edges = 0;
 };
-Counted brute_force_pairs(const Surfaces& all, double most) {
-  Counted out;
+// Calls visit(key) for each pair within `most`; returns how many there are.
+template <class Visit>
+long for_each_near(const Surfaces& all, double most, Visit&& visit) {
+  long found = 0;
   const auto place = [&](std::size_t s, std::uint32_t v) { return all.placed[s].first + v; };
+  const auto add = [&](std::uint64_t kind, std::size_t a, std::size_t b, double distance) {
+    if (!(distance <= most)) return;
+    ++found;
+    visit(kind | std::uint64_t(a) << 32 | std::uint64_t(b));
+  };
+  constexpr std::uint64_t kEdges = std::uint64_t(1) << 63;
+  std::size_t first_triangle = 0, first_edge = 0;
+  Array<std::size_t> triangle_base, edge_base;
+  for (const SoftSurface& surface : all.surfaces) {
+    triangle_base.push_back(first_triangle), edge_base.push_back(first_edge);
+    first_triangle += surface.triangles.size(), first_edge += surface.edges.size();
+  }
   for (std::size_t s = 0; s < all.surfaces.size(); ++s) {
     for (std::size_t t = 0; t < all.surfaces.size(); ++t) {
       for (std::uint32_t v = 0; v < std::uint32_t(all.surfaces[s].vertices); ++v) {
-        for (const SoftTriangle& one : all.surfaces[t].triangles) {
+        for (std::size_t k = 0; k < all.surfaces[t].triangles.size(); ++k) {
+          const SoftTriangle& one = all.surfaces[t].triangles[k];
           std::uint32_t at[3];
           bool common = false;
-          for (int k = 0; k < 3; ++k) at[k] = place(t, one.corner[k]), common |= at[k] == place(s, v);
+          for (int c = 0; c < 3; ++c) at[c] = place(t, one.corner[c]), common |= at[c] == place(s, v);
           if (common) continue;
           const DVec3 p = all.positions[place(s, v)];
           const DVec3 near =
               closest_on_triangle(p, all.positions[at[0]], all.positions[at[1]], all.positions[at[2]]).point;
-          out.corners += length(p - near) <= most;
+          add(0, place(s, v), triangle_base[t] + k, length(p - near));
         }
       }
       if (t < s) continue;
@@ -43,11 +64,16 @@ Counted brute_force_pairs(const Surfaces& all, double most) {
           if (at[0] == at[2] || at[0] == at[3] || at[1] == at[2] || at[1] == at[3]) continue;
           const SegmentPair near = closest_of_segments(all.positions[at[0]], all.positions[at[1]],
                                                        all.positions[at[2]], all.positions[at[3]]);
-          out.edges += length(near.on_a - near.on_b) <= most;
+          add(kEdges, edge_base[s] + i, edge_base[t] + k, length(near.on_a - near.on_b));
         }
       }
     }
   }
+  return found;
+}
+Counted brute_force_pairs(const Surfaces& all, double most) {
+  Counted out;
+  for_each_near(all, most, [&](std::uint64_t key) { (key >> 63 == 0 ? out.corners : out.edges) += 1; });
   return out;
 }
 
@@ -69,7 +95,7 @@ TEST(SurfacePairs, AreThoseOfBruteForce) {
     Array<SurfacePair> pairs;
     for (SoftSurface& surface : all.surfaces) surface.radius.assign(surface.radius.size(), 0.02f);
     // All that are within their thickness, whether they touch or not.
-    find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, candidates, pairs);
+    find_surface_pairs(all.placed, all.positions, still(all), limits, 1.0f, arena, candidates, pairs);
     Counted found;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const SurfacePair& pair = pairs[i];
@@ -101,6 +127,60 @@ TEST(SurfacePairs, AreThoseOfBruteForce) {
   }
 }
 
+// Whatever comes near while vertices move as planned, or within their limits of it, is among the pairs; what is found does not depend on when
+// candidates were made; and a move of all together changes nothing.
+TEST(SurfacePairs, AreThoseThatAPlanBringsTogether) {
+  Mixed random{17};
+  Arena arena;
+  const double near = 0.2 * 0.04;  // the least gap of two radii
+  long met = 0;
+  for (int n = 0; n < 6; ++n) {
+    Surfaces all;
+    const int cells = 4;
+    for (int k = 0; k < 2; ++k)
+      all.add(crumpled(cells, 0.1, 0.1, random), grid_triangles(cells, cells), 0.02f);
+    for (SoftSurface& surface : all.surfaces) surface.radius.assign(surface.radius.size(), 0.02f);
+    const std::size_t count = all.positions.size();
+    Array<DVec3> plan = still(all), moves = still(all), together = still(all);
+    Array<float> limits;
+    for (std::size_t v = 0; v < count; ++v) {
+      limits.push_back(random.single(0.0f, 0.02f));
+      plan[v] = {random.between(-0.2, 0.2), random.between(-0.2, 0.2), random.between(-0.2, 0.2)};
+      // Surfaces fly at 3 m a step, the second of some a little faster.
+      plan[v].x += 3.0 + (n % 2 == 1 && v >= count / 2 ? 0.5 : 0.0);
+      DVec3 off{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+      moves[v] = plan[v] + (double(limits[v]) / length(off)) * off;
+      together[v] = DVec3{0.7, 2.0, 0.1};
+    }
+    SurfaceCandidates candidates, fresh;
+    Array<SurfacePair> pairs, same;
+    Array<DVec3> before = all.positions;
+    for (DVec3& p : before) p += DVec3{random.between(-1e-3, 1e-3), 0.5, random.between(-1e-3, 1e-3)};
+    find_surface_pairs(all.placed, before, plan, limits, 0.2f, arena, candidates, pairs);
+    find_surface_pairs(all.placed, all.positions, plan, limits, 0.2f, arena, candidates, pairs);
+    EXPECT_EQ(candidates.made, 1);
+    find_surface_pairs(all.placed, all.positions, plan, limits, 0.2f, arena, fresh, same);
+    ASSERT_EQ(pairs.size(), same.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(pairs[i].key, same[i].key);
+    for (const double t : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
+      const Array<DVec3> start = all.positions;
+      for (std::size_t v = 0; v < count; ++v) all.positions[v] += t * moves[v];
+      met += for_each_near(all, near, [&](std::uint64_t key) {
+        bool any = false;
+        for (const SurfacePair& pair : pairs) any |= pair.key == key;
+        ASSERT_TRUE(any) << n << " " << t;
+      });
+      all.positions = start;
+    }
+    SurfaceCandidates other;
+    find_surface_pairs(all.placed, all.positions, still(all), limits, 0.2f, arena, other, pairs);
+    find_surface_pairs(all.placed, all.positions, together, limits, 0.2f, arena, other, same);
+    EXPECT_EQ(pairs.size(), same.size());
+    EXPECT_EQ(other.made, 1);
+  }
+  EXPECT_GT(met, 300);
+}
+
 // Of two flat sheets, forces act between vertices and faces and between edges that cross, all straight up, and nowhere twice; and between
 // the rim of the upper sheet and vertices beyond it.
 TEST(SurfacePairs, TouchAlongTheNormalsOfFlatSheets) {
@@ -113,7 +193,7 @@ TEST(SurfacePairs, TouchAlongTheNormalsOfFlatSheets) {
   limits.resize(all.positions.size());
   SurfaceCandidates candidates;
   Array<SurfacePair> pairs;
-  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, candidates, pairs);
+  find_surface_pairs(all.placed, all.positions, still(all), limits, 1.0f, arena, candidates, pairs);
   int corners = 0, rim = 0;
   for (const SurfacePair& pair : pairs) {
     if (!pair.touches) continue;
@@ -143,7 +223,7 @@ TEST(SurfacePairs, OfASheetAtRestAreNone) {
   Array<SurfacePair> pairs;
   Array<float> limits;
   limits.resize(all.positions.size());
-  find_surface_pairs(all.placed, all.positions, limits, 1.0f, arena, candidates, pairs);
+  find_surface_pairs(all.placed, all.positions, still(all), limits, 1.0f, arena, candidates, pairs);
   EXPECT_EQ(pairs.size(), 0u);
 }
 
@@ -170,7 +250,7 @@ TEST(DisplacementBounds, RandomMovesNeverCross) {
     SurfaceCandidates candidates;
     for (int move = 0; move < 30; ++move) {
       Array<SurfacePair> pairs;
-      find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, candidates, pairs);
+      find_surface_pairs(all.placed, all.positions, still(all), limits, 0.2f, arena, candidates, pairs);
       double least = 1.0;
       for (const SurfacePair& pair : pairs) least = min(least, pair.distance / double(pair.thickness));
       // Those that were nearer at the start come no nearer; the rest keeps the least gap.
@@ -215,7 +295,7 @@ TEST(DisplacementBounds, LeaveMovesAloneThatDoNotApproach) {
   held.resize(all.positions.size());
   SurfaceCandidates candidates;
   Array<SurfacePair> pairs;
-  find_surface_pairs(all.placed, all.positions, limits, 0.2f, arena, candidates, pairs);
+  find_surface_pairs(all.placed, all.positions, still(all), limits, 0.2f, arena, candidates, pairs);
   Array<DVec3> moves;
   moves.resize(all.positions.size());
   for (std::size_t v = 25; v < 50; ++v) moves[v] = {0.01, -0.1, 0.0};
