@@ -97,6 +97,15 @@ ROOMS = {
         "liquid": ["solver"],
         "store": ["gas", "liquid"],
     },
+    "dynamics": {
+        "fluid": [],
+        "soft": ["fluid"],
+        "": ["soft"],
+    },
+    "world": {
+        "": [],
+        "query": [""],
+    },
     "io": {
         "codec": [],
         "snapshot": ["codec"],

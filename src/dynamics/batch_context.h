@@ -4,7 +4,7 @@
 
 #include "dynamics/fused_stages.h"
 #include "dynamics/island_batches.h"
-#include "dynamics/soft_solve.h"
+#include "dynamics/soft/soft_solve.h"
 #include "dynamics/worker_partition.h"
 #include "rigid/solve/body_motion_solve.h"
 #include "rigid/solve/contact_solve.h"

@@ -3,7 +3,7 @@
 
 #include "base/float_mode.h"
 #include "collision/contact/pair_update.h"
-#include "dynamics/soft_contacts.h"
+#include "dynamics/soft/soft_contacts.h"
 #include "math/rotation.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/rigid_step.h"

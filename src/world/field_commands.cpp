@@ -1,4 +1,4 @@
-#include "dynamics/soft_contacts.h"
+#include "dynamics/soft/soft_contacts.h"
 #include "world/field_commands.h"
 
 #include "rigid/sleep/island.h"

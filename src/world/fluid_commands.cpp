@@ -1,7 +1,7 @@
 #include "world/fluid_commands.h"
 
-#include "dynamics/fluid_solids.h"
-#include "dynamics/fluid_visitors.h"
+#include "dynamics/fluid/fluid_solids.h"
+#include "dynamics/fluid/fluid_visitors.h"
 #include "fluid/store/fluid_builder.h"
 #include "fluid/store/fluid_motion.h"
 #include "rigid/sleep/island.h"

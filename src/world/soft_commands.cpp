@@ -1,7 +1,7 @@
 #include "world/soft_commands.h"
 
 #include "base/float_mode.h"
-#include "dynamics/soft_contacts.h"
+#include "dynamics/soft/soft_contacts.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
 #include "soft/body/enclosed_gas.h"

@@ -1,9 +1,9 @@
 // One step of the world as a list of stages. Each stage is a function from arrays to arrays in a lower layer.
 #include "base/check.h"
-#include "dynamics/fluid_reaction.h"
-#include "dynamics/fluid_step.h"
-#include "dynamics/fluid_visitors.h"
-#include "dynamics/soft_contacts.h"
+#include "dynamics/fluid/fluid_reaction.h"
+#include "dynamics/fluid/fluid_step.h"
+#include "dynamics/fluid/fluid_visitors.h"
+#include "dynamics/soft/soft_contacts.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/integrate/spring_stability.h"
 #include "rigid/rigid_step.h"

@@ -4,7 +4,7 @@
 
 #include "base/arena/arena.h"
 #include "base/profile/profile.h"
-#include "dynamics/fluid_step.h"
+#include "dynamics/fluid/fluid_step.h"
 #include "dynamics/solve_step.h"
 #include "rigid/rigid_step.h"
 #include "rigid/store/rigid_world.h"

@@ -23,7 +23,7 @@
 #pragma once
 
 #include "base/arena/arena.h"
-#include "dynamics/soft_surfaces.h"
+#include "dynamics/soft/soft_surfaces.h"
 #include "fluid/store/fluid_store.h"
 #include "rigid/store/rigid_world.h"
 #include "soft/solver/soft_step.h"

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "base/container/array.h"
-#include "dynamics/fluid_solids.h"
+#include "dynamics/fluid/fluid_solids.h"
 #include "fluid/store/fluid_store.h"
 #include "rigid/store/rigid_world.h"
 

@@ -1,6 +1,6 @@
-#include "dynamics/soft_surfaces.h"
+#include "dynamics/soft/soft_surfaces.h"
 
-#include "dynamics/soft_solve.h"
+#include "dynamics/soft/soft_solve.h"
 #include "soft/contact/surface_crossings.h"
 
 namespace gyre {

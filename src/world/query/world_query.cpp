@@ -6,7 +6,7 @@
 #include "task/parallel.h"
 #include "world/query_sight.h"
 #include "world/refusal.h"
-#include "world/soft_query.h"
+#include "world/query/soft_query.h"
 #include "world/world_state.h"
 
 namespace gyre {

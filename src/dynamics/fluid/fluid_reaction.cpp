@@ -1,4 +1,4 @@
-#include "dynamics/fluid_reaction.h"
+#include "dynamics/fluid/fluid_reaction.h"
 
 #include "fluid/liquid/liquid_pass.h"
 

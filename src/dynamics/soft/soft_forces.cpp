@@ -1,6 +1,6 @@
-#include "dynamics/soft_forces.h"
+#include "dynamics/soft/soft_forces.h"
 
-#include "dynamics/fluid_step.h"
+#include "dynamics/fluid/fluid_step.h"
 #include "rigid/field/medium.h"
 
 namespace gyre {

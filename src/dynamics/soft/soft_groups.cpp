@@ -1,4 +1,4 @@
-#include "dynamics/soft_groups.h"
+#include "dynamics/soft/soft_groups.h"
 
 #include "base/container/disjoint_sets.h"
 

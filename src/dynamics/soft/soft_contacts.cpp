@@ -1,7 +1,7 @@
-#include "dynamics/soft_contacts.h"
+#include "dynamics/soft/soft_contacts.h"
 
 #include "collision/broadphase/fat_box.h"
-#include "dynamics/soft_groups.h"
+#include "dynamics/soft/soft_groups.h"
 #include "geometry/query/point_query.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"

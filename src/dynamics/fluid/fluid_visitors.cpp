@@ -1,4 +1,4 @@
-#include "dynamics/fluid_visitors.h"
+#include "dynamics/fluid/fluid_visitors.h"
 
 #include "base/container/sort.h"
 #include "geometry/query/point_query.h"

@@ -1,4 +1,4 @@
-#include "dynamics/fluid_step.h"
+#include "dynamics/fluid/fluid_step.h"
 
 #include "fluid/gas/gas_reading.h"
 #include "fluid/liquid/liquid_reading.h"

@@ -6,7 +6,7 @@
 // empty the impulse is lost.
 #pragma once
 
-#include "dynamics/fluid_step.h"
+#include "dynamics/fluid/fluid_step.h"
 #include "soft/store/soft_store.h"
 
 #include <vector>

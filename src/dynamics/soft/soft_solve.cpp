@@ -1,6 +1,6 @@
-#include "dynamics/soft_solve.h"
+#include "dynamics/soft/soft_solve.h"
 
-#include "dynamics/soft_forces.h"
+#include "dynamics/soft/soft_forces.h"
 #include "math/rotation.h"
 #include "rigid/batch/solve_batch.h"
 #include "soft/solver/vertex_limits.h"

@@ -1,4 +1,4 @@
-#include "world/soft_query.h"
+#include "world/query/soft_query.h"
 
 #include "geometry/shape/shape.h"
 #include "math/rotation.h"

@@ -1,4 +1,4 @@
-#include "dynamics/fluid_solids.h"
+#include "dynamics/fluid/fluid_solids.h"
 
 #include "base/hash.h"
 #include "geometry/query/point_query.h"
