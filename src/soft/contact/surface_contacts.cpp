@@ -255,7 +255,7 @@ void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings
     row = make_row(pair, i, vertices, {});
     row.target = min(settings.pushout * overlap, kMaxPushOfThickness * pair.thickness);
   }
-  for (int n = 0; n < settings.iterations; ++n) {
+  for (int n = 0; n < settings.push_iterations; ++n) {
     for (Row& row : rows.first(used)) solve_push(row, contacts.pushes);
   }
 }

@@ -38,9 +38,10 @@ struct SurfaceVertices {
 };
 
 struct SurfaceContactSettings {
-  float step = 0.0f;  // s: of the sub-step
-  int iterations = 4;
-  float pushout = 0.25f;  // share of the overlap removed in a sub-step
+  float step = 0.0f;        // s: of the sub-step
+  int iterations = 16;      // sweeps over the rows
+  int push_iterations = 4;  // and over those of the pushout
+  float pushout = 0.25f;    // share of the overlap removed in a sub-step
   int most_rounds =
       4;  // of finding pairs, for vertices that end farther from their plan than they were looked for
   BoundSettings bounds{};
