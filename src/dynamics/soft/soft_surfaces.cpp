@@ -150,18 +150,27 @@ void bound_soft_surfaces(SoftSolve& s, int, int) {
   });
   all.report =
       move_surfaces(all.placed, vertices_of(all), all.targets, settings_of(s), all.arena, all.contacts);
+  // Velocities follow what the bounds took, or they would go on stretching the body, whose momentum stays.
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     Particles& p = entry_at(s, member).body.particles;
     const double rate = 1.0 / double(s.h);
-    for (int i = 0; i < p.count; ++i) {
+    double mass = 0.0;
+    DVec3 momentum;
+    const auto held_back = [&](int i) {
       const std::uint32_t v = first + std::uint32_t(i);
-      p.set_place(i, all.positions[v]);
+      return all.positions[v] - all.targets[v] - DVec3(all.contacts.pushes[v]);
+    };
+    for (int i = 0; i < p.count; ++i) {
       if (p.loose[i] == 0.0f) continue;
-      // Velocities follow what the bounds took, or they would go on stretching the body.
-      const DVec3 held_back = all.positions[v] - all.targets[v] - DVec3(all.contacts.pushes[v]);
-      if (held_back == DVec3{}) continue;
-      p.vx[i] += float(rate * held_back.x), p.vy[i] += float(rate * held_back.y),
-          p.vz[i] += float(rate * held_back.z);
+      mass += double(p.mass[i]);
+      momentum += (rate * double(p.mass[i])) * held_back(i);
+    }
+    const DVec3 mean = momentum == DVec3{} ? DVec3{} : momentum / mass;
+    for (int i = 0; i < p.count; ++i) {
+      p.set_place(i, all.positions[first + std::uint32_t(i)]);
+      if (p.loose[i] == 0.0f) continue;
+      const DVec3 change = rate * held_back(i) - mean;
+      if (!(change == DVec3{})) p.set_velocity(i, p.velocity(i) + to_float(change));
     }
   });
 }
