@@ -2,6 +2,8 @@
 
 #include "dynamics/soft/soft_solve.h"
 #include "soft/contact/surface_crossings.h"
+#include "soft/solver/rigid_modes.h"
+#include "soft/solver/soft_pass.h"
 
 namespace gyre {
 
@@ -53,6 +55,37 @@ void give_owed(SoftSolve& s) {
     add_change(entry, work.step, work.change.view(), 1.0f);
     find_carried_steps(s, member);
   });
+}
+
+// Puts the vertices of a member where the bounds let them. Velocities follow what the bounds took, or they would go on stretching the body; of a
+// body that nothing holds the linear and angular momentum stay.
+void place_vertices(SoftSolve& s, std::uint32_t member, std::uint32_t first) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  SoftBody& body = entry_at(s, member).body;
+  Particles& p = body.particles;
+  const double rate = 1.0 / double(s.h);
+  const VectorRows change = make_vectors(all.arena, p.x.size()), none = make_vectors(all.arena, p.x.size());
+  for (std::size_t i = 0; i < p.x.size(); ++i) {
+    change.x[i] = change.y[i] = change.z[i] = none.x[i] = none.y[i] = none.z[i] = 0.0f;
+  }
+  bool any = false;
+  DVec3 moment;  // of the displacements, at the velocities of the vertices
+  for (int i = 0; i < p.count; ++i) {
+    const std::uint32_t v = first + std::uint32_t(i);
+    p.set_place(i, all.positions[v]);
+    if (p.loose[i] == 0.0f) continue;
+    const DVec3 moved = all.positions[v] - all.targets[v], held_back = moved - DVec3(all.contacts.pushes[v]);
+    if (moved == DVec3{}) continue;
+    any = true;
+    moment += double(p.mass[i]) * cross(DVec3(p.velocity(i)), moved);
+    change.x[i] = float(rate * held_back.x), change.y[i] = float(rate * held_back.y),
+    change.z[i] = float(rate * held_back.z);
+  }
+  if (!any) return;
+  if (body.held.empty()) keep_momentum(p, none, change, 0.0, moment);
+  for (int i = 0; i < p.count; ++i) {
+    if (p.loose[i] != 0.0f) p.set_velocity(i, p.velocity(i) + Vec3{change.x[i], change.y[i], change.z[i]});
+  }
 }
 
 }  // namespace
@@ -150,29 +183,7 @@ void bound_soft_surfaces(SoftSolve& s, int, int) {
   });
   all.report =
       move_surfaces(all.placed, vertices_of(all), all.targets, settings_of(s), all.arena, all.contacts);
-  // Velocities follow what the bounds took, or they would go on stretching the body, whose momentum stays.
-  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
-    Particles& p = entry_at(s, member).body.particles;
-    const double rate = 1.0 / double(s.h);
-    double mass = 0.0;
-    DVec3 momentum;
-    const auto held_back = [&](int i) {
-      const std::uint32_t v = first + std::uint32_t(i);
-      return all.positions[v] - all.targets[v] - DVec3(all.contacts.pushes[v]);
-    };
-    for (int i = 0; i < p.count; ++i) {
-      if (p.loose[i] == 0.0f) continue;
-      mass += double(p.mass[i]);
-      momentum += (rate * double(p.mass[i])) * held_back(i);
-    }
-    const DVec3 mean = momentum == DVec3{} ? DVec3{} : momentum / mass;
-    for (int i = 0; i < p.count; ++i) {
-      p.set_place(i, all.positions[first + std::uint32_t(i)]);
-      if (p.loose[i] == 0.0f) continue;
-      const DVec3 change = rate * held_back(i) - mean;
-      if (!(change == DVec3{})) p.set_velocity(i, p.velocity(i) + to_float(change));
-    }
-  });
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) { place_vertices(s, member, first); });
 }
 
 }  // namespace gyre

@@ -25,7 +25,7 @@ DVec3 turn_of(const double (&inertia)[6], DVec3 momentum) {
 }  // namespace
 
 void keep_momentum(const Particles& particles, const VectorRows& impulses, const VectorRows& change,
-                   double ahead) {
+                   double ahead, DVec3 moment) {
   double mass = 0.0;
   DVec3 first{}, linear{};
   const DVec3 origin = particles.count > 0 ? particles.place(0) : DVec3{};
@@ -42,7 +42,7 @@ void keep_momentum(const Particles& particles, const VectorRows& impulses, const
   if (!(mass > 0.0)) return;
   const DVec3 center = origin + first / mass;
   double inertia[6] = {};
-  DVec3 angular{};
+  DVec3 angular = moment;
   for (int i = 0; i < particles.count; ++i) {
     const double m = double(particles.mass[i]);
     const DVec3 arm = place(i) - center;
