@@ -50,7 +50,8 @@ void give_owed(SoftSolve& s) {
       work.impulses[i] = owed;
       owed = {};
     }
-    if (!any) return;
+    const SoftIntegrator scheme = entry_at(s, member).settings().integrator;
+  if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
     respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, work.tasks);
     add_change(entry, work.step, work.change.view(), 1.0f);
     find_carried_steps(s, member);
@@ -58,7 +59,7 @@ void give_owed(SoftSolve& s) {
 }
 
 // Puts the vertices of a member where the bounds let them. Velocities follow what the bounds took, or they would go on stretching the body; of a
-// body that nothing holds the linear and angular momentum stay.
+// body that nothing holds the linear and angular momentum stay. Explicit schemes keep their velocities: what they gain is their lesson.
 void place_vertices(SoftSolve& s, std::uint32_t member, std::uint32_t first) {
   SoftSurfaces& all = s.scratch->surfaces;
   SoftBody& body = entry_at(s, member).body;
@@ -81,7 +82,8 @@ void place_vertices(SoftSolve& s, std::uint32_t member, std::uint32_t first) {
     change.x[i] = float(rate * held_back.x), change.y[i] = float(rate * held_back.y),
     change.z[i] = float(rate * held_back.z);
   }
-  if (!any) return;
+  const SoftIntegrator scheme = entry_at(s, member).settings().integrator;
+  if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
   if (body.held.empty()) keep_momentum(p, none, change, 0.0, moment);
   for (int i = 0; i < p.count; ++i) {
     if (p.loose[i] != 0.0f) p.set_velocity(i, p.velocity(i) + Vec3{change.x[i], change.y[i], change.z[i]});

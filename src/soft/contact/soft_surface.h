@@ -41,8 +41,6 @@ struct SoftSurface {
   float static_friction = 0.4f;
   float dynamic_friction = 0.4f;
   bool self_collision = true;
-  // New faces begin on each other: pairs of this surface nearer than half the least gap are none until they have parted. All others keep the least gap.
-  bool breaks = false;
   bool touches_soft = true;  // or it is there for queries alone
 };
 

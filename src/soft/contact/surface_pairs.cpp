@@ -40,8 +40,7 @@ class PairFinder {
     };
     const double limit = largest(limits_), radius = largest(radii_), far = length_squared(closest.point);
     const double move = largest_difference(v, 1);
-    if (far > square(limit + radius + move) || stay_apart(v, 1, limit + radius) || is_new(one, 1, far))
-      return;
+    if (far > square(limit + radius + move) || stay_apart(v, 1, limit + radius)) return;
     const PlacedSurface& b = candidates_.surfaces[one.surface_b];
     const bool touches = touches_triangle(p, closest, b, one.b - candidates_.bases[one.surface_b].triangle);
     if (!touches && far > square(limit + move + least_gap_ * radius)) return;
@@ -66,8 +65,7 @@ class PairFinder {
     };
     const double limit = largest(limits_), radius = largest(radii_), far = length_squared(apart);
     const double move = largest_difference(v, 2);
-    if (far > square(limit + radius + move) || stay_apart(v, 2, limit + radius) || is_new(one, 2, far))
-      return;
+    if (far > square(limit + radius + move) || stay_apart(v, 2, limit + radius)) return;
     const bool touches = closest.s > 0.0 && closest.s < 1.0 && closest.t > 0.0 && closest.t < 1.0 &&
                          touches_edge(one.surface_a, one.a, origin + closest.on_a, -apart) &&
                          touches_edge(one.surface_b, one.b, origin + closest.on_b, apart);
@@ -81,16 +79,6 @@ class PairFinder {
   }
 
  private:
-  // True for features of a crack that has not opened.
-  bool is_new(const SurfaceCandidate& one, int on_a, double far) const {
-    if (one.surface_a != one.surface_b || !candidates_.surfaces[one.surface_a].surface->breaks) return false;
-    float least[2] = {radii_[one.vertex[0]], radii_[one.vertex[3]]};
-    for (int k = 0; k < 4; ++k) {
-      float& of = least[k < on_a ? 0 : 1];
-      of = min(of, radii_[one.vertex[k]]);
-    }
-    return far < square(0.5 * least_gap_ * double(least[0] + least[1]));
-  }
   // Of the moves of a vertex of A, the first `on_a`, and one of B.
   double largest_difference(const std::uint32_t* v, int on_a) const {
     double most = 0.0;

@@ -248,7 +248,10 @@ std::shared_ptr<const SoftSurface> make_surface(const SoftEntry& entry, const So
   surface.dynamic_friction = settings.dynamic_friction;
   if (const ClothDef* const cloth = std::get_if<ClothDef>(&def))
     surface.self_collision = cloth->self_collision;
-  if (const SolidDef* const solid = std::get_if<SolidDef>(&def)) surface.breaks = solid->fracture_stress > 0.0f;
+  // New faces lie on each other, which the bounds on moves would take for a crossing.
+  if (const SolidDef* const solid = std::get_if<SolidDef>(&def);
+      solid != nullptr && solid->fracture_stress > 0.0f)
+    surface.self_collision = false;
   return std::make_shared<const SoftSurface>(std::move(surface));
 }
 
