@@ -169,9 +169,11 @@ TEST_F(View, ServesTheViewerTheSceneAndItsMeshes) {
 }
 
 TEST_F(View, ShowsStandardInput) {
-  RunningView view(arguments({"-"}), folder_, "s.gyre.json");
+  const std::string plain = R"({"gyre_scene": 1, "name": "plain", "bodies": [{"name": "box", "shapes": [{"type": "sphere", "radius": 1}]}]})";
+  write("plain.gyre.json", plain);
+  RunningView view(arguments({"-"}), folder_, "plain.gyre.json");
   EXPECT_EQ(view.address, "http://127.0.0.1:" + std::to_string(view.port) + "/?file=/files/input.gyre.json");
-  EXPECT_EQ(body_of(view.get("/files/input.gyre.json")), kScene);
+  EXPECT_EQ(body_of(view.get("/files/input.gyre.json")), plain);
   EXPECT_EQ(view.finish(), 0);
 }
 

@@ -28,8 +28,6 @@ struct LiquidGrid {
   Array<float>
       surface;  // m, at centres: distance from the surface, negative within; right up to a cell and no less beyond
   Array<float> pressure;  // m^2/s^2, at centres: over density, relative to the air
-  // The part of the pressure by whose half step particles are ahead; empty: they are not.
-  Array<float> lead;
 
   int particles() const { return int(volume.size()); }
 };

@@ -7,13 +7,11 @@ namespace gyre {
 
 namespace {
 
-constexpr int kX = 0, kRight = 1, kP = 2, kQ = 3, kZ = 4, kOther = 5, kBefore = 6;  // scratch
+constexpr int kX = 0, kRight = 1, kP = 2, kQ = 3, kZ = 4, kOther = 5;  // scratch
 
 // Of the room that is too full or not full enough this share is made up for in a sub-step: all at once would overshoot where particles lie unevenly.
 constexpr float kSpreadShare = 0.25f;
 constexpr float kSpreadTolerance = 0.02f;  // of a full cell: what is left alone
-// Of the square of an edge: how far viscosity may reach in a sub-step for particles to go ahead of it.
-constexpr float kThinShare = 0.02f;
 constexpr float kMaxSpread = 0.5f;  // of a full cell, that counts
 
 PressureVectors vectors_of(const LiquidPass& pass) {
@@ -129,26 +127,15 @@ PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& sett
   // From the pressure of the step before.
   float* const pressure = grid.pressure.data();
   const float step = pass.step;
-  float* const before_it = pass.scratch(kBefore);
   const bool has_tension = settings.surface_tension > 0.0f;
   const LiquidCell* const cell = memory.cell.data();
   each_row(pass, -1, [&](int c, int, int) {
     for (int i = c; i < c + shape.cells[0]; ++i) {
       pressure[i] = active[i] > 0.0f || (has_tension && cell[i] == LiquidCell::air) ? pressure[i] : 0.0f;
       vectors.x[i] = step * pressure[i];
-      before_it[i] = pressure[i];
     }
   });
-  if (grid.lead.empty()) {
-    subtract_liquid_gradient(pass, vectors.x, 1.0f, grid.velocity);
-  } else {
-    // Particles have brought a part of it along.
-    const float* const lead = grid.lead.data();
-    each_row(pass, -1, [&](int c, int, int) {
-      for (int i = c; i < c + shape.cells[0]; ++i) vectors.q[i] = vectors.x[i] - 0.5f * step * lead[i];
-    });
-    subtract_liquid_gradient(pass, vectors.q, 1.0f, grid.velocity);
-  }
+  subtract_liquid_gradient(pass, vectors.x, 1.0f, grid.velocity);
   if (solids) push_bodies(vectors.x, memory.coupling);
   find_open_inflow(pass, vectors.r);
   if (solids) add_solid_inflow(pass, vectors.r);
@@ -170,42 +157,6 @@ PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& sett
   }
   set_closed_faces(pass, grid.velocity);
   return report;
-}
-
-bool leads(const LiquidPass& pass, const LiquidSettings& settings) {
-  if (settings.motion.turns() || (pass.solids.present() && pass.memory.coupling.any_moves)) return false;
-  const float edge = pass.box().cell.x;
-  return settings.viscosity * pass.step < kThinShare * settings.density * edge * edge;
-}
-
-void lead_velocity(const LiquidPass& pass, const LiquidSettings& settings) {
-  const GridShape& shape = pass.shape();
-  if (!leads(pass, settings)) return pass.grid.lead.clear();
-  pass.grid.lead.resize(std::size_t(shape.size), 0.0f);
-  float* const lead = pass.grid.lead.data();
-  const float *const pressure = pass.grid.pressure.data(), *const before = pass.scratch(kBefore);
-  each_row(pass, -1, [&](int c, int, int) {
-    for (int i = c; i < c + shape.cells[0]; ++i) {
-      const float least = absolute(pressure[i]) < absolute(before[i]) ? pressure[i] : before[i];
-      lead[i] = pressure[i] * before[i] > 0.0f ? least : 0.0f;
-    }
-  });
-  subtract_liquid_gradient(pass, lead, 0.5f * pass.step, pass.grid.velocity);
-  const LiquidCell* const cell = pass.memory.cell.data();
-  for (int axis = 0; axis < 3; ++axis) {
-    const float change = 0.5f * pass.step * part_along(settings.gravity, axis);
-    if (pass.flat(axis) || change == 0.0f) continue;
-    const float* const open = pass.memory.open[axis].data();
-    float* const velocity = pass.grid.velocity[axis].data();
-    const int step = shape.stride(axis);
-    each_row(pass, axis, [&](int c, int j, int k) {
-      if (is_dry(pass, axis, j, k)) return;
-      for (int f = c; f < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++f) {
-        const bool wet = cell[f] == LiquidCell::liquid || cell[f - step] == LiquidCell::liquid;
-        if (wet && open[f] > 0.0f) velocity[f] += change;
-      }
-    });
-  }
 }
 
 PressureReport find_carrier(const LiquidPass& pass) {

@@ -160,17 +160,13 @@ void hold_sources(const LiquidPass& pass, std::span<const LiquidEmitter> emitter
   }
 }
 
-// Half of it where the other half follows at the end of the sub-step, see lead_velocity.
-void add_gravity(const LiquidPass& pass, const LiquidSettings& settings) {
+void add_gravity(const LiquidPass& pass, Vec3 gravity) {
   for (int axis = 0; axis < 3; ++axis) {
-    const float change = part_along(settings.gravity, axis) * pass.step;
+    const float change = part_along(gravity, axis) * pass.step;
     if (pass.flat(axis) || change == 0.0f) continue;
     float* const velocity = pass.grid.velocity[axis].data();
-    const float* const open = pass.memory.open[axis].data();
-    const float part = leads(pass, settings) ? 0.5f * change : change;
     each_row(pass, axis, [&](int c, int, int) {
-      for (int f = c; f < c + pass.shape().cells[0] + (axis == 0 ? 1 : 0); ++f)
-        velocity[f] += open[f] > 0.0f ? part : change;
+      for (int f = c; f < c + pass.shape().cells[0] + (axis == 0 ? 1 : 0); ++f) velocity[f] += change;
     });
   }
 }
@@ -219,7 +215,7 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
   find_surface(pass);
   build_liquid_matrix(pass);
   if (settings.blend < 1.0f) save_velocity(pass);
-  add_gravity(pass, settings);
+  add_gravity(pass, settings.gravity);
   if (settings.viscosity > 0.0f) add_liquid_viscosity(pass, settings.viscosity / settings.density);
   if (settings.surface_tension > 0.0f)
     set_surface_pressure(pass, settings.surface_tension / settings.density);
@@ -229,7 +225,6 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
   report.divergence = largest_liquid_divergence(pass);
   const int layers = 2 + int(settings.max_cells + 0.999f);
   report.iterations += find_carrier(pass).iterations;
-  lead_velocity(pass, settings);
   find_layers(pass, layers);
   extrapolate(pass, pass.grid.velocity, pass.memory.drift);
   hold_sources(pass, emitters, time);

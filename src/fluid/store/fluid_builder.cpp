@@ -425,7 +425,7 @@ bool fits_definition(const FluidEntry& entry) {
   const LiquidGrid& liquid = entry.liquid;
   const std::size_t count = liquid.volume.size();
   bool good = count <= std::size_t(kMaxLiquidParticles) && liquid.surface.size() == size &&
-              liquid.pressure.size() == size && (liquid.lead.empty() || liquid.lead.size() == size);
+              liquid.pressure.size() == size;
   for (const Array<float>& faces : liquid.velocity) good = good && faces.size() == size;
   for (const Array<float>& column : liquid.motion) good = good && column.size() == count;
   for (const Array<float>& column : liquid.affine) good = good && column.size() == count;

@@ -88,7 +88,7 @@ void for_each_fluid_array(Entry& entry, Visitor&& visit) {
 // State that files of older versions lack, and which then is as in a new fluid.
 template <class Entry, class Visitor>
 void for_each_later_fluid_array(Entry& entry, Visitor&& visit) {
-  visit(entry.visitors), visit(entry.frames), visit(entry.liquid.lead);
+  visit(entry.visitors), visit(entry.frames);
 }
 
 }  // namespace gyre
