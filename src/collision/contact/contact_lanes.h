@@ -140,7 +140,7 @@ GYRE_INLINE void load_group(const PairInput* pairs, int count, Group<W>& group) 
     record[i] = floats(pair.contact);
     group.counts[i] = pair.contact->manifold_count;
     const bool bounces = pair.contact->manifold_room == 1 && pair.contact->surface.restitution > 0.0f;
-    group.max_sizes.set(i, bounces ? kUnbounded : kMaxApproach);
+    group.max_sizes.set(i, bounces ? kMaxBounceApproach : kMaxApproach);
   }
   group.a = load_side<W>(bodies_a, centers_a);
   group.b = load_side<W>(bodies_b, centers_b);

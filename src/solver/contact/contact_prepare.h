@@ -23,6 +23,8 @@ constexpr float kLongestMean = 1.0f;
 // In sizes of the contact: paths that deviate less from their tangent in a step count as straight. What lies on a turntable then creeps
 // outward by 3e-4 sizes a second at most, at 60 steps a second.
 constexpr float kMinBend = 0.5e-5f;
+// What a support carries turns with it, up to this share of its angular velocity.
+constexpr float kTogether = 0.25f;
 // A patch narrower than this share of the size has no spinning friction.
 constexpr float kMinPatch = 1.0e-3f;
 // Friction coefficients are bounded by this, because their inverse must not vanish.
@@ -423,12 +425,14 @@ __attribute__((noinline)) void find_carried(ContactBlock<W>& block, Mask<W> near
   const Wide<W> zero(0.0f), half_step_squared(0.5f * step * step);
   const PairMotion<W> pair = load_pair<W>(block);
   const Wide<W> radius = length(arms.from_a - arms.from_b);
-  const auto bends = [&](Vec3W<W> spin) {
-    return half_step_squared * length_squared(spin) * radius > Wide<W>(kMinBend) * size;
+  const Vec3W<W> difference = pair.angular_a - pair.angular_b;
+  const auto carries = [&](Vec3W<W> spin) {
+    return (half_step_squared * length_squared(spin) * radius > Wide<W>(kMinBend) * size) &
+           (length_squared(difference) < Wide<W>(kTogether * kTogether) * length_squared(spin));
   };
   const auto pairs = Mask<W>::of_bits(std::uint32_t(block.has_a & block.has_b));
-  block.carried_a = lane_bits<W>(pairs & ~nearer_a & bends(pair.angular_a));
-  block.carried_b = lane_bits<W>(pairs & nearer_a & bends(pair.angular_b));
+  block.carried_a = lane_bits<W>(pairs & ~nearer_a & carries(pair.angular_a));
+  block.carried_b = lane_bits<W>(pairs & nearer_a & carries(pair.angular_b));
   block.cold->moved_a = block.cold->moved_b = {zero, zero, zero};
 }
 
