@@ -20,11 +20,6 @@ constexpr float kLowerShare = 0.7f;
 constexpr float kShortestMean = 0.5f;
 constexpr float kLongestMean = 1.0f;
 
-// In sizes of the contact: paths that deviate less from their tangent in a step count as straight. What lies on a turntable then creeps
-// outward by 3e-4 sizes a second at most, at 60 steps a second.
-constexpr float kMinBend = 0.5e-5f;
-// What a support carries turns with it, up to this share of its angular velocity.
-constexpr float kTogether = 0.25f;
 // A patch narrower than this share of the size has no spinning friction.
 constexpr float kMinPatch = 1.0e-3f;
 // Friction coefficients are bounded by this, because their inverse must not vanish.
