@@ -26,7 +26,10 @@ double slip_on_table(Random& random, BodyType type, double seconds) {
                                        .angular_velocity = {0, rate, 0},
                                        .mass = 1.0e4f * size * size * size},
                                       {.geometry = Box{half}, .material = rough});
-  if (type == BodyType::dynamic) world.add_joint(HingeDef{.b = table, .axis = {0, 1, 0}});
+  // A dynamic one turns on smooth ground.
+  if (type == BodyType::dynamic)
+    world.add_body({.type = BodyType::fixed, .pose = {{0, -1.5 * double(size), 0}, {}}},
+                   {.geometry = Box{{3.0f * half.x, 0.5f * size, 3.0f * half.x}}, .material = surface(0.0f)});
   const Vec3 sides{random.real(0.5f, 1.0f) * size, random.real(0.3f, 0.6f) * size,
                    random.real(0.5f, 1.0f) * size};
   const float mass = 2.0f * size * size * size;

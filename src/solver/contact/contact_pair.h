@@ -231,10 +231,8 @@ struct BodyDisplacement {
 };
 
 // In sizes of the contact: paths that deviate less from their tangent in a step count as straight. What lies on a turntable then creeps
-// outward by 3e-4 sizes a second at most, at 60 steps a second.
-constexpr float kMinBend = 0.5e-5f;
-// What a support carries turns with it, up to this share of its angular velocity.
-constexpr float kTogether = 0.25f;
+// outward by 6e-4 sizes a second at most, at 60 steps a second.
+constexpr float kMinBend = 1.0e-5f;
 
 // A support that turns carries what lies on it: the point of contact stays where it is on the body whose centre is nearer, and moves over
 // the other one, whose arm changes by the motion of the two centres against each other. Both bodies then act at one point, so their

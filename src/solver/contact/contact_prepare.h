@@ -420,14 +420,12 @@ __attribute__((noinline)) void find_carried(ContactBlock<W>& block, Mask<W> near
   const Wide<W> zero(0.0f), half_step_squared(0.5f * step * step);
   const PairMotion<W> pair = load_pair<W>(block);
   const Wide<W> radius = length(arms.from_a - arms.from_b);
-  const Vec3W<W> difference = pair.angular_a - pair.angular_b;
-  const auto carries = [&](Vec3W<W> spin) {
-    return (half_step_squared * length_squared(spin) * radius > Wide<W>(kMinBend) * size) &
-           (length_squared(difference) < Wide<W>(kTogether * kTogether) * length_squared(spin));
+  const auto bends = [&](Vec3W<W> spin) {
+    return half_step_squared * length_squared(spin) * radius > Wide<W>(kMinBend) * size;
   };
   const auto pairs = Mask<W>::of_bits(std::uint32_t(block.has_a & block.has_b));
-  block.carried_a = lane_bits<W>(pairs & ~nearer_a & carries(pair.angular_a));
-  block.carried_b = lane_bits<W>(pairs & nearer_a & carries(pair.angular_b));
+  block.carried_a = lane_bits<W>(pairs & ~nearer_a & bends(pair.angular_a));
+  block.carried_b = lane_bits<W>(pairs & nearer_a & bends(pair.angular_b));
   block.cold->moved_a = block.cold->moved_b = {zero, zero, zero};
 }
 
@@ -467,8 +465,6 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   gather_columns<4, W>(records.constraint, kConstraintSize, in);
   const Wide<W> size = in[0];
   block.pushout_speed = in[1];
-  block.carried_a = block.carried_b = 0;
-  if ((block.has_a & block.has_b) != 0) find_carried<W>(block, nearer_a, arms[0], size, settings.step);
   gather_columns<4, W>(records.constraint, kConstraintVelocity, in);
   const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
   // Not -0: a surface at rest is left out, and that must give the same bits.
@@ -480,6 +476,8 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const WideInt<W> none(0), kinds = bit_pattern(in[3]);
   const Mask<W> rigid = (kinds & WideInt<W>(0xff)) != none;
   block.jointed = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
+  block.carried_a = block.carried_b = 0;
+  if ((block.has_a & block.has_b) != 0) find_carried<W>(block, nearer_a, arms[0], size, settings.step);
   block.speculative = lane_bits<W>((kinds & WideInt<W>(0xff0000)) != none);
   block.pushing = 0;
   Wide<W> age;
