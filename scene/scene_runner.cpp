@@ -205,7 +205,7 @@ void SceneRunner::put_present_state(SceneBody& body, BodyId id) const {
   body.forces = std::move(left);
 }
 
-// What the program may have changed since.
+// State that the program may have changed since.
 void SceneRunner::put_present_settings(SceneBody& body, BodyId id) const {
   BodyDef& def = body.def;
   def.linear_damping = world_.linear_damping(id), def.angular_damping = world_.angular_damping(id);

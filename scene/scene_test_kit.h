@@ -1,4 +1,4 @@
-// What the tests of scenes share: refusals with the place and the words that they must have, and scenes that run.
+// Helpers of the tests of scenes: refusals with the place and the words that they must have, and scenes that run.
 #pragma once
 
 #include "scene/scene_reader.h"

@@ -17,7 +17,7 @@
 
 namespace {
 
-// Of what takes long to make a world of; of decompositions, which the writers get split.
+// Limits of inputs that take long to make a world of, and of decompositions, which the writers get split.
 bool is_small(const gyre::Scene& scene) {
   for (const gyre::SceneBody& body : scene.bodies) {
     for (const gyre::SceneShape& shape : body.shapes) {

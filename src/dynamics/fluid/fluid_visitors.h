@@ -1,4 +1,4 @@
-// Who is inside a fluid: bodies of which some point is, and soft matter of which some vertex is. The region of a liquid is the room within its
+// Visitors of a fluid: bodies with a point inside it, and soft matter with a vertex inside it. The region of a liquid is the room within its
 // surface, that of a gas its box.
 //
 // In: the fluid, shapes at their poses, vertices. Out: a list by index. A body is found where the point of it that is nearest to the centre of a

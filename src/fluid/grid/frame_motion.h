@@ -14,7 +14,7 @@ struct FrameMotion {
 
   bool moves() const { return velocity != Vec3{} || spin != Vec3{}; }
   bool turns() const { return spin != Vec3{}; }
-  // Of what is at rest in the world, at a place of the box.
+  // The velocity of a point at rest in the world, at a place of the box.
   Vec3 rest_at(Vec3 place) const { return -(velocity + cross(spin, place)); }
   // m/s^2, away from the axis.
   Vec3 outward(Vec3 place) const { return -cross(spin, cross(spin, place - center)); }

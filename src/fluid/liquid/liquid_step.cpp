@@ -171,7 +171,7 @@ void add_gravity(const LiquidPass& pass, Vec3 gravity) {
   }
 }
 
-// What a box that turns adds to particles: their velocity turns against it by twice its angle, and they are drawn away from its axis.
+// A box that turns adds this to particles: their velocity turns against it by twice its angle, and they are drawn away from its axis.
 void turn_particles(const LiquidPass& pass, const FrameMotion& motion) {
   constexpr int kBlock = 1024;
   LiquidGrid& grid = pass.grid;

@@ -26,7 +26,7 @@ void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, s
 // pressure, within walls as beyond open sides, and is left out of both.
 void add_buoyancy(const GasPass& pass, Vec3 gravity, float buoyancy);
 
-// What a box that turns adds: velocities turn against it by twice its angle, and are drawn away from its axis.
+// A box that turns adds this: velocities turn against it by twice its angle, and are drawn away from its axis.
 void add_turning(const GasPass& pass);
 
 // Velocity += step strength h (N x w), w the vorticity, N the direction in which it grows (J. Steinhoff, D. Underhill, 1994; R. Fedkiw, J. Stam,

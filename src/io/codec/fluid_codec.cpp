@@ -12,7 +12,7 @@ void write_fluids(ByteWriter& out, const FluidStore& fluids) {
     write_fluid_def(out, *entry.def);
     for_each_fluid_array(entry, [&](const auto& array) { write_array(out, array); });
   });
-  // What came later stands behind all fluids, and only where there is some of it.
+  // Later additions stand behind all fluids, and only where there are any.
   bool any = false;
   fluids.for_each([&](const FluidEntry& entry) {
     for_each_later_fluid_array(entry, [&](const auto& array) { any = any || !array.empty(); });

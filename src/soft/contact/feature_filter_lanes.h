@@ -54,7 +54,7 @@ GYRE_INLINE Wide<W> difference_of(Vec3W<W> a, Vec3W<W> b) {
   const Vec3W<W> d = a - b;
   return dot(d, d);
 }
-// What a difference of moves adds to the reach, with its rounding.
+// A difference of moves adds this to the reach, with its rounding.
 template <int W>
 GYRE_INLINE Wide<W> reach_of_moves(Wide<W> squared) {
   return Wide<W>(1.0f + 0x1p-20f) * sqrt(squared);

@@ -67,7 +67,7 @@ bool keeps_plan(std::span<const PlacedSurface> surfaces, std::span<const float> 
     const double far = kRounding * length(moves[v] - contacts.plan[v]);
     if (far <= double(contacts.limits[v])) continue;
     keeps = false;
-    // What ends elsewhere a second time may go to and fro; it is then looked for at both places.
+    // A vertex that ends elsewhere a second time may go to and fro; it is then looked for at both places.
     if (inverse_mass[v] > 0.0f && contacts.rounds > 1)
       limits[v] = max(limits[v], kLimitOfChange * float(far));
   }

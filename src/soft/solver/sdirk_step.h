@@ -20,7 +20,7 @@ namespace gyre {
 
 constexpr double kSdirkShare = 0.29289321881345248;  // c
 
-// What the stages leave for the end of the sub-step. Its memory is the arena's.
+// Results of the stages for the end of the sub-step. Their memory is the arena's.
 struct SdirkStages {
   std::span<DVec3> place;             // m, when the sub-step began; empty: there are no stages
   std::span<Vec3> velocity;           // m/s, when the sub-step began

@@ -81,7 +81,7 @@ struct JointAxisRecord {
   float total = 0.0f;     // of all impulses over the last step
 };
 
-// What a gear counts turns against.
+// The frame against which a gear counts turns.
 enum class GearFrame : std::uint8_t {
   world,
   centres,  // the line from shaft to shaft, which turns with the housing
