@@ -93,8 +93,8 @@ void collide_plane(const Shape& plane, const Shape& b, const Transform& a_from_b
 int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation,
                  LocalManifold* out, CachedTriangles* triangles = nullptr);
 
-// Manifolds of any two shapes of which at smallest_separation one is convex, in any order of kinds; the normal is always from A to B.
-// Two non-convex shapes never touch: 0. Returns the number of manifolds in `out`, which has room for kMaxMeshManifolds.
+// Manifolds of any two shapes of which at least one is convex, in any order of kinds; the normal is always from A to
+// B. Two non-convex shapes never touch: 0. Returns the number of manifolds in `out`, which has room for kMaxMeshManifolds.
 // `triangles` as in collide_mesh.
 int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                    PairCache& cache, LocalManifold* out, CachedTriangles* triangles = nullptr);

@@ -138,5 +138,39 @@ TEST(ContactKernel, FrictionGoesWhereTheLoadGoes) {
   }
 }
 
+// A bounce finds a manifold anew within the step. Points that its block had no room for kept the mean load of points that they
+// replaced, unless another lane had as many: the state depended on the width.
+TEST(ContactKernel, PointsFoundAtAnImpactEndTheStepWithoutLoad) {
+  for (const int width : {0, 1, 4, 8, 16}) {
+    const SolverKernels& kernels = select_kernels(width);
+    Manifold manifold;
+    manifold.count = 1;
+    ContactConstraint constraint;
+    constraint.size = 0.15f;
+    constraint.body_b = 0;
+    constraint.manifold = &manifold;
+    BodyMotion motion;
+    motion.inverse_mass = 1.0f;
+    BodyInertia inertia{.inverse = {.xx = 100.0f, .yy = 100.0f, .zz = 100.0f}, .inverse_mass = 1.0f};
+    std::vector<std::uint32_t> order(std::size_t(kernels.width), 0xffffffffu);
+    order[0] = 0;
+    Arena arena;
+    void* const block = arena.make<std::byte>(kernels.contacts.block_bytes).data();
+    void* const cold = arena.make<std::byte>(kernels.contacts.cold_bytes).data();
+    const ContactSettings settings{
+        .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
+    kernels.contacts.prepare(block, cold, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+    manifold.count = kMaxManifoldPoints;
+    for (ContactPointState& point : manifold.points) point.mean_impulse = 1.0f;
+    manifold.points[3].total_impulse = 2.0f;  // of the bounce
+    kernels.contacts.finish(block, 0, 1, &constraint, order.data(), settings);
+    for (const ContactPointState& point : manifold.points) {
+      EXPECT_EQ(point.mean_impulse, 0.0f) << width;
+      EXPECT_EQ(point.normal_impulse, 0.0f) << width;
+    }
+    EXPECT_EQ(manifold.points[3].total_impulse, 2.0f) << width;
+  }
+}
+
 }  // namespace
 }  // namespace gyre::contact_kernel_test

@@ -520,21 +520,24 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   // Adding zero turns -0 from a resting lane into the 0 of a narrower kernel.
   const Vec3W<W> none{zero, zero, zero};
   const Vec3W<W> friction = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2 + none;
-  const Vec3W<W> total = block.total_1 * block.tangent_1 + block.total_2 * block.tangent_2 + none;
+  const Vec3W<W> total_friction = block.total_1 * block.tangent_1 + block.total_2 * block.tangent_2 + none;
   const Wide<W> friction_row[4] = {age, friction.x, friction.y, friction.z};
   scatter_columns<4, W>(records.manifold, kManifoldFriction, friction_row);
   const Vec3W<W> rolling = block.cold->rolling + none;
   const Wide<W> twist_row[4] = {block.twist + zero, rolling.x, rolling.y, rolling.z};
   scatter_columns<4, W>(records.manifold, kManifoldTwist, twist_row);
   const Wide<W> slides = from_bit_pattern(to_int(Mask<W>::of_bits(block.slides)) & WideInt<W>(1));
-  const Wide<W> totals_row[4] = {total.x, total.y, total.z, slides};
+  const Wide<W> totals_row[4] = {total_friction.x, total_friction.y, total_friction.z, slides};
   scatter_columns<4, W>(records.manifold, kManifoldTotals, totals_row);
-  for (int k = 0; k < block.point_count; ++k) {
+  // A manifold found anew at an impact may have more points than the block, which bore nothing.
+  for (int k = 0; k < records.point_count; ++k) {
+    const bool is_in_block = k < block.point_count;
     const int first = records.begin_point(k) + kPointImpulse;
     gather_columns<4, W>(records.point, first, row);
-    const Wide<W> impulse = block.impulses[k] + zero;
-    const Wide<W> mean_impulse = keep(block.totals[k] > zero, row[2] + gain * (impulse - row[2]));
-    const Wide<W> point_row[4] = {impulse, row[1] + (block.totals[k] + zero), mean_impulse, row[3]};
+    const Wide<W> impulse = is_in_block ? block.impulses[k] + zero : zero;
+    const Wide<W> total = is_in_block ? block.totals[k] + zero : zero;
+    const Wide<W> mean_impulse = keep(total > zero, row[2] + gain * (impulse - row[2]));
+    const Wide<W> point_row[4] = {impulse, row[1] + total, mean_impulse, row[3]};
     scatter_columns<4, W>(records.point, first, point_row);
   }
 }

@@ -63,7 +63,7 @@ function unpack(variant: Variant): Uint8Array<ArrayBuffer> {
   return decompress(bytes);
 }
 
-/** Starts a module of the package. */
+/** @internal Starts a module of the package. */
 export async function instantiate(variant: Variant, more: Record<string, unknown> = {}): Promise<Pick<Engine, 'exports' | 'memory'>> {
   const made = await variant.default({
     wasmBinary: unpack(variant),
