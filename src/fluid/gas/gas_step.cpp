@@ -108,6 +108,7 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
   const double fuel = conserves && burns ? field_mass(grid, grid.fuel, pass.solids, pass.tasks) : 0.0;
   trace_paths(pass);
   if (settings.viscosity > 0.0f) save_velocity(pass);
+  if (pass.motion.turns()) turn_velocity(pass);
   add_pressure(pass, 0.5f, true);
   transport_fields(pass, settings.advection);
   if (conserves) conserve_mass(pass, grid.density, smoke);
@@ -122,7 +123,7 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
   fill_solid_cells(pass, grid.density.data(), 0.0f);
   fill_solid_cells(pass, grid.temperature.data(), grid.ambient_temperature);
   add_buoyancy(pass, settings.gravity, settings.buoyancy);
-  if (pass.motion.turns()) add_turning(pass);
+  if (pass.motion.turns()) add_outward(pass);
   if (settings.vorticity != 0.0f) add_confinement(pass, settings.vorticity);
   if (settings.viscosity > 0.0f) add_viscosity(pass, settings.viscosity / settings.density);
   set_walls(pass);
