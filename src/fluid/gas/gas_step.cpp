@@ -108,13 +108,18 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
   const double fuel = conserves && burns ? field_mass(grid, grid.fuel, pass.solids, pass.tasks) : 0.0;
   trace_paths(pass);
   if (settings.viscosity > 0.0f) save_velocity(pass);
-  if (pass.motion.turns()) turn_velocity(pass);
   add_pressure(pass, 0.5f, true);
   transport_fields(pass, settings.advection);
   if (conserves) conserve_mass(pass, grid.density, smoke);
   if (conserves && burns) conserve_mass(pass, grid.fuel, fuel);
   apply_emitters(pass, emitters, settings.emitter_fuel, time);
   set_walls(pass);
+  if (pass.motion.turns()) {
+    // Without the push of the pressure, which would turn into a swirl.
+    add_pressure(pass, -0.5f, false);
+    turn_velocity(pass);
+    add_pressure(pass, 0.5f, false);
+  }
   add_pressure(pass, 0.5f, false);
   if (burns) {
     report.burned += burn_fuel(pass, *settings.combustion, settings.density);

@@ -26,8 +26,8 @@ void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, s
 // pressure, within walls as beyond open sides, and is left out of both.
 void add_buoyancy(const GasPass& pass, Vec3 gravity, float buoyancy);
 
-// A box that turns adds two accelerations. Velocities turn against the box by twice its angle; they do so before pressure acts on them, since a
-// velocity that holds half of the pressure's push would turn into a swirl.
+// A box that turns adds two accelerations. Velocities turn against the box by twice its angle. They must not hold a push of the pressure, which
+// would turn into a swirl.
 void turn_velocity(const GasPass& pass);
 // And the gas is drawn away from the axis.
 void add_outward(const GasPass& pass);
