@@ -116,6 +116,12 @@ PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& sett
                                 settings.density,
                                 {memory.window.first[0], memory.window.first[1], memory.window.first[2]}};
     find_cut_faces(coupling, true, memory.coupling);
+    if (!(settings.blend < 1.0f)) {
+      for (const CutFace& face : memory.coupling.faces) {
+        const float fallen = pass.step * part_along(settings.gravity, face.axis);
+        memory.before[face.axis][face.face] = memory.velocity[face.axis][face.face] - fallen;
+      }
+    }
     predict_motions(pass.bodies, pass.step, velocity, memory.coupling);
   }
   find_open_inflow(pass, vectors.r);

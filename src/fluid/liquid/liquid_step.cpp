@@ -198,6 +198,31 @@ void save_velocity(const LiquidPass& pass) {
   }
 }
 
+// The pressure acts on faces that a solid cuts as if liquid filled their open part. The particles there have another mass, at the first touch of
+// a blow a smaller one, so they take from such faces the momentum that the solid gave: the change of velocity times the ratio of both masses.
+// Called before particles move and again after it, which puts the velocities back.
+constexpr float kMinMassRatio = 0.5f;  // 1: more, where particles crowd
+constexpr float kMaxMassRatio = 2.0f;  // 1: less, so that few particles at a face get no wild velocity
+void swap_cut_velocities(const LiquidPass& pass, bool forth) {
+  LiquidMemory& memory = pass.memory;
+  const float volume = pass.edge(0) * pass.edge(1) * pass.edge(2);
+  for (const CutFace& face : memory.coupling.faces) {
+    const std::size_t f = std::size_t(face.face);
+    const float open = memory.open[face.axis][f], filled = memory.sums[face.axis][2 * f];
+    if (!(open > 0.0f && open < 1.0f && filled > 0.0f)) continue;
+    float& velocity = memory.velocity[face.axis][f];
+    float& before = memory.before[face.axis][f];
+    const float now = velocity;
+    if (forth) {
+      const float ratio = clamp(open * volume / filled, kMinMassRatio, kMaxMassRatio);
+      velocity = before + ratio * (velocity - before);
+      before = now;
+    } else {
+      velocity = before;
+    }
+  }
+}
+
 void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
                  std::span<const LiquidEmitter> emitters, double time, LiquidReport& report,
                  std::span<GasImpulse> impulses) {
@@ -220,7 +245,10 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
   find_layers(pass, layers);
   extrapolate(pass, pass.memory.velocity, pass.memory.drift);
   hold_sources(pass, emitters, time);
+  const bool cut = pass.solids.present() && !(settings.blend < 1.0f);
+  if (cut) swap_cut_velocities(pass, true);
   move_particles(pass, settings.blend, settings.gravity);
+  if (cut) swap_cut_velocities(pass, false);
 }
 
 // The window of the present particles instead of one that some of them are about to leave.
