@@ -56,8 +56,12 @@ CommandResult execute(WorldState& s, const AddFluid& c) {
   if (slot.index < s.fluid_scratch.size()) s.fluid_scratch[slot.index] = {};
   if (entry.is_liquid()) {
     FluidSolids solids;
-    cut_fluid_cells(s.rigid, entry, *s.tasks, solids);
-    fill_liquid(entry, solids.solids);
+    const auto cut = [&](const LiquidWindow& window) {
+      cut_fluid_cells(s.rigid, entry, window, *s.tasks, solids);
+    };
+    find_near_shapes(s.rigid, entry, solids);
+    cut(whole_window(entry.box()));
+    fill_liquid(entry, solids.solids, cut);
   }
   CommandResult out;
   out.done = true;

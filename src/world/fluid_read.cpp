@@ -210,7 +210,9 @@ FluidInfo World::fluid_info(FluidId fluid) const {
     const LiquidTotals totals = totals_of(*state_, entry);
     info.particles = entry.liquid.particles();
     info.kinetic_energy = totals.kinetic_energy;
-    info.volume = liquid_volume(entry.liquid, solids);
+    const LiquidWindow* const window =
+        scratch != nullptr && solids.present() ? &scratch->solids.window : nullptr;
+    info.volume = liquid_volume(entry.liquid, solids, window);
   } else {
     info.kinetic_energy = gas_kinetic_energy(entry.gas, solids, entry.gas_def().density, reading.tasks);
     info.smoke_mass = smoke_mass(entry.gas, solids, reading.tasks);

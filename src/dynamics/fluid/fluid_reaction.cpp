@@ -1,6 +1,7 @@
 #include "dynamics/fluid/fluid_reaction.h"
 
 #include "fluid/liquid/liquid_pass.h"
+#include "fluid/liquid/liquid_window.h"
 
 namespace gyre {
 
@@ -65,9 +66,30 @@ void kick_gas(FluidEntry& entry, const GasMemory& memory, const Array<FluidKick>
   }
 }
 
+// The cells of kicks, and those of all particles that share a centre with one.
+CellBox cells_around(const GasBox& box, const Array<FluidKick>& kicks) {
+  CellBox cells = cells_of(box, kicks[0].place, kicks[0].place);
+  for (const FluidKick& kick : kicks) cells.include(cells_of(box, kick.place, kick.place));
+  for (int axis = 0; axis < 3; ++axis) {
+    const int last = box.cells[axis];
+    const bool wraps = box.periodic(axis);
+    cells.low[axis] = wraps || cells.low[axis] < 2 ? 0 : cells.low[axis] - 2;
+    cells.high[axis] = wraps || cells.high[axis] + 2 > last ? last : cells.high[axis] + 2;
+  }
+  return cells;
+}
+
 void kick_liquid(FluidEntry& entry, const Array<FluidKick>& kicks) {
   LiquidGrid& liquid = entry.liquid;
-  const std::size_t size = std::size_t(liquid.shape.size);
+  const CellBox cells = cells_around(liquid.box, kicks);
+  const LiquidWindow window = window_around(liquid.box, with_margin(liquid.box, cells));
+  const std::size_t size = std::size_t(window.shape.size);
+  // As if the window were all of the box, with places counted from the box's first cell.
+  GridShape shape = window.shape;
+  for (int axis = 0; axis < 3; ++axis) {
+    shape.first -= window.first[axis] * shape.stride(axis);
+    shape.cells[axis] = liquid.box.cells[axis];
+  }
   const float density = entry.liquid_def().density;
   // Of centres near an impulse: the mass of the particles around, and the impulse they get.
   Array<std::uint8_t> near;
@@ -75,14 +97,14 @@ void kick_liquid(FluidEntry& entry, const Array<FluidKick>& kicks) {
   near.resize(size, std::uint8_t(0));
   mass.resize(size, 0.0f);
   for (Array<float>& part : impulse) part.resize(size, 0.0f);
-  const auto around = [&](Vec3 place, auto&& fn) {
-    for_points_around(liquid.box, liquid.shape, -1, place, fn);
-  };
+  const auto around = [&](Vec3 place, auto&& fn) { for_points_around(liquid.box, shape, -1, place, fn); };
   for (const FluidKick& kick : kicks) around(kick.place, [&](int c, float) { near[c] = 1; });
   const auto place_of = [&](int p) {
     return Vec3{liquid.position[0][p], liquid.position[1][p], liquid.position[2][p]};
   };
+  const auto is_near = [&](int p) { return cells.contains(cells_of(liquid.box, place_of(p), place_of(p))); };
   for (int p = 0; p < liquid.particles(); ++p) {
+    if (!is_near(p)) continue;
     around(place_of(p), [&](int c, float weight) {
       if (near[c] != 0) mass[c] += weight * density * liquid.volume[p];
     });
@@ -98,6 +120,7 @@ void kick_liquid(FluidEntry& entry, const Array<FluidKick>& kicks) {
     });
   }
   for (int p = 0; p < liquid.particles(); ++p) {
+    if (!is_near(p)) continue;
     around(place_of(p), [&](int c, float weight) {
       if (near[c] == 0 || !(mass[c] > 0.0f)) return;
       for (int axis = 0; axis < 3; ++axis) {

@@ -6,6 +6,7 @@
 #include "task/parallel.h"
 
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <utility>
 
@@ -25,16 +26,26 @@ struct PointGrid {
   DVec3 corner;
   bool flat[3];
 
-  double offset;      // of the first point from the lower corner, in cells
-  float reach_cells;  // distances are found up to so many edges
+  double offset;             // of the first point from the lower corner, in cells
+  float reach_cells;         // distances are found up to so many edges
+  int first[3] = {0, 0, 0};  // the first cell from the corner
 
   static PointGrid of_corners(const GasBox& box) { return PointGrid(box, 1, 0.0, 2.0f); }
   static PointGrid of_centers(const GasBox& box) { return PointGrid(box, 0, 0.5, 4.0f); }
+  // The part of the grid within a window.
+  PointGrid part(const GasBox& whole, const LiquidWindow& window) const {
+    PointGrid result = *this;
+    for (int axis = 0; axis < 3; ++axis) {
+      result.first[axis] = window.first[axis];
+      result.count[axis] = window.box.cells[axis] + count[axis] - whole.cells[axis];
+    }
+    return result;
+  }
   std::size_t size() const { return std::size_t(count[0]) * std::size_t(count[1]) * std::size_t(count[2]); }
   std::size_t at(int i, int j, int k) const {
     return std::size_t(i) + std::size_t(count[0]) * (std::size_t(j) + std::size_t(count[1]) * std::size_t(k));
   }
-  double along(int axis, int n) const { return flat[axis] ? 0.5 : double(n) + offset; }
+  double along(int axis, int n) const { return flat[axis] ? 0.5 : double(first[axis] + n) + offset; }
   DVec3 place(int i, int j, int k) const {
     return corner +
            DVec3{along(0, i) * double(cell.x), along(1, j) * double(cell.y), along(2, k) * double(cell.z)};
@@ -43,18 +54,10 @@ struct PointGrid {
   float reach() const { return reach_cells * max(cell.x, max(cell.y, cell.z)); }
 
  private:
-  PointGrid(const GasBox& box, int more, double first, float cells)
-      : cell(box.cell), corner(box.corner), offset(first), reach_cells(cells) {
+  PointGrid(const GasBox& box, int more, double before, float cells)
+      : cell(box.cell), corner(box.corner), offset(before), reach_cells(cells) {
     for (int axis = 0; axis < 3; ++axis) count[axis] = box.cells[axis] + more, flat[axis] = box.flat(axis);
   }
-};
-
-// A shape whose box meets that of the fluid.
-struct NearShape {
-  const Shape* shape = nullptr;
-  std::uint32_t body = 0;
-  Pose pose;  // world_from_shape
-  Aabb box;
 };
 
 bool has_solid_motion(const RigidWorld& w, std::uint32_t body) {
@@ -80,8 +83,9 @@ void points_within(const PointGrid& grid, int axis, double low, double high, int
   const double edge = double(grid.edge(axis)), reach = double(grid.reach());
   begin = 0, end = grid.count[axis];
   if (grid.flat[axis]) return;
-  const double first = std::ceil((low - reach - origin) / edge),
-               last = std::floor((high + reach - origin) / edge);
+  const double before = double(grid.first[axis]);
+  const double first = std::ceil((low - reach - origin) / edge) - before,
+               last = std::floor((high + reach - origin) / edge) - before;
   begin = first > 0.0 ? (first < double(end) ? int(first) : end) : 0;
   if (last < double(end - 1)) end = last < double(begin) ? begin : int(last) + 1;
 }
@@ -164,12 +168,8 @@ float negative_part(float a, float b, float c, float d) {
 
 class FaceCutter {
  public:
-  FaceCutter(const RigidWorld& w, const FluidEntry& entry, FluidSolids& out)
-      : w_(w),
-        frame_(entry.frame()),
-        grid_(PointGrid::of_corners(entry.box())),
-        shape_(entry.shape()),
-        out_(out) {}
+  FaceCutter(const RigidWorld& w, const FluidEntry& entry, const PointGrid& corners, FluidSolids& out)
+      : w_(w), frame_(entry.frame()), grid_(corners), shape_(out.window.shape), out_(out) {}
 
   // Faces across an axis: the open part, the label and the velocity of the solid there.
   void cut(int axis, TaskSystem& tasks) {
@@ -209,9 +209,10 @@ class FaceCutter {
     const std::int16_t label = out_.label_of[body];
     out_.solids.label[axis][c] = label;
     const DVec3 half{axis == 0 ? 0.0 : 0.5, axis == 1 ? 0.0 : 0.5, axis == 2 ? 0.0 : 0.5};
-    const DVec3 at = point_to_world(
-        frame_, grid_.corner + DVec3{(i + half.x) * double(grid_.cell.x), (j + half.y) * double(grid_.cell.y),
-                                     (k + half.z) * double(grid_.cell.z)});
+    const DVec3 at =
+        point_to_world(frame_, grid_.corner + DVec3{(grid_.first[0] + i + half.x) * double(grid_.cell.x),
+                                                    (grid_.first[1] + j + half.y) * double(grid_.cell.y),
+                                                    (grid_.first[2] + k + half.z) * double(grid_.cell.z)});
     Vec3 velocity{};
     if (has_solid_motion(w_, body)) {
       const BodyMotion& motion = w_.bodies.motion[body];
@@ -273,10 +274,11 @@ void mark_solid_cells(const GridShape& shape, TaskSystem& tasks, GasSolids& soli
 }
 
 // Numbers the bodies that the corners name, in the order of their indices.
-void number_bodies(const RigidWorld& w, std::span<const NearShape> shapes, FluidSolids& out) {
+void number_bodies(const RigidWorld& w, FluidSolids& out) {
   out.label_of.resize(w.bodies.flags.size(), std::int16_t(-1));
   for (std::int16_t& label : out.label_of) label = -1;
-  for (const NearShape& near : shapes) out.label_of[near.body] = 0;
+  for (const NearShape& near : out.fixed) out.label_of[near.body] = 0;
+  for (const NearShape& near : out.moving) out.label_of[near.body] = 0;
   out.bodies.clear();
   for (std::uint32_t body = 0; body < out.label_of.size(); ++body) {
     if (out.label_of[body] < 0) continue;
@@ -286,21 +288,40 @@ void number_bodies(const RigidWorld& w, std::span<const NearShape> shapes, Fluid
   }
 }
 
-// The distances of all shapes. Returns true if they are not those of the last step.
-bool find_distances(const PointGrid& grid, std::span<const NearShape> fixed, std::uint64_t fixed_key,
-                    std::span<const NearShape> moving, std::uint64_t all_key, TaskSystem& tasks,
-                    SolidDistances& out) {
-  if (out.all.key == all_key) return false;
-  if (out.fixed.key != fixed_key) {
-    clear_distances(grid, out.fixed);
-    for (const NearShape& near : fixed) add_shape(grid, near, tasks, out.fixed);
-    copy_flat_points(grid, out.fixed);
-    out.fixed.key = fixed_key;
+// The distances of fixed shapes at the points of a window.
+void copy_part(const PointGrid& whole, const PointGrid& grid, SolidDistances& out) {
+  out.all.distance.resize_uninitialized(grid.size()), out.all.body.resize_uninitialized(grid.size());
+  const std::size_t count = std::size_t(grid.count[0]);
+  for (int k = 0; k < grid.count[2]; ++k) {
+    for (int j = 0; j < grid.count[1]; ++j) {
+      const std::size_t to = grid.at(0, j, k);
+      const std::size_t from = whole.at(grid.first[0], grid.first[1] + j, grid.first[2] + k);
+      std::memcpy(out.all.distance.data() + to, out.fixed.distance.data() + from, count * sizeof(float));
+      std::memcpy(out.all.body.data() + to, out.fixed.body.data() + from, count * sizeof(std::uint32_t));
+    }
   }
-  out.all.distance = out.fixed.distance, out.all.body = out.fixed.body;
-  for (const NearShape& near : moving) add_shape(grid, near, tasks, out.all);
+}
+
+// The distances of all shapes at the points of a window. Returns true if they are not those of the last step. Those of fixed shapes are found
+// in all of the box, since windows move and fixed shapes do not.
+bool find_distances(const PointGrid& whole, const PointGrid& grid, bool same_window, TaskSystem& tasks,
+                    const FluidSolids& solids, SolidDistances& out) {
+  if (out.all.key == solids.all_key && same_window) return false;
+  if (solids.fixed.empty()) {
+    out.fixed = {};
+    clear_distances(grid, out.all);
+  } else {
+    if (out.fixed.key != solids.fixed_key) {
+      clear_distances(whole, out.fixed);
+      for (const NearShape& near : solids.fixed) add_shape(whole, near, tasks, out.fixed);
+      copy_flat_points(whole, out.fixed);
+      out.fixed.key = solids.fixed_key;
+    }
+    copy_part(whole, grid, out);
+  }
+  for (const NearShape& near : solids.moving) add_shape(grid, near, tasks, out.all);
   copy_flat_points(grid, out.all);
-  out.all.key = all_key;
+  out.all.key = solids.all_key;
   return true;
 }
 
@@ -331,19 +352,17 @@ bool do_boxes_meet(const Aabb& a, const Aabb& b) {
 
 }  // namespace
 
-void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, TaskSystem& tasks, FluidSolids& out) {
+void find_near_shapes(const RigidWorld& w, const FluidEntry& entry, FluidSolids& out) {
   const GasBox& box = entry.box();
-  const GridShape& shape = entry.shape();
   const FluidFrame* const frame = entry.frame();
-  const bool is_liquid = entry.is_liquid();
-  const PointGrid corners = PointGrid::of_corners(box), centers = PointGrid::of_centers(box);
-  const double reach = double(is_liquid ? centers.reach() : corners.reach());
+  const double reach =
+      double(entry.is_liquid() ? PointGrid::of_centers(box).reach() : PointGrid::of_corners(box).reach());
   const DVec3 margin{reach, reach, reach};
   const DVec3 upper = box.corner + DVec3{box.cells[0] * double(box.cell.x), box.cells[1] * double(box.cell.y),
                                          box.cells[2] * double(box.cell.z)};
   const Aabb whole{to_float(box.corner - margin), to_float(upper + margin)};
-  Array<NearShape> shapes, moving;
-  std::uint64_t fixed_key = 1, all_key = 1;
+  out.fixed.clear(), out.moving.clear();
+  out.fixed_key = out.all_key = 1;
   w.shapes.ids.for_each_live([&](std::uint32_t one) {
     const Proxy& proxy = w.shapes.proxies[one];
     if (proxy.sensor || (frame == nullptr && !do_boxes_meet(proxy.fat_box, whole))) return;
@@ -356,28 +375,42 @@ void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, TaskSystem& t
       if (!do_boxes_meet(near.box, whole)) return;
     }
     const bool moves = has_solid_motion(w, body);
-    all_key = add_shape_key(all_key, w, one, near);
-    if (!moves) fixed_key = add_shape_key(fixed_key, w, one, near);
-    (moves ? moving : shapes).push_back(near);
+    out.all_key = add_shape_key(out.all_key, w, one, near);
+    if (!moves) out.fixed_key = add_shape_key(out.fixed_key, w, one, near);
+    (moves ? out.moving : out.fixed).push_back(near);
   });
-  if (shapes.empty() && moving.empty()) {
+  out.bodies.clear();
+  if (!out.fixed.empty() || !out.moving.empty()) number_bodies(w, out);
+}
+
+void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, const LiquidWindow& window,
+                     TaskSystem& tasks, FluidSolids& out) {
+  const GridShape& shape = window.shape;
+  const bool is_liquid = entry.is_liquid();
+  bool same_shape = true, same_window = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    same_shape = same_shape && out.window.box.cells[axis] == window.box.cells[axis];
+    same_window = same_window && out.window.first[axis] == window.first[axis];
+  }
+  same_window = same_window && same_shape;
+  out.window = window;
+  const std::uint64_t revision = out.solids.revision;
+  if (!same_shape) out.solids = GasSolids{}, out.solids.revision = revision;
+  if (out.fixed.empty() && out.moving.empty()) {
     if (out.solids.labels != 0) clear_solids(shape, 0, out.solids), ++out.solids.revision;
     out.solids.distance.clear(), out.solids.nearest.clear();
-    out.bodies.clear();
     out.corners.all.key = out.centers.all.key = 0;
     return;
   }
-  const bool changed =
-      find_distances(corners, shapes.view(), fixed_key, moving.view(), all_key, tasks, out.corners);
-  if (is_liquid)
-    find_distances(centers, shapes.view(), fixed_key, moving.view(), all_key, tasks, out.centers);
-  for (const NearShape& near : moving) shapes.push_back(near);
-  number_bodies(w, shapes.view(), out);
-  const std::uint64_t revision = out.solids.revision;
+  const GasBox& box = entry.box();
+  const PointGrid all_corners = PointGrid::of_corners(box), all_centers = PointGrid::of_centers(box);
+  const PointGrid corners = all_corners.part(box, window), centers = all_centers.part(box, window);
+  const bool changed = find_distances(all_corners, corners, same_window, tasks, out, out.corners);
+  if (is_liquid) find_distances(all_centers, centers, same_window, tasks, out, out.centers);
   clear_solids(shape, int(out.bodies.size()), out.solids);
   out.solids.revision = revision + (changed ? 1 : 0);
   find_near_rows(corners, tasks, out);
-  FaceCutter cutter(w, entry, out);
+  FaceCutter cutter(w, entry, corners, out);
   for (int axis = 0; axis < 3; ++axis) cutter.cut(axis, tasks);
   mark_solid_cells(shape, tasks, out.solids);
   if (is_liquid) set_center_distances(centers, shape, out);

@@ -24,16 +24,30 @@ struct SolidDistances {
   GridDistances fixed, all;
 };
 
+// A shape whose box meets that of the fluid.
+struct NearShape {
+  const Shape* shape = nullptr;
+  std::uint32_t body = 0;
+  Pose pose;  // world_from_shape
+  Aabb box;
+};
+
 // Belongs to one fluid from step to step; with another box it must be new.
 struct FluidSolids {
   GasSolids solids;
-  Array<std::uint32_t> bodies;      // by label, ascending
-  SolidDistances corners, centers;  // of cells; centers for liquids alone
-  Array<std::int16_t> label_of;     // by body, while labels are given
-  Array<std::uint8_t> within_row;   // rows of corners: 1 if one is within a solid
+  LiquidWindow window;                       // the cells of `solids`: all of a gas
+  Array<NearShape> fixed, moving;            // of the present step
+  std::uint64_t fixed_key = 1, all_key = 1;  // of these shapes and where they are
+  Array<std::uint32_t> bodies;               // by label, ascending
+  SolidDistances corners, centers;           // of cells; centers for liquids alone
+  Array<std::int16_t> label_of;              // by body, while labels are given
+  Array<std::uint8_t> within_row;            // rows of corners: 1 if one is within a solid
 };
 
-// For a liquid with the distances of centres.
-void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, TaskSystem& tasks, FluidSolids& out);
+// Lists the shapes that meet the box of a fluid and numbers their bodies.
+void find_near_shapes(const RigidWorld& w, const FluidEntry& entry, FluidSolids& out);
+// Then: makes the solids those of a window; for a liquid with the distances of centres.
+void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, const LiquidWindow& window,
+                     TaskSystem& tasks, FluidSolids& out);
 
 }  // namespace gyre

@@ -161,6 +161,15 @@ constexpr float kLightShare = 8.0f;
 // Bodies as the pressure of a fluid sees them: those that are awake and free to move yield to it; in a gas, of this density, light ones.
 void list_bodies(const RigidWorld& w, const FluidFrame* frame, float gas_density, FluidScratch& scratch) {
   scratch.bodies.clear();
+  const auto find_bounds = [&](std::uint32_t index, FluidBody& body) {
+    for (const NearShape& near : scratch.solids.moving) {
+      if (near.body != index) continue;
+      body.bounds = body.has_bounds
+                        ? Aabb{min(body.bounds.low, near.box.low), max(body.bounds.high, near.box.high)}
+                        : near.box;
+      body.has_bounds = true;
+    }
+  };
   for (const std::uint32_t body : scratch.solids.bodies) {
     FluidBody out;
     const BodyFlags& flags = w.bodies.flags[body];
@@ -178,6 +187,7 @@ void list_bodies(const RigidWorld& w, const FluidFrame* frame, float gas_density
       const BodyForces& forces = w.bodies.forces[body];
       const Sym3 inverse_inertia = rotate_inertia(w.bodies.poses[body].orientation, mass.inverse_inertia);
       out.inverse_mass = mass.inverse_mass;
+      if (gas_density == 0.0f) find_bounds(body, out);
       // The cells of a gas count as they are, for its lift too.
       out.volume = gas_density > 0.0f ? 0.0f : volume;
       out.inverse_inertia = inverse_inertia;
@@ -277,8 +287,9 @@ void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, cons
           {one.position, one.radius, one.has_velocity ? one.velocity : Vec3{}, one.start, one.end});
   }
   list_bodies(w, entry.frame(), 0.0f, own);
+  const auto cut = [&](const LiquidWindow& window) { cut_fluid_cells(w, entry, window, tasks, own.solids); };
   const LiquidReport report =
-      step_liquid(entry.liquid, own.solids.solids, own.bodies.view(), own.sources.view(), settings, time,
+      step_liquid(entry.liquid, own.solids.solids, cut, own.bodies.view(), own.sources.view(), settings, time,
                   seconds, own.liquid, kernels, tasks, own.impulses.view());
   own.report.substeps = report.substeps, own.report.iterations = report.iterations;
   own.report.divergence = report.divergence, own.report.residual = report.residual;
@@ -305,7 +316,8 @@ void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& s
     FluidEntry& entry = fluids.entries[slot];
     if (entry.def == nullptr) continue;
     FluidScratch& own = scratch[slot];
-    cut_fluid_cells(w, entry, tasks, own.solids);
+    find_near_shapes(w, entry, own.solids);
+    if (!entry.is_liquid()) cut_fluid_cells(w, entry, whole_window(entry.box()), tasks, own.solids);
     own.impulses.clear();
     own.impulses.resize(own.solids.bodies.size(), GasImpulse{});
     own.report = {};

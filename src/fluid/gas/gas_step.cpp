@@ -114,6 +114,12 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
   if (conserves && burns) conserve_mass(pass, grid.fuel, fuel);
   apply_emitters(pass, emitters, settings.emitter_fuel, time);
   set_walls(pass);
+  if (pass.motion.turns()) {
+    // Without the push of the pressure, which would turn into a swirl.
+    add_pressure(pass, -0.5f, false);
+    turn_velocity(pass);
+    add_pressure(pass, 0.5f, false);
+  }
   add_pressure(pass, 0.5f, false);
   if (burns) {
     report.burned += burn_fuel(pass, *settings.combustion, settings.density);
@@ -122,7 +128,7 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
   fill_solid_cells(pass, grid.density.data(), 0.0f);
   fill_solid_cells(pass, grid.temperature.data(), grid.ambient_temperature);
   add_buoyancy(pass, settings.gravity, settings.buoyancy);
-  if (pass.motion.turns()) add_turning(pass);
+  if (pass.motion.turns()) add_outward(pass);
   if (settings.vorticity != 0.0f) add_confinement(pass, settings.vorticity);
   if (settings.viscosity > 0.0f) add_viscosity(pass, settings.viscosity / settings.density);
   set_walls(pass);

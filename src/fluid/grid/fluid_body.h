@@ -16,6 +16,8 @@ struct FluidBody {
   Vec3
       acceleration{};  // m/s^2, that other forces than the fluid's give it in the step: gravity, unless it stands on something
   Vec3 angular_acceleration{};  // rad/s^2
+  bool has_bounds = false;      // if it is known how far the body reaches
+  Aabb bounds{};                // m, in the axes of the fluid's box
 };
 
 }  // namespace gyre

@@ -67,10 +67,10 @@ struct VortexPass {
   float strength = 0.0f;  // m
 };
 
-// Particles of a liquid along one axis. Beyond the last centre before a wall there is a mirror image.
+// Particles of a liquid along one axis; cells and places are counted from the lower corner of the liquid's box, of which the grid may hold a part. Beyond the last centre before a wall there is a mirror image.
 struct ParticleAxis {
   float inverse_edge = 0.0f, edge = 0.0f;  // of a cell
-  int last_face = 0;                       // the last one with a face above it
+  int first_face = 0, last_face = 0;       // the first of the grid and the last one with a face above it
   int low = 0, last_center = 0;            // the first and the last centre with one above it
   float highest_center = 0.0f;
   bool wraps = false;
@@ -80,7 +80,7 @@ struct ParticleAxis {
   float lower_speed = 0.0f, upper_speed = 0.0f;  // m/s: bounds of the speed of a particle that a wall stops
 };
 struct ParticlePass {
-  GridShape shape;
+  GridShape shape;  // of the grid; `first` is where the first cell of the box would lie
   ParticleAxis axes[3];
   const float* position[3] = {};
   float* motion[3] = {};

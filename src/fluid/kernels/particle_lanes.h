@@ -38,12 +38,13 @@ struct ParticlePlaces {
     GYRE_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
       const ParticleAxis& a = axes[axis];
-      const Wide<W> s = max(at[axis] * Wide<W>(a.inverse_edge), Wide<W>(0.0f));
+      const Wide<W> s = max(at[axis] * Wide<W>(a.inverse_edge), Wide<W>(float(a.first_face)));
       face[axis] = min(truncate(min(s, Wide<W>(float(a.last_face + 1)))), WideInt<W>(a.last_face));
       face_fraction[axis] = s - to_float(face[axis]);
-      const Wide<W> lowest(float(a.low));
-      const Wide<W> c = clamp(s - Wide<W>(0.5f), lowest, Wide<W>(a.highest_center));
-      center[axis] = min(truncate(c - lowest) + WideInt<W>(a.low), WideInt<W>(a.last_center));
+      const Wide<W> c = clamp(s - Wide<W>(0.5f), Wide<W>(float(a.low)), Wide<W>(a.highest_center));
+      const int below_zero = a.low < 0 ? a.low : 0;
+      center[axis] =
+          min(truncate(c - Wide<W>(float(below_zero))) + WideInt<W>(below_zero), WideInt<W>(a.last_center));
       center_fraction[axis] = c - to_float(center[axis]);
     }
   }
@@ -70,13 +71,13 @@ void find_particle_cells(const ParticlePass& pass, int begin, int end, std::int3
     GYRE_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
       const ParticleAxis& a = pass.axes[axis];
-      const int cells = shape.cells[axis];
       const Wide<W> at = load_particles<W>(pass.position[axis], p, count);
       const Wide<W> speed = load_particles<W>(pass.motion[axis], p, count);
-      const Wide<W> place = min(max(at * Wide<W>(a.inverse_edge), Wide<W>(0.0f)), Wide<W>(float(cells)));
-      index[axis] = min(truncate(place), WideInt<W>(cells - 1));
+      const Wide<W> place = min(max(at * Wide<W>(a.inverse_edge), Wide<W>(float(a.first_face))),
+                                Wide<W>(float(a.last_face + 1)));
+      index[axis] = min(truncate(place), WideInt<W>(a.last_face)) - WideInt<W>(a.first_face);
       inside = keep(at >= Wide<W>(0.0f), inside);
-      inside = keep(at <= Wide<W>(float(cells) * a.edge), inside);
+      inside = keep(at <= Wide<W>(a.length), inside);
       inside = keep(absolute(speed) <= Wide<W>(kLargestFloat), inside);
     }
     const WideInt<W> all =

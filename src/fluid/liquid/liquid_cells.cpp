@@ -118,7 +118,7 @@ void find_surface_in_solids(const LiquidPass& pass) {
   const GridShape& shape = pass.shape();
   const float* const distance = pass.solids.distance.empty() ? nullptr : pass.solids.distance.data();
   if (distance == nullptr) return;
-  float* const surface = pass.grid.surface.data();
+  float* const surface = pass.memory.surface.data();
   LiquidCell* const cell = pass.memory.cell.data();
   const std::uint8_t* const blocked = pass.memory.blocked.data();
   each_row(pass, -1, [&](int c, int j, int k) {
@@ -257,7 +257,7 @@ void find_open_faces(const LiquidPass& pass) {
 void find_surface(const LiquidPass& pass) {
   const GridShape& shape = pass.shape();
   float* const filled = pass.memory.filled.data();
-  float* const surface = pass.grid.surface.data();
+  float* const surface = pass.memory.surface.data();
   LiquidCell* const cell = pass.memory.cell.data();
   const float inverse_volume = 1.0f / (pass.edge(0) * pass.edge(1) * pass.edge(2));
   const float* room = nullptr;
@@ -314,7 +314,7 @@ void build_liquid_matrix(const LiquidPass& pass) {
   resize_pressure_level(finest, shape, true, true);
   mark_all_stale(finest);
   const LiquidCell* const cell = pass.memory.cell.data();
-  const float* const surface = pass.grid.surface.data();
+  const float* const surface = pass.memory.surface.data();
   float full = 0.0f;
   int axes = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -87,9 +87,10 @@ int fill(LiquidGrid& grid, const double (&lower)[3], const double (&upper)[3], V
     occupied
         .taken[occupied.index(grid.box, {grid.position[0][p], grid.position[1][p], grid.position[2][p]})] = 1;
   const bool empty = grid.particles() == 0;
+  const LiquidWindow whole = whole_window(grid.box);
   const int before = grid.particles();
   for_lattice(grid.box, lower, upper, [&](Vec3 at, double volume) {
-    if (!inside(at) || !has_room(grid, solids, at)) return;
+    if (!inside(at) || !has_room(grid.box, whole, solids, at)) return;
     if (!empty && occupied.taken[occupied.index(grid.box, at)] != 0) return;
     add_particle(grid, at, velocity, float(volume));
   });
@@ -98,20 +99,19 @@ int fill(LiquidGrid& grid, const double (&lower)[3], const double (&upper)[3], V
 
 }  // namespace
 
-bool has_room(const LiquidGrid& grid, const GasSolids& solids, Vec3 point) {
+bool has_room(const GasBox& box, const LiquidWindow& window, const GasSolids& solids, Vec3 point) {
   int index[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const float at = part_along(point, axis), edge = part_along(grid.box.cell, axis);
-    const int last = grid.shape.cells[axis] - 1;
-    if (!(at >= 0.0f && at <= float(last + 1) * edge)) return false;
-    const int i = int(at / edge);
-    index[axis] = i < last ? i : last;
+    const float at = part_along(point, axis), edge = part_along(box.cell, axis);
+    if (!(at >= 0.0f && at <= float(box.cells[axis]) * edge)) return false;
+    const int i = int(at / edge) - window.first[axis], last = window.box.cells[axis] - 1;
+    index[axis] = i < 0 ? 0 : i < last ? i : last;
   }
   if (!solids.present()) return true;
-  if (solids.distance.empty()) return solids.solid[grid.shape.at(index[0], index[1], index[2])] == 0;
+  if (solids.distance.empty()) return solids.solid[window.shape.at(index[0], index[1], index[2])] == 0;
   // Particles that touch the surface would be pushed out at once.
-  return sample_field(grid.box, grid.shape, solids.distance.data(), -1, point) >=
-         kParticleSkin * grid.box.cell.x;
+  return sample_field(window.box, window.shape, solids.distance.data(), -1, point - window.origin()) >=
+         kParticleSkin * box.cell.x;
 }
 
 float particle_volume(const GasBox& box) {

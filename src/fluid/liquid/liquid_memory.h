@@ -1,6 +1,8 @@
 // LiquidMemory: arrays that the stages of a step of a liquid share. Nothing in it is state: with a new one the results have the same bits.
+// Grids have the cells of a window.
 #pragma once
 
+#include "fluid/liquid/liquid_window.h"
 #include "fluid/solver/body_coupling.h"
 #include "fluid/solver/pressure_matrix.h"
 
@@ -10,6 +12,13 @@ namespace gyre {
 enum class LiquidCell : std::uint8_t { air, liquid, solid };
 
 struct LiquidMemory {
+  // The cells that the arrays hold, and those of the fields that were given to the state last; nothing else in the state differs from air at rest.
+  LiquidWindow window;
+  bool has_stored = false;
+  LiquidWindow stored;
+  Array<float> velocity[3];  // m/s, on faces
+  Array<float> surface;      // m, at centres: as in LiquidGrid
+  Array<float> pressure;     // m^2/s^2, at centres
   static constexpr int kFields = 8;
   Array<float> field[kFields];
   Array<float> sums[3];   // of faces: pairs of the volume of particles and of its momentum

@@ -26,12 +26,13 @@ struct LiquidPass {
   float step = 0.0f;     // s
   float elapsed = 0.0f;  // s, from the beginning of the step, where solids stand as given
 
-  const GasBox& box() const { return grid.box; }
-  const GridShape& shape() const { return grid.shape; }
+  // Of the window.
+  const GasBox& box() const { return memory.window.box; }
+  const GridShape& shape() const { return memory.window.shape; }
   float* scratch(int index) const { return memory.field[index].data(); }
-  float edge(int axis) const { return part_along(grid.box.cell, axis); }
-  bool flat(int axis) const { return grid.box.flat(axis); }
-  bool wraps(int axis) const { return grid.box.periodic(axis) && !grid.box.flat(axis); }
+  float edge(int axis) const { return part_along(box().cell, axis); }
+  bool flat(int axis) const { return box().flat(axis); }
+  bool wraps(int axis) const { return box().periodic(axis) && !box().flat(axis); }
 };
 
 // Calls fn(c, j, k) for every row of points, c the index of its first; `faces`: the axis across whose faces they lie, -1: cells.
@@ -64,18 +65,19 @@ void wrap_points(const LiquidPass& pass, T* field) {
   }
 }
 
-// Where particles lie along an axis. A wall keeps them a thousandth of an edge away.
-inline ParticleAxis particle_axis(const GasBox& box, int axis) {
+// Where particles lie along an axis of the box, on a grid of `cells` cells from the cell `first` on. A wall keeps them a thousandth of an edge away.
+inline ParticleAxis particle_axis(const GasBox& box, int axis, int first, int cells) {
   ParticleAxis result;
-  const int n = box.cells[axis];
+  const int n = box.cells[axis], end = first + cells;
   const bool flat = n == 1;
   result.wraps = box.periodic(axis) && !flat;
   result.edge = part_along(box.cell, axis);
   result.inverse_edge = 1.0f / result.edge;
-  result.last_face = n - 1;
-  result.low = result.wraps ? -1 : 0;
-  result.last_center = result.wraps ? n - 1 : flat ? 0 : n - 2;
-  result.highest_center = result.wraps ? float(n) : float(n - 1);
+  result.first_face = first;
+  result.last_face = end - 1;
+  result.low = result.wraps ? -1 : first;
+  result.last_center = result.wraps ? n - 1 : flat ? 0 : end - 2;
+  result.highest_center = result.wraps ? float(n) : float(end - 1);
   result.length = float(n) * result.edge;
   const float margin = 1.0e-3f * result.edge, far = 1.0e30f;
   const bool open_low = box.open(2 * axis), open_high = box.open(2 * axis + 1);
@@ -87,6 +89,9 @@ inline ParticleAxis particle_axis(const GasBox& box, int axis) {
   result.lower_speed = held_low ? 0.0f : -far;
   result.upper_speed = held_high ? 0.0f : far;
   return result;
+}
+inline ParticleAxis particle_axis(const GasBox& box, int axis) {
+  return particle_axis(box, axis, 0, box.cells[axis]);
 }
 
 }  // namespace gyre

@@ -12,7 +12,7 @@ constexpr int kX = 0, kRight = 1, kP = 2, kQ = 3, kZ = 4, kOther = 5;  // scratc
 // Of the room that is too full or not full enough this share is made up for in a sub-step: all at once would overshoot where particles lie unevenly.
 constexpr float kSpreadShare = 0.25f;
 constexpr float kSpreadTolerance = 0.02f;  // of a full cell: what is left alone
-constexpr float kMaxSpread = 0.5f;  // of a full cell, that counts
+constexpr float kMaxSpread = 0.5f;         // of a full cell, that counts
 
 PressureVectors vectors_of(const LiquidPass& pass) {
   PressureVectors vectors;
@@ -34,7 +34,7 @@ void find_open_inflow(const LiquidPass& pass, float* to) {
   float scale[3];
   for (int axis = 0; axis < 3; ++axis) {
     open[axis] = pass.memory.open[axis].data();
-    velocity[axis] = pass.grid.velocity[axis].data();
+    velocity[axis] = pass.memory.velocity[axis].data();
     scale[axis] = 1.0f / pass.edge(axis);
   }
   for_row_blocks(rows_of(pass.shape(), -1), pass.tasks, [&](int begin, int end) {
@@ -100,20 +100,28 @@ void set_closed_faces(const LiquidPass& pass, Array<float> (&fields)[3]) {
 
 PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& settings,
                               std::span<GasImpulse> impulses) {
-  LiquidGrid& grid = pass.grid;
   LiquidMemory& memory = pass.memory;
   const GridShape& shape = pass.shape();
   PressureVectors vectors = vectors_of(pass);
   const float* const active = memory.matrix.levels[0].inverse_diagonal.data();
-  const float* const velocity[3] = {grid.velocity[0].data(), grid.velocity[1].data(),
-                                    grid.velocity[2].data()};
+  const float* const velocity[3] = {memory.velocity[0].data(), memory.velocity[1].data(),
+                                    memory.velocity[2].data()};
   const bool solids = pass.solids.present();
   if (solids) {
-    const CouplingGrid coupling{
-        pass.box(),  shape,
-        pass.solids, {memory.open[0].data(), memory.open[1].data(), memory.open[2].data()},
-        active,      settings.density};
+    const CouplingGrid coupling{pass.box(),
+                                shape,
+                                pass.solids,
+                                {memory.open[0].data(), memory.open[1].data(), memory.open[2].data()},
+                                active,
+                                settings.density,
+                                {memory.window.first[0], memory.window.first[1], memory.window.first[2]}};
     find_cut_faces(coupling, true, memory.coupling);
+    if (!(settings.blend < 1.0f)) {
+      for (const CutFace& face : memory.coupling.faces) {
+        const float fallen = pass.step * part_along(settings.gravity, face.axis);
+        memory.before[face.axis][face.face] = memory.velocity[face.axis][face.face] - fallen;
+      }
+    }
     predict_motions(pass.bodies, pass.step, velocity, memory.coupling);
   }
   find_open_inflow(pass, vectors.r);
@@ -125,7 +133,7 @@ PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& sett
     if (!pass.flat(axis) && fall > before) before = fall;
   }
   // From the pressure of the step before.
-  float* const pressure = grid.pressure.data();
+  float* const pressure = memory.pressure.data();
   const float step = pass.step;
   const bool has_tension = settings.surface_tension > 0.0f;
   const LiquidCell* const cell = memory.cell.data();
@@ -135,7 +143,7 @@ PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& sett
       vectors.x[i] = step * pressure[i];
     }
   });
-  subtract_liquid_gradient(pass, vectors.x, 1.0f, grid.velocity);
+  subtract_liquid_gradient(pass, vectors.x, 1.0f, memory.velocity);
   if (solids) push_bodies(vectors.x, memory.coupling);
   find_open_inflow(pass, vectors.r);
   if (solids) add_solid_inflow(pass, vectors.r);
@@ -145,7 +153,7 @@ PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& sett
   PressureReport report = solve_pressure(memory.matrix, vectors, target, settings.projection.max_iterations,
                                          pass.kernels, pass.tasks, solids ? &memory.coupling : nullptr);
   report.first = before;
-  subtract_liquid_gradient(pass, vectors.x, 1.0f, grid.velocity);
+  subtract_liquid_gradient(pass, vectors.x, 1.0f, memory.velocity);
   const float inverse_step = 1.0f / pass.step;
   each_row(pass, -1, [&](int c, int, int) {
     for (int i = c; i < c + shape.cells[0]; ++i) pressure[i] += inverse_step * vectors.x[i];
@@ -155,7 +163,7 @@ PressureReport project_liquid(const LiquidPass& pass, const LiquidSettings& sett
     push_bodies(vectors.x, memory.coupling);
     if (!impulses.empty()) add_body_impulses(velocity, memory.coupling, impulses);
   }
-  set_closed_faces(pass, grid.velocity);
+  set_closed_faces(pass, memory.velocity);
   return report;
 }
 
@@ -164,7 +172,7 @@ PressureReport find_carrier(const LiquidPass& pass) {
   const GridShape& shape = pass.shape();
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
-    const float* const from = pass.grid.velocity[axis].data();
+    const float* const from = pass.memory.velocity[axis].data();
     float* const to = memory.drift[axis].data();
     each_row(pass, axis, [&](int c, int, int) {
       for (int f = c; f < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++f) to[f] = from[f];

@@ -5,8 +5,9 @@
 
 namespace gyre {
 
-double liquid_volume(const LiquidGrid& grid, const GasSolids& solids) {
-  const GridShape& shape = grid.shape;
+double liquid_volume(const LiquidGrid& grid, const GasSolids& solids, const LiquidWindow* given) {
+  const LiquidWindow window = given != nullptr ? *given : whole_window(grid.box);
+  const GridShape &shape = grid.shape, &own = window.shape;
   const double cell = double(grid.box.cell.x) * double(grid.box.cell.y) * double(grid.box.cell.z);
   const float inverse = 1.0f / grid.box.cell.x;
   const float* const distance =
@@ -14,9 +15,11 @@ double liquid_volume(const LiquidGrid& grid, const GasSolids& solids) {
   const std::uint8_t* const solid = solids.present() ? solids.solid.data() : nullptr;
   const float* const surface = grid.surface.data();
   double sum = 0.0;
-  for (int row = 0; row < shape.rows(); ++row) {
-    const int c = shape.row(row % shape.cells[1], row / shape.cells[1]);
-    for (int i = c; i < c + shape.cells[0]; ++i) {
+  for (int row = 0; row < own.rows(); ++row) {
+    const int j = row % own.cells[1], k = row / own.cells[1], first = own.row(j, k);
+    const int c = shape.at(window.first[0], window.first[1] + j, window.first[2] + k);
+    for (int i = c; i < c + own.cells[0]; ++i) {
+      const int at = first + (i - c);
       const float depth = -surface[i] * inverse;
       float full = depth >= 0.0f ? 1.0f - 0.5f * (1.0f - depth) * (1.0f - depth)
                                  : 0.5f * (1.0f + depth) * (1.0f + depth);
@@ -25,8 +28,8 @@ double liquid_volume(const LiquidGrid& grid, const GasSolids& solids) {
         deep = deep && surface[i - step] <= 0.0f && surface[i + step] <= 0.0f;
       if (deep) full = 1.0f;
       if (distance != nullptr) {
-        full *= clamp(0.5f + distance[i] * inverse, 0.0f, 1.0f);
-      } else if (solid != nullptr && solid[i] != 0) {
+        full *= clamp(0.5f + distance[at] * inverse, 0.0f, 1.0f);
+      } else if (solid != nullptr && solid[at] != 0) {
         full = 0.0f;
       }
       sum += double(full);

@@ -3,6 +3,7 @@
 
 #include "fluid/liquid/extrapolation.h"
 #include "fluid/liquid/liquid_cells.h"
+#include "fluid/liquid/liquid_fields.h"
 #include "fluid/liquid/liquid_pressure.h"
 #include "fluid/liquid/liquid_viscosity.h"
 #include "fluid/liquid/particle_transfer.h"
@@ -13,31 +14,6 @@
 namespace gyre {
 
 namespace {
-
-void prepare_memory(const LiquidPass& pass) {
-  const std::size_t size = std::size_t(pass.shape().size);
-  LiquidMemory& memory = pass.memory;
-  const PressureGrid& finest = memory.matrix.levels[0];
-  const bool same_cells = finest.shape.cells[0] == pass.shape().cells[0] &&
-                          finest.shape.cells[1] == pass.shape().cells[1] &&
-                          finest.shape.cells[2] == pass.shape().cells[2];
-  if (memory.filled.size() == size && memory.cell.size() == size && same_cells) return;
-  const auto renew = [size](Array<float>& field) { field.clear(), field.resize(size, 0.0f); };
-  for (Array<float>& field : memory.field) renew(field);
-  renew(memory.filled);
-  for (int axis = 0; axis < 3; ++axis) {
-    renew(memory.drift[axis]);
-    renew(memory.before[axis]);
-    renew(memory.open[axis]);
-    renew(memory.steepness[axis]);
-  }
-  memory.blocked.clear();
-  memory.blocked.resize(size, std::uint8_t(0));
-  memory.cell.clear();
-  memory.cell.resize(size, LiquidCell::solid);
-  memory.matrix = PressureMatrix{};
-  memory.has_open = false;
-}
 
 // The largest number of cells that a particle or a solid may pass along an axis within the step.
 float largest_displacement(const LiquidPass& pass, Vec3 gravity) {
@@ -68,30 +44,45 @@ float largest_displacement(const LiquidPass& pass, Vec3 gravity) {
 // A lattice that moves with the velocity of a source: particles that have come from it are still on it, and only places without one get one.
 struct SourceLattice {
   double spacing[3], offset[3];
-  int counts[3];
+  int first[3], counts[3];  // places around the source
   Array<std::uint8_t> taken;
 
-  SourceLattice(const LiquidGrid& grid, const LiquidEmitter& emitter, double time) {
+  SourceLattice(const LiquidGrid& grid, const LiquidEmitter& emitter, Vec3 center, double time) {
     std::size_t count = 1;
     for (int axis = 0; axis < 3; ++axis) {
       const double edge = double(part_along(grid.box.cell, axis));
-      spacing[axis] = grid.box.flat(axis) ? edge : 0.5 * edge;
-      const double moved =
-          grid.box.flat(axis) ? 0.0 : double(part_along(emitter.velocity, axis)) * (time - emitter.start);
+      const bool flat = grid.box.flat(axis);
+      spacing[axis] = flat ? edge : 0.5 * edge;
+      const double moved = flat ? 0.0 : double(part_along(emitter.velocity, axis)) * (time - emitter.start);
       const double places = moved / spacing[axis];
       offset[axis] = (places - std::floor(places)) * spacing[axis];
-      counts[axis] =
-          (grid.box.flat(axis) ? 1 : 2 * grid.box.cells[axis]) + 1;  // the first begins before the box
+      // The first place begins before the box.
+      const int last = (flat ? 1 : 2 * grid.box.cells[axis]) + 1;
+      const auto within = [last](int i) { return i < 0 ? 0 : i < last ? i : last; };
+      const float middle = part_along(center, axis);
+      first[axis] = flat ? 0 : within(place(axis, middle - emitter.radius) - 1);
+      const int end = flat ? last : within(place(axis, middle + emitter.radius) + 2);
+      counts[axis] = end - first[axis];
       count *= std::size_t(counts[axis]);
     }
     taken.resize(count, std::uint8_t(0));
   }
   int place(int axis, float at) const {
-    const int i = int((double(at) - offset[axis]) / spacing[axis] + 1.0);
-    return i < 0 ? 0 : i < counts[axis] ? i : counts[axis] - 1;
+    const double places = (double(at) - offset[axis]) / spacing[axis] + 1.0;
+    return int(clamp(places, -1.0e9, 1.0e9));
   }
-  float point(int axis, int i) const { return float((double(i) - 0.5) * spacing[axis] + offset[axis]); }
+  float point(int axis, int i) const {
+    return float((double(first[axis] + i) - 0.5) * spacing[axis] + offset[axis]);
+  }
   std::uint8_t& at(int i, int j, int k) { return taken[i + counts[0] * (j + counts[1] * k)]; }
+  void take(Vec3 point) {
+    int index[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      index[axis] = place(axis, part_along(point, axis)) - first[axis];
+      if (index[axis] < 0 || index[axis] >= counts[axis]) return;
+    }
+    at(index[0], index[1], index[2]) = 1;
+  }
 };
 
 void apply_emitter(const LiquidPass& pass, const LiquidEmitter& emitter, double time) {
@@ -104,11 +95,11 @@ void apply_emitter(const LiquidPass& pass, const LiquidEmitter& emitter, double 
     if (pass.flat(2)) offset.z = 0.0f;
     return dot(offset, offset) <= emitter.radius * emitter.radius;
   };
-  SourceLattice lattice(grid, emitter, time);
+  SourceLattice lattice(grid, emitter, center, time);
   for (int p = 0; p < grid.particles(); ++p) {
     const Vec3 point{grid.position[0][p], grid.position[1][p], grid.position[2][p]};
     if (!is_finite(point)) continue;
-    lattice.at(lattice.place(0, point.x), lattice.place(1, point.y), lattice.place(2, point.z)) = 1;
+    lattice.take(point);
     if (!holds(point)) continue;
     for (int axis = 0; axis < 3; ++axis) {
       grid.motion[axis][p] = pass.flat(axis) ? 0.0f : part_along(emitter.velocity, axis);
@@ -122,7 +113,8 @@ void apply_emitter(const LiquidPass& pass, const LiquidEmitter& emitter, double 
     for (int j = 0; j < lattice.counts[1]; ++j) {
       for (int i = 0; i < lattice.counts[0]; ++i) {
         const Vec3 point{lattice.point(0, i), lattice.point(1, j), lattice.point(2, k)};
-        if (lattice.at(i, j, k) == 0 && holds(point) && has_room(grid, pass.solids, point))
+        if (lattice.at(i, j, k) == 0 && holds(point) &&
+            has_room(grid.box, pass.memory.window, pass.solids, point))
           add_particle(grid, point, velocity, volume);
       }
     }
@@ -150,11 +142,11 @@ void hold_sources(const LiquidPass& pass, std::span<const LiquidEmitter> emitter
           const float reach =
               emitter.radius + 0.5f * pass.edge(axis);  // particles at the rim lie between faces
           if (square > reach * reach || !(pass.memory.open[axis][c + i] > 0.0f)) continue;
-          pass.grid.velocity[axis][c + i] = velocity;
+          pass.memory.velocity[axis][c + i] = velocity;
           pass.memory.drift[axis][c + i] = velocity;
         }
       });
-      wrap_points(pass, pass.grid.velocity[axis].data());
+      wrap_points(pass, pass.memory.velocity[axis].data());
       wrap_points(pass, pass.memory.drift[axis].data());
     }
   }
@@ -164,7 +156,7 @@ void add_gravity(const LiquidPass& pass, Vec3 gravity) {
   for (int axis = 0; axis < 3; ++axis) {
     const float change = part_along(gravity, axis) * pass.step;
     if (pass.flat(axis) || change == 0.0f) continue;
-    float* const velocity = pass.grid.velocity[axis].data();
+    float* const velocity = pass.memory.velocity[axis].data();
     each_row(pass, axis, [&](int c, int, int) {
       for (int f = c; f < c + pass.shape().cells[0] + (axis == 0 ? 1 : 0); ++f) velocity[f] += change;
     });
@@ -201,8 +193,33 @@ void turn_particles(const LiquidPass& pass, const FrameMotion& motion) {
 void save_velocity(const LiquidPass& pass) {
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
-    pass.memory.before[axis].assign(pass.grid.velocity[axis].view());
+    pass.memory.before[axis].assign(pass.memory.velocity[axis].view());
     wrap_points(pass, pass.memory.before[axis].data());
+  }
+}
+
+// The pressure acts on faces that a solid cuts as if liquid filled their open part. The particles there have another mass, at the first touch of
+// a blow a smaller one, so they take from such faces the momentum that the solid gave: the change of velocity times the ratio of both masses.
+// Called before particles move and again after it, which puts the velocities back.
+constexpr float kMinMassRatio = 0.5f;  // 1: more, where particles crowd
+constexpr float kMaxMassRatio = 2.0f;  // 1: less, so that few particles at a face get no wild velocity
+void swap_cut_velocities(const LiquidPass& pass, bool forth) {
+  LiquidMemory& memory = pass.memory;
+  const float volume = pass.edge(0) * pass.edge(1) * pass.edge(2);
+  for (const CutFace& face : memory.coupling.faces) {
+    const std::size_t f = std::size_t(face.face);
+    const float open = memory.open[face.axis][f], filled = memory.sums[face.axis][2 * f];
+    if (!(open > 0.0f && open < 1.0f && filled > 0.0f)) continue;
+    float& velocity = memory.velocity[face.axis][f];
+    float& before = memory.before[face.axis][f];
+    const float now = velocity;
+    if (forth) {
+      const float ratio = clamp(open * volume / filled, kMinMassRatio, kMaxMassRatio);
+      velocity = before + ratio * (velocity - before);
+      before = now;
+    } else {
+      velocity = before;
+    }
   }
 }
 
@@ -226,20 +243,37 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
   const int layers = 2 + int(settings.max_cells + 0.999f);
   report.iterations += find_carrier(pass).iterations;
   find_layers(pass, layers);
-  extrapolate(pass, pass.grid.velocity, pass.memory.drift);
+  extrapolate(pass, pass.memory.velocity, pass.memory.drift);
   hold_sources(pass, emitters, time);
+  const bool cut = pass.solids.present() && !(settings.blend < 1.0f);
+  if (cut) swap_cut_velocities(pass, true);
   move_particles(pass, settings.blend, settings.gravity);
+  if (cut) swap_cut_velocities(pass, false);
+}
+
+// The window of the present particles instead of one that some of them are about to leave.
+void move_window(const LiquidPass& pass, std::span<const LiquidEmitter> emitters, double time,
+                 FunctionRef<void(const LiquidWindow&)> cut, float ahead) {
+  store_fields(pass);
+  const CellBox cells = cells_of_particles(pass.grid, ahead, pass.tasks);
+  pass.memory.window = find_window(pass.grid, cells, pass.bodies, emitters, time);
+  cut(pass.memory.window);
+  begin_fields(pass);
+  find_open_faces(pass);
 }
 
 }  // namespace
 
-LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, std::span<const FluidBody> bodies,
+LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids,
+                         FunctionRef<void(const LiquidWindow&)> cut, std::span<const FluidBody> bodies,
                          std::span<const LiquidEmitter> emitters, const LiquidSettings& settings, double time,
                          float step, LiquidMemory& memory, const GasKernels& kernels, TaskSystem& tasks,
                          std::span<GasImpulse> impulses) {
   const TaskSystem::Busy busy(tasks);
+  memory.window = find_window(grid, cells_of_particles(grid, step, tasks), bodies, emitters, time);
+  cut(memory.window);
   LiquidPass pass{grid, solids, bodies, memory, kernels, tasks, step, 0.0f};
-  prepare_memory(pass);
+  begin_fields(pass);
   LiquidReport report;
   begin_motions(grid.box, bodies, solids.present() ? solids.labels : 0, memory.coupling);
   find_open_faces(pass);
@@ -255,21 +289,30 @@ LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, std::span<co
   pass.step = step / float(report.substeps);
   for (int substep = 0; substep < report.substeps; ++substep) {
     pass.elapsed = float(substep) * pass.step;
+    if (substep > 0 &&
+        !memory.window.cells().contains(with_margin(grid.box, cells_of_particles(grid, 0.0f, tasks))))
+      move_window(pass, emitters, time, cut, step - pass.elapsed);
     run_substep(pass, settings, emitters, time, report, impulses);
   }
   if (grid.box.any_open()) sort_particles(pass);
+  store_fields(pass);
   return report;
 }
 
-void find_liquid_fields(LiquidGrid& grid, const GasSolids& solids) {
+void find_liquid_fields(LiquidGrid& grid, const GasSolids& solids,
+                        FunctionRef<void(const LiquidWindow&)> cut) {
   TaskSystem tasks(1);
   LiquidMemory memory;
+  memory.window = find_window(grid, cells_of_particles(grid, 0.0f, tasks), {}, {}, 0.0);
+  cut(memory.window);
   LiquidPass pass{grid, solids, {}, memory, select_gas_kernels(0), tasks, 0.0f, 0.0f};
-  prepare_memory(pass);
+  begin_fields(pass);
   find_open_faces(pass);
   sort_particles(pass);
   find_filled(pass);
   find_surface(pass);
+  memory.has_stored = true, memory.stored = memory.window;
+  store_fields(pass);
 }
 
 }  // namespace gyre

@@ -232,8 +232,8 @@ LiquidGrid run_mixed(int threads, int width) {
   body.acceleration = {0, -9.81f, 0};
   for (int i = 0; i < 12; ++i) {
     GasImpulse impulse;
-    step_liquid(grid, solids, std::span(&body, 1), {}, settings, i / 30.0, 1.0f / 30.0f, memory,
-                select_gas_kernels(width), tasks, std::span(&impulse, 1));
+    step_in_windows(grid, solids, std::span(&body, 1), {}, settings, i / 30.0, 1.0f / 30.0f, memory,
+                    select_gas_kernels(width), tasks, std::span(&impulse, 1));
   }
   return grid;
 }

@@ -10,6 +10,44 @@ namespace gyre::liquid_test {
 using gas_test::box_of;
 using gas_test::Random;
 
+// The solids of a window, from those of the whole box.
+struct WindowSolids {
+  const LiquidGrid& grid;
+  const GasSolids& whole;
+  GasSolids part;
+
+  void cut(const LiquidWindow& window) {
+    part = whole;
+    if (!whole.present()) return;
+    const auto copy = [&](const auto& from, auto& to) {
+      if (from.empty()) return;
+      to.resize(std::size_t(window.shape.size));
+      for (int k = 0; k <= window.box.cells[2]; ++k)
+        for (int j = 0; j <= window.box.cells[1]; ++j)
+          for (int i = 0; i <= window.box.cells[0]; ++i)
+            to[std::size_t(window.shape.at(i, j, k))] = from[std::size_t(
+                grid.shape.at(window.first[0] + i, window.first[1] + j, window.first[2] + k))];
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      copy(whole.open[axis], part.open[axis]), copy(whole.velocity[axis], part.velocity[axis]);
+      copy(whole.label[axis], part.label[axis]);
+    }
+    copy(whole.solid, part.solid), copy(whole.distance, part.distance), copy(whole.nearest, part.nearest);
+    part.near.clear();
+  }
+};
+
+inline LiquidReport step_in_windows(LiquidGrid& grid, const GasSolids& solids,
+                                    std::span<const FluidBody> bodies,
+                                    std::span<const LiquidEmitter> emitters, const LiquidSettings& settings,
+                                    double time, float step, LiquidMemory& memory, const GasKernels& kernels,
+                                    TaskSystem& tasks, std::span<GasImpulse> impulses) {
+  WindowSolids own{grid, solids, {}};
+  return step_liquid(
+      grid, own.part, [&](const LiquidWindow& window) { own.cut(window); }, bodies, emitters, settings, time,
+      step, memory, kernels, tasks, impulses);
+}
+
 struct Bench {
   TaskSystem tasks{1};
   const GasKernels* kernels = &select_gas_kernels(0);
@@ -21,8 +59,8 @@ struct Bench {
 
   LiquidReport step(LiquidGrid& grid, float step = 1.0f / 60.0f, std::span<const LiquidEmitter> emitters = {},
                     std::span<GasImpulse> impulses = {}) {
-    const LiquidReport report =
-        step_liquid(grid, solids, bodies, emitters, settings, time, step, memory, *kernels, tasks, impulses);
+    const LiquidReport report = step_in_windows(grid, solids, bodies, emitters, settings, time, step, memory,
+                                                *kernels, tasks, impulses);
     time += double(step);
     return report;
   }

@@ -57,7 +57,7 @@ struct Viscosity {
   void find_weights() {
     const GridShape& shape = pass.shape();
     const LiquidCell* const cell = pass.memory.cell.data();
-    const float* const surface = pass.grid.surface.data();
+    const float* const surface = pass.memory.surface.data();
     const float inverse_edge = 1.0f / pass.edge(0);
     each_row(pass, -1, [&](int c, int, int) {
       for (int i = c; i < c + shape.cells[0]; ++i)
@@ -214,7 +214,7 @@ struct Viscosity {
 
 int add_liquid_viscosity(const LiquidPass& pass, float kinematic_viscosity) {
   Viscosity work(pass, kinematic_viscosity);
-  Array<float>(&velocity)[3] = pass.grid.velocity;
+  Array<float>(&velocity)[3] = pass.memory.velocity;
   work.apply(velocity, work.q, true);
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;

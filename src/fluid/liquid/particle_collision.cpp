@@ -13,7 +13,7 @@ ParticleCollision::ParticleCollision(const LiquidPass& pass)
     : pass_(pass), has_solids_(pass.solids.present()) {
   edge_ = 1.0e30f;
   for (int axis = 0; axis < 3; ++axis) {
-    axes_[axis] = particle_axis(pass.box(), axis);
+    axes_[axis] = particle_axis(pass.grid.box, axis);
     if (!pass.flat(axis) && pass.edge(axis) < edge_) edge_ = pass.edge(axis);
   }
   diagonal_ = 1.01f * length(pass.box().cell);
@@ -71,14 +71,15 @@ Vec3 ParticleCollision::velocity_at(int label, Vec3 point) const {
 }
 
 float ParticleCollision::distance_at(Vec3 point) const {
-  return sample_field(pass_.box(), pass_.shape(), distance_, -1, point);
+  return sample_field(pass_.box(), pass_.shape(), distance_, -1, point - pass_.memory.window.origin());
 }
 
 void ParticleCollision::avoid_solids(int particle, const float (&from)[3], float (&to)[3]) const {
   const GridShape& shape = pass_.shape();
   int index[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const int i = int(from[axis] / pass_.edge(axis)), last = shape.cells[axis] - 1;
+    const int i = int(from[axis] / pass_.edge(axis)) - pass_.memory.window.first[axis],
+              last = shape.cells[axis] - 1;
     index[axis] = i < 0 ? 0 : i < last ? i : last;
   }
   const int here = shape.at(index[0], index[1], index[2]);

@@ -76,9 +76,11 @@ void fold_ghosts(const LiquidPass& pass, int faces, int numbers, float* field) {
 ParticlePass particle_pass(const LiquidPass& pass) {
   ParticlePass result;
   LiquidGrid& grid = pass.grid;
-  result.shape = grid.shape;
+  const LiquidWindow& window = pass.memory.window;
+  result.shape = window.shape;
   for (int axis = 0; axis < 3; ++axis) {
-    result.axes[axis] = particle_axis(grid.box, axis);
+    result.axes[axis] = particle_axis(grid.box, axis, window.first[axis], window.box.cells[axis]);
+    result.shape.first -= window.first[axis] * window.shape.stride(axis);
     result.position[axis] = grid.position[axis].data();
     result.motion[axis] = grid.motion[axis].data();
   }
@@ -131,7 +133,7 @@ void find_wet(const LiquidPass& pass) {
 
 void sort_particles(const LiquidPass& pass) {
   LiquidGrid& grid = pass.grid;
-  const int count = grid.particles(), cells = grid.shape.count();
+  const int count = grid.particles(), cells = pass.shape().count();
   const ParticlePass work = particle_pass(pass);
   Array<std::int32_t>& place = pass.memory.place;
   Array<std::int32_t>& start = pass.memory.start;
@@ -181,7 +183,7 @@ void transfer_to_grid(const LiquidPass& pass) {
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     pass.memory.sums[axis].clear();
-    pass.memory.sums[axis].resize(2 * std::size_t(grid.shape.size), 0.0f);
+    pass.memory.sums[axis].resize(2 * std::size_t(pass.shape().size), 0.0f);
     work.sums[axis] = sums[axis] = pass.memory.sums[axis].data();
   }
   for (float& one : pass.memory.filled) one = 0.0f;
@@ -191,10 +193,10 @@ void transfer_to_grid(const LiquidPass& pass) {
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     fold_ghosts(pass, axis, 2, sums[axis]);
-    float* const velocity = grid.velocity[axis].data();
+    float* const velocity = pass.memory.velocity[axis].data();
     const float least = 1.0e-6f * particle_volume(grid.box);
     each_row(pass, axis, [&](int c, int j, int k) {
-      const int end = c + grid.shape.cells[0] + (axis == 0 ? 1 : 0);
+      const int end = c + pass.shape().cells[0] + (axis == 0 ? 1 : 0);
       if (has_no_particles(pass, j, k)) {
         for (int f = c; f < end; ++f) velocity[f] = 0.0f;
         return;
@@ -213,7 +215,7 @@ void move_particles(const LiquidPass& pass, float blend, Vec3 gravity) {
   ParticlePass work = particle_pass(pass);
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
-    work.velocity[axis] = grid.velocity[axis].data();
+    work.velocity[axis] = pass.memory.velocity[axis].data();
     work.carrier[axis] = pass.memory.drift[axis].data();
     if (blend < 1.0f) work.before[axis] = pass.memory.before[axis].data();
     work.fall[axis] = part_along(gravity, axis) * pass.step;

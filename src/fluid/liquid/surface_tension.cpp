@@ -67,7 +67,7 @@ void set_surface_pressure(const LiquidPass& pass, float ratio) {
     }
   });
   for (float* const part : normal) fill_ghosts(pass.box(), shape, part);
-  float* const pressure = pass.grid.pressure.data();
+  float* const pressure = pass.memory.pressure.data();
   const float most = 2.0f / pass.edge(0);
   each_row(pass, -1, [&](int c, int, int) {
     for (int i = c; i < c + shape.cells[0]; ++i) {

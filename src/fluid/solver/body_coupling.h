@@ -69,6 +69,7 @@ struct CouplingGrid {
   const float* open[3];
   const float* active;
   float density;
+  int first[3] = {0, 0, 0};  // the cell of the fluid's box that is the first of the grid
 };
 void find_cut_faces(const CouplingGrid& grid, bool layers, BodyCoupling& coupling);
 // The motions of bodies at the beginning of a step.

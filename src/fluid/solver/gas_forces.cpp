@@ -102,9 +102,8 @@ void add_buoyancy(const GasPass& pass, Vec3 gravity, float buoyancy) {
   }
 }
 
-void add_turning(const GasPass& pass) {
+void turn_velocity(const GasPass& pass) {
   const GridShape& shape = pass.shape();
-  const FrameMotion& motion = pass.motion;
   for (int axis = 0; axis < 3; ++axis) {
     const float* const from = pass.grid.velocity[axis].data();
     float* const to = pass.scratch(axis);
@@ -112,7 +111,7 @@ void add_turning(const GasPass& pass) {
       for (int i = c; i < c + shape.cells[0] + (axis == 0 ? 1 : 0); ++i) to[i] = from[i];
     });
   }
-  const Quat back = from_rotation_vector(-2.0f * pass.step * motion.spin);
+  const Quat back = from_rotation_vector(-2.0f * pass.step * pass.motion.spin);
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     float* const velocity = pass.grid.velocity[axis].data();
@@ -122,10 +121,8 @@ void add_turning(const GasPass& pass) {
       for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
         if (!(face[c + i] > 0.0f)) continue;
         const int index[3] = {i, j, k};
-        float parts[3], place[3];
+        float parts[3];
         for (int other = 0; other < 3; ++other) {
-          const float offset = other == axis ? 0.0f : 0.5f;
-          place[other] = (float(index[other]) + offset) * pass.edge(other);
           const float* const from = pass.scratch(other) + c + i;
           if (other == axis) {
             parts[other] = from[0];
@@ -138,9 +135,26 @@ void add_turning(const GasPass& pass) {
                          : index[axis] == last ? 0.5f * beside
                                                : 0.25f * (here + beside);
         }
-        const Vec3 turned = rotate(back, Vec3{parts[0], parts[1], parts[2]});
-        const Vec3 outward = motion.outward({place[0], place[1], place[2]});
-        velocity[c + i] = part_of(turned, axis) + pass.step * part_of(outward, axis);
+        velocity[c + i] = part_of(rotate(back, Vec3{parts[0], parts[1], parts[2]}), axis);
+      }
+    });
+  }
+}
+
+void add_outward(const GasPass& pass) {
+  const GridShape& shape = pass.shape();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pass.flat(axis)) continue;
+    float* const velocity = pass.grid.velocity[axis].data();
+    const float* const face = pass.memory.matrix.levels[0].face[axis].data();
+    const auto along = [&](int index, int of) {
+      return (float(index) + (of == axis ? 0.0f : 0.5f)) * pass.edge(of);
+    };
+    each_row(pass, axis, [&](int c, int j, int k) {
+      for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+        if (!(face[c + i] > 0.0f)) continue;
+        const Vec3 outward = pass.motion.outward({along(i, 0), along(j, 1), along(k, 2)});
+        velocity[c + i] += pass.step * part_of(outward, axis);
       }
     });
   }

@@ -26,8 +26,11 @@ void apply_emitters(const GasPass& pass, std::span<const GasEmitter> emitters, s
 // pressure, within walls as beyond open sides, and is left out of both.
 void add_buoyancy(const GasPass& pass, Vec3 gravity, float buoyancy);
 
-// A box that turns adds this: velocities turn against it by twice its angle, and are drawn away from its axis.
-void add_turning(const GasPass& pass);
+// A box that turns adds two accelerations. Velocities turn against the box by twice its angle. They must not hold a push of the pressure, which
+// would turn into a swirl.
+void turn_velocity(const GasPass& pass);
+// And the gas is drawn away from the axis.
+void add_outward(const GasPass& pass);
 
 // Velocity += step strength h (N x w), w the vorticity, N the direction in which it grows (J. Steinhoff, D. Underhill, 1994; R. Fedkiw, J. Stam,
 // H. W. Jensen, "Visual Simulation of Smoke", 2001).

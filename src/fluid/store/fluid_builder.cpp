@@ -391,7 +391,7 @@ FluidEntry build_fluid(std::shared_ptr<const FluidDef> def) {
   return entry;
 }
 
-bool fill_liquid(FluidEntry& entry, const GasSolids& solids) {
+bool fill_liquid(FluidEntry& entry, const GasSolids& solids, FunctionRef<void(const LiquidWindow&)> cut) {
   const LiquidDef& def = entry.liquid_def();
   LiquidGrid& grid = entry.liquid;
   if (def.particles) {
@@ -408,7 +408,7 @@ bool fill_liquid(FluidEntry& entry, const GasSolids& solids) {
     for (const FluidRegion& region : def.fill)
       fill_liquid_box(grid, region.lower, region.upper, def.initial_velocity, solids);
   }
-  find_liquid_fields(grid, solids);
+  find_liquid_fields(grid, solids, cut);
   return grid.particles() <= kMaxLiquidParticles;
 }
 

@@ -24,7 +24,8 @@ std::int64_t count_cells(const FluidDef& def);
 // The definition must have passed its check. A liquid has no particles yet: see fill_liquid.
 FluidEntry build_fluid(std::shared_ptr<const FluidDef> def);
 // The particles of the definition of a liquid, but for places within solids. Returns false, and leaves some out, if there are too many.
-bool fill_liquid(FluidEntry& entry, const GasSolids& solids);
+// `solids` are those of the whole box; `cut` makes them those of a window.
+bool fill_liquid(FluidEntry& entry, const GasSolids& solids, FunctionRef<void(const LiquidWindow&)> cut);
 // True if the arrays of an entry that was read from a file can be those of its definition.
 bool fits_definition(const FluidEntry& entry);
 void set_emitters(FluidEntry& entry, std::span<const FluidEmitter> emitters);

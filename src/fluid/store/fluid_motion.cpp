@@ -6,9 +6,20 @@ namespace {
 
 float part_of(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-// Subtracts from a field of velocities on faces the velocity linear + angular x place.
+// True if no cell beside a face, or beside these across the other axes, has liquid near: the fields there are those of air.
+bool is_far_from_liquid(const LiquidGrid& liquid, int axis, int i, int j, int k) {
+  int low[3] = {i - 1, j - 1, k - 1}, high[3] = {i + 1, j + 1, k + 1};
+  high[axis] -= 1;
+  for (int z = low[2]; z <= high[2]; ++z)
+    for (int y = low[1]; y <= high[1]; ++y)
+      for (int x = low[0]; x <= high[0]; ++x)
+        if (liquid.surface[liquid.shape.at(x, y, z)] < liquid.box.cell.x) return false;
+  return true;
+}
+
+// Subtracts from a field of velocities on faces the velocity linear + angular x place. `liquid`: only near it, null: everywhere.
 void subtract_motion(const GasBox& box, const GridShape& shape, Vec3 linear, Vec3 angular,
-                     Array<float> (&velocity)[3]) {
+                     const LiquidGrid* liquid, Array<float> (&velocity)[3]) {
   const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
   for (int axis = 0; axis < 3; ++axis) {
     if (box.flat(axis)) continue;
@@ -17,6 +28,7 @@ void subtract_motion(const GasBox& box, const GridShape& shape, Vec3 linear, Vec
     for (int k = 0; k < shape.cells[2] + (axis == 2 ? 1 : 0); ++k) {
       for (int j = 0; j < shape.cells[1] + (axis == 1 ? 1 : 0); ++j) {
         for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
+          if (liquid != nullptr && is_far_from_liquid(*liquid, axis, i, j, k)) continue;
           const Vec3 place{(float(i) + half.x) * box.cell.x, (float(j) + half.y) * box.cell.y,
                            (float(k) + half.z) * box.cell.z};
           faces[shape.at(i, j, k)] -= part_of(linear + cross(angular, place), axis);
@@ -75,9 +87,9 @@ void change_frame_velocity(FluidEntry& entry, Vec3 linear, Vec3 angular) {
   const Vec3 shift = vector_to_frame(&frame, linear) + cross(turn, corner);
   if (entry.is_liquid()) {
     subtract_motion(entry.liquid, shift, turn);
-    subtract_motion(entry.liquid.box, entry.liquid.shape, shift, turn, entry.liquid.velocity);
+    subtract_motion(entry.liquid.box, entry.liquid.shape, shift, turn, &entry.liquid, entry.liquid.velocity);
   } else {
-    subtract_motion(entry.gas.box, entry.gas.shape, shift, turn, entry.gas.velocity);
+    subtract_motion(entry.gas.box, entry.gas.shape, shift, turn, nullptr, entry.gas.velocity);
   }
   set_frame(entry, frame);
 }
