@@ -75,15 +75,15 @@ void order_alike(const BatchContext& batch, std::span<const std::uint32_t> membe
 }  // namespace
 
 std::span<ContactGroup> lay_out_contacts(BatchContext& batch, std::span<ContactGroup> groups) {
-  Array<std::uint32_t>& order = batch.scratch.contacts.order;
+  ContactLists& lists = batch.scratch.contacts;
+  Array<std::uint32_t>& order = lists.order;
   const Coloring& colors = batch.scratch.contact_colors;
   const std::uint32_t width = std::uint32_t(batch.kernels.width);
   order.clear();
   std::size_t used = 0;
   std::uint32_t blocks = 0;
-  for (int g = 0; g < colors.group_count(); ++g) {
-    const std::span<const std::uint32_t> members = colors.group(g);
-    if (members.empty()) continue;
+  const auto lay_out = [&](int g, std::span<const std::uint32_t> members, bool held) {
+    if (members.empty()) return;
     const bool serial = g == colors.overflow_group();
     int* const bounds = serial || batch.group_bounds.empty()
                             ? nullptr
@@ -95,9 +95,19 @@ std::span<ContactGroup> lay_out_contacts(BatchContext& batch, std::span<ContactG
       order_alike(batch, members, order, bounds);
     }
     const std::uint32_t end = std::uint32_t(order.size()) / width;
-    groups[used++] = {&batch.contacts, blocks, end - blocks, serial, bounds};
+    groups[used++] = {&batch.contacts, blocks, end - blocks, serial, bounds, held};
     blocks = end;
     batch.scratch.counts.colors_used |= std::uint64_t{1} << g;
+  };
+  const std::span<const std::uint8_t> held = batch.contacts.held.contacts;
+  for (int g = 0; g < colors.group_count() && held.empty(); ++g) lay_out(g, colors.group(g), false);
+  for (int part = 0; part < 2 && !held.empty(); ++part) {
+    for (int g = 0; g < colors.group_count(); ++g) {
+      lists.members.clear();
+      for (const std::uint32_t member : colors.group(g))
+        if (held[member] == part) lists.members.push_back(member);
+      lay_out(g, lists.members.view(), part == 1);
+    }
   }
   return groups.first(used);
 }

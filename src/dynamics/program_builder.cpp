@@ -31,9 +31,12 @@ ProgramBuilder::ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena
       soft_members_(int(batch.soft.members.size())),
       is_fused_(batch.is_fused()) {
   for (const ContactGroup& group : batch.contact_groups) contact_blocks_ += int(group.count);
+  std::size_t held = 0;
+  for (const ContactGroup& group : batch.contact_groups) held += group.held ? 1 : 0;
   const std::size_t joints = batch.joints.groups.size(), contacts = batch.contact_groups.size();
   room_ = arena.make<Stage>(kLinesOnce + 2 * contacts +
-                            std::size_t(half_steps) * (kLinesPerHalfStep + 3 * joints + 2 * contacts));
+                            std::size_t(half_steps) *
+                                (kLinesPerHalfStep + 3 * joints + 2 * contacts + kHeldIterations * held));
 }
 
 }  // namespace gyre

@@ -22,6 +22,9 @@ void run_stage(void* context, int begin, int end, int worker) {
     stage(*static_cast<Context*>(context), begin, end);
 }
 
+// Iterations over the contacts of held bodies in a half-step (docs/decisions/held-bodies.md).
+constexpr std::size_t kHeldIterations = 20;
+
 class ProgramBuilder {
  public:
   ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena);
@@ -68,11 +71,18 @@ class ProgramBuilder {
     add(run_stage<stage, FieldSolve>, &batch_.motion.fields, fields_);
   }
 
-  // Add lines for contacts: by colour; for all blocks; for those with restitution; for resting islands.
+  // Add lines for contacts: by colour; of held bodies; for all blocks; for those with restitution; for resting islands.
   template <auto stage>
   void contacts() {
     for (ContactGroup& group : batch_.contact_groups)
       add_group(run_stage<stage, ContactGroup>, group, int(group.count), kContactBlocksPerClaim);
+  }
+  template <auto stage>
+  void held_contacts(std::size_t iterations) {
+    for (std::size_t i = 0; i < iterations; ++i)
+      for (ContactGroup& group : batch_.contact_groups)
+        if (group.held)
+          add_group(run_stage<stage, ContactGroup>, group, int(group.count), kContactBlocksPerClaim);
   }
   template <auto stage>
   void contact_blocks() {

@@ -85,7 +85,7 @@ void lay_out_resting(ContactSolve& s, Arena& arena) {
 
 // ---------------------------------------------------------------------------------------------------------------- joints
 
-// By index in the batch: 1 for bodies in contact.
+// By index in the batch: 1 for bodies in contact, kPressesHeld for those that press a held body.
 std::span<const std::uint8_t> find_bodies_in_contact(const BatchContext& batch, Arena& arena) {
   const std::span<const ColoringPair> pairs = batch.scratch.contacts.pairs;
   if (pairs.empty() || batch.joints.edges.empty()) return {};
@@ -95,6 +95,9 @@ std::span<const std::uint8_t> find_bodies_in_contact(const BatchContext& batch, 
     if (pair.a != ColoringPair::kNone) in_contact[pair.a] = 1;
     if (pair.b != ColoringPair::kNone) in_contact[pair.b] = 1;
   }
+  const std::span<const std::uint8_t> pressing = batch.contacts.held.pressing;
+  for (std::size_t i = 0; i < pressing.size(); ++i)
+    if (pressing[i] != 0) in_contact[i] = kPressesHeld;
   return in_contact;
 }
 
@@ -146,11 +149,22 @@ void gather_constraints(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
                                      tasks.worker_count(), arena);
 }
 
+// Finds held bodies. Their contacts are solved to the end in each half-step, so they need no spring.
+void find_held(BatchContext& batch, Arena& arena) {
+  ContactSolve& contacts = batch.contacts;
+  contacts.held = find_held_bodies(batch.w, batch.members, batch.local_index, batch.joints.edges,
+                                   contacts.lists.pairs, arena);
+  const std::span<const std::uint8_t> held = contacts.held.contacts;
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (held[i] != 0) contacts.lists.constraints[i].rigid = true;
+}
+
 // Chooses how constraints are solved: directly or iteratively, in which colours, and contacts in which lanes. Joints and resting islands
 // are found in parallel to contacts.
 void color_constraints(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   BatchScratch& scratch = batch.scratch;
   const std::span<ContactGroup> room = arena.make<ContactGroup>(kMaxGroups);
+  find_held(batch, arena);
   if (batch.partition.count() > 1)
     batch.group_bounds = arena.make<int>(kMaxGroups * std::size_t(batch.partition.count() + 1));
   run_parallel(
@@ -391,7 +405,7 @@ void make_as_roomy(WorkerContext& worker, const WorkerContext& other) {
   const BatchScratch& from = other.scratch;
   even(to.contacts.constraints, from.contacts.constraints), even(to.contacts.slots, from.contacts.slots);
   even(to.contacts.impacts, from.contacts.impacts), even(to.contacts.pairs, from.contacts.pairs);
-  even(to.contacts.order, from.contacts.order);
+  even(to.contacts.order, from.contacts.order), even(to.contacts.members, from.contacts.members);
   even_colors(to.contact_colors, from.contact_colors), even_colors(to.joint_colors, from.joint_colors);
   even(to.joints.swept, from.joints.swept), even(to.joints.pairs, from.joints.pairs),
       even(to.hits, from.hits);

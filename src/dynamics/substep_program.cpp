@@ -53,6 +53,12 @@ void add_fused_after_contacts(ProgramBuilder& p, bool last) {
           &FusedRun::apply_forces_and_warm_start, &FusedRun::solve_joints>();
 }
 
+// All contacts once; those of held bodies again and again.
+void add_contacts(ProgramBuilder& p) {
+  p.contacts<solve_contacts>();
+  p.held_contacts<solve_contacts_again>(kHeldIterations - 1);
+}
+
 // One half-step: forces, warm start, joints, contacts, positions, relaxation. Kinds without blocks get no line. In a fused batch all stages
 // from the contacts of one half-step to those of the next are one line, run by run (dynamics/fused_stages.h).
 void add_half_step(ProgramBuilder& p, int half_step, int count) {
@@ -98,7 +104,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   // the last, so that they end at rest. No change is left in between.
   if (first) p.row_islands<solve_row_islands_first>();
   if (!first) p.row_islands<solve_row_islands>();
-  p.contacts<solve_contacts>();
+  add_contacts(p);
   // Soft matter, with bodies as joints and contacts leave them.
   if (p.begins_soft(half_step)) p.soft_rows<turn_soft_rows>();
   if (p.begins_soft(half_step)) p.soft_members<begin_soft_members>();

@@ -75,6 +75,12 @@ bool has_extreme_mass_ratio(const RigidWorld& w, const JointRecord& joint) {
          is_light(joint.body_b, joint.local_anchor_b, joint.body_a, joint.local_anchor_a);
 }
 
+void mark_pressing_lanes(BundledArticulations& bundle) {
+  for (std::size_t lane = 0; lane < bundle.articulations.size(); ++lane)
+    for (const ArticulationJoint& joint : bundle.articulations[lane]->joints)
+      if (joint.presses_held) bundle.lanes.presses_held |= 1u << lane;
+}
+
 }  // namespace
 
 BundleSolve lay_out_bundles(const Articulations& articulations, const SolverKernels& kernels,
@@ -104,6 +110,7 @@ BundleSolve lay_out_bundles(const Articulations& articulations, const SolverKern
           lanes_of(ends[topology] - first, articulations.topologies[topology], std::size_t(wide.width));
       result.bundles[used++] = {make_bundle(articulations.topologies[topology], kernels_of(lanes), arena),
                                 sorted.subspan(first, lanes)};
+      mark_pressing_lanes(result.bundles[used - 1]);
       first += lanes;
     }
   }

@@ -170,6 +170,9 @@ class ArticulationBuilder {
     return !pressed_.empty() && body != kNoBody && is_active(w_, std::uint32_t(body)) &&
            pressed_[body_indices_[std::size_t(body)]] != 0;
   }
+  bool presses_held(std::int32_t body) const {
+    return is_pressed(body) && pressed_[body_indices_[std::size_t(body)]] == kPressesHeld;
+  }
   std::size_t count_pairs(std::span<const std::uint32_t> members) const {
     std::size_t twice = 0;
     for (const std::uint32_t n : members) {
@@ -204,8 +207,13 @@ class ArticulationBuilder {
       // describe() reads it.
       if (const JointDetail* const detail = detail_of(w_.joints, slot))
         prefetch(detail, offsetof(JointDetail, row_impulses));
-      draft.joints[i] = {
-          slot, index, joint.body_a, joint.body_b, is_pressed(joint.body_a), is_pressed(joint.body_b)};
+      draft.joints[i] = {slot,
+                         index,
+                         joint.body_a,
+                         joint.body_b,
+                         is_pressed(joint.body_a),
+                         is_pressed(joint.body_b),
+                         presses_held(joint.body_a) || presses_held(joint.body_b)};
       draft.side_a[i] = side_of(joint.body_a);
       draft.side_b[i] = side_of(joint.body_b);
     }
@@ -222,6 +230,7 @@ class ArticulationBuilder {
       node.body_a = joint.body_a, node.body_b = joint.body_b;
       node.side_a = draft.side_a[i], node.side_b = draft.side_b[i];
       node.count = joints_[joint.index].equations;
+      articulation.presses_held = articulation.presses_held || joint.presses_held;
     }
     articulation.bodies = arena_.make<ArticulationBody>(draft.bodies.size());
     for (std::size_t i = 0; i < draft.bodies.size(); ++i) {

@@ -30,6 +30,7 @@ struct ArticulationJoint {
   std::uint32_t index = 0;   // in the batch's list of joints
   std::int32_t body_a = kNoBody, body_b = kNoBody;
   bool pressed_a = false, pressed_b = false;  // contacts act on the body
+  bool presses_held = false;                  // one of the bodies presses a held one
 };
 // An articulation that is solved side by side with others.
 struct GroupedArticulation {
@@ -65,9 +66,12 @@ class DenseGraphCache {
   Array<JointEdge> joints_;  // of all graphs, one after the other
 };
 
+// A value of `pressed` below: the body presses a held one (rigid/solve/held_bodies.h).
+constexpr std::uint8_t kPressesHeld = 2;
+
 // Finds the articulations of one batch. `places`: body indices of all batches (island_batches); `joints`:
-// those of the batch. `pressed`: by body index, 1 for bodies with contacts; or empty. `start`: settings of
-// the lanes.
+// those of the batch. `pressed`: by body index, 1 for bodies with contacts, kPressesHeld for those that
+// press a held body; or empty. `start`: settings of the lanes.
 Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch,
                                  std::span<const std::uint32_t> body_indices,
                                  std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,

@@ -17,6 +17,7 @@ struct ContactLists {
   Array<ColoringPair> pairs;     // movable bodies of each: indices in the batch
   Array<ImpactContact> impacts;  // contacts with restitution
   Array<std::uint32_t> order;    // constraints, W in each block
+  Array<std::uint32_t> members;  // of a group, while it is laid out
 };
 
 }  // namespace gyre

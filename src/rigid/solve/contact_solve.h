@@ -5,6 +5,7 @@
 #include "rigid/rest/resting_structures.h"
 #include "rigid/rest/resting_trees.h"
 #include "rigid/solve/contact_lists.h"
+#include "rigid/solve/held_bodies.h"
 #include "rigid/solve/rolling_contacts.h"
 #include "solver/kernels/solver_kernels.h"
 
@@ -28,6 +29,7 @@ struct ContactSolve {
   TreeSolve tree_solve{};
   std::span<RestingStructure> structures{};
   StructureSolve structure_solve{};
+  HeldBodies held{};
 };
 
 // A range of contact blocks of one colour.
@@ -36,6 +38,7 @@ struct ContactGroup {
   std::uint32_t first = 0, count = 0;  // blocks
   bool serial = false;                 // the overflow group, whose members share bodies
   const int* bounds = nullptr;         // bounds of each worker's share: Stage::bounds
+  bool held = false;                   // contacts of held bodies
 };
 
 }  // namespace gyre

@@ -53,6 +53,12 @@ void advance_contact_points(const ContactGroup& group, int begin, int end) {
   });
   advance_block();
 }
+void advance_velocities(const ContactGroup& group, int begin, int end) {
+  for_each_rolling(group, begin, end, [&](const RollingContact& rolling, int, int) {
+    Vec3& spin = group.solve->bodies.motion[rolling.body].angular_velocity;
+    spin = spin + rolling.drift;
+  });
+}
 void restore_velocities(const ContactGroup& group, int begin, int end) {
   for_each_rolling(group, begin, end, [&](const RollingContact& rolling, int, int) {
     Vec3& spin = group.solve->bodies.motion[rolling.body].angular_velocity;
@@ -100,6 +106,16 @@ void solve_contacts(const ContactGroup& group, int begin, int end) {
     restore_velocities(group, begin, begin + blocks);
     if (s.has_speculative)
       solve_speculative(s, int(group.first) + begin, int(group.first) + begin + blocks);
+  }
+}
+void solve_contacts_again(const ContactGroup& group, int begin, int end) {
+  const ContactSolve& s = *group.solve;
+  const int blocks = group.serial && !s.rolling.contacts.empty() ? 1 : end - begin;
+  for (; begin < end; begin += blocks) {
+    advance_velocities(group, begin, begin + blocks);
+    s.kernels.contacts.solve_again(s.blocks, int(group.first) + begin, int(group.first) + begin + blocks,
+                                   s.settings.substep);
+    restore_velocities(group, begin, begin + blocks);
   }
 }
 void relax_contacts(const ContactGroup& group, int begin, int end) {

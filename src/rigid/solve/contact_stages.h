@@ -14,6 +14,8 @@ void finish_contacts(const ContactSolve& s, int begin, int end);
 void warm_start_contacts(const ContactGroup& group, int begin, int end);
 // Solves soft contacts without restitution. Points of rolling contacts advance first; speculative contacts come last.
 void solve_contacts(const ContactGroup& group, int begin, int end);
+// Another iteration in the same half-step.
+void solve_contacts_again(const ContactGroup& group, int begin, int end);
 // Solves without springs, so that no velocity from them stays under load.
 void relax_contacts(const ContactGroup& group, int begin, int end);
 // Removes penetration by pushout. Motion records hold displacements instead of velocities.

@@ -456,7 +456,9 @@ void solve_articulation(const Articulation& articulation, const ArticulationSolv
   compute_bias(articulation, s, kMaxErrors);  // with velocities that agree with the joints
 }
 
-void solve_articulation_after_contacts(const Articulation& articulation, const ArticulationSolve& s) {
+void solve_articulation_after_contacts(const Articulation& articulation, const ArticulationSolve& solve) {
+  ArticulationSolve s = solve;
+  s.settings.keeps_motors = articulation.presses_held;
   iterate_drives(articulation, s, true);
   solve_rows(articulation, s, true);
   solve_drives(articulation, s, true);

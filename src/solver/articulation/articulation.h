@@ -79,6 +79,7 @@ struct Articulation {
   std::span<double> room;
   std::span<double> vector;
   bool has_limits = false;  // hard limits (solver/articulation/articulation_limits.h)
+  bool presses_held = false;  // a held body (rigid/solve/held_bodies.h)
   std::span<DrivenAxis> axes{};
   std::span<double> axis_room{};
 };

@@ -70,7 +70,7 @@ GYRE_INLINE Vec3W<W> relative_spin_of(const WideBundle<W>& bundle, const LaneNod
 
 template <int W>
 GYRE_INLINE void iterate_hinge_drives(const WideBundle<W>& bundle, const LaneNode& node, Vec3W<W> axis,
-                                      WideDrives<W>& d) {
+                                      WideDrives<W>& d, Mask<W> kept) {
   const auto change = [&](Wide<W>& accumulated, Wide<W> target, Wide<W> bound) {
     const Wide<W> now = min(max(target, Wide<W>(0.0f) - bound), bound);
     apply_drive_impulse(bundle, node, (now - accumulated) * axis);
@@ -79,8 +79,8 @@ GYRE_INLINE void iterate_hinge_drives(const WideBundle<W>& bundle, const LaneNod
   if (node.has_drive) {
     Wide<W>& accumulated = d.drive_impulse.x;
     const Wide<W> closing = dot(axis, relative_spin_of(bundle, node)) - d.speed.x + d.rate * d.error.x;
-    change(accumulated, accumulated - d.mass_scale * d.mass.xx * closing - d.impulse_scale * accumulated,
-           d.max_drive);
+    const Wide<W> target = accumulated - d.mass_scale * d.mass.xx * closing - d.impulse_scale * accumulated;
+    change(accumulated, select(kept, accumulated, target), d.max_drive);
   }
   if (node.has_friction) {
     Wide<W>& accumulated = d.friction_impulse.x;
@@ -88,14 +88,16 @@ GYRE_INLINE void iterate_hinge_drives(const WideBundle<W>& bundle, const LaneNod
   }
 }
 
+// `kept`: lanes whose drives keep their impulses.
 template <int W>
-__attribute__((noinline)) void iterate_drives(const WideBundle<W>& bundle) {
+__attribute__((noinline)) void iterate_drives(const WideBundle<W>& bundle,
+                                              Mask<W> kept = Mask<W>::splat(false)) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     if (!node.is_driven()) continue;
     WideDrives<W>& d = bundle.drives[node.drives];
     if (node.kind == JointKind::hinge) {
-      iterate_hinge_drives(bundle, node, bundle.joints[n].axis, d);
+      iterate_hinge_drives(bundle, node, bundle.joints[n].axis, d, kept);
       continue;
     }
     const auto change = [&](Vec3W<W>& accumulated, Vec3W<W> target, Wide<W> bound) {
@@ -106,8 +108,8 @@ __attribute__((noinline)) void iterate_drives(const WideBundle<W>& bundle) {
     if (node.has_drive) {
       Vec3W<W>& accumulated = d.drive_impulse;
       const Vec3W<W> closing = relative_spin_of(bundle, node) - d.speed + d.rate * d.error;
-      change(accumulated, accumulated - d.mass_scale * (d.mass * closing) - d.impulse_scale * accumulated,
-             d.max_drive);
+      const Vec3W<W> target = accumulated - d.mass_scale * (d.mass * closing) - d.impulse_scale * accumulated;
+      change(accumulated, select<W>(kept, accumulated, target), d.max_drive);
     }
     if (node.has_friction)
       change(d.friction_impulse, d.friction_impulse - d.mass * relative_spin_of(bundle, node),

@@ -184,8 +184,9 @@ GYRE_INLINE void solve_rows(const WideBundle<W>& bundle, Mask<W> lanes = Mask<W>
 // Drives and friction are iterated, then the equations have the last word. (Not inlined, like the limits: all
 // of it is long.)
 template <int W>
-__attribute__((noinline)) void solve_with_accumulated(const WideBundle<W>& bundle) {
-  if (bundle.plain.drive_count > 0) iterate_drives(bundle);
+__attribute__((noinline)) void solve_with_accumulated(const WideBundle<W>& bundle,
+                                                      Mask<W> kept = Mask<W>::splat(false)) {
+  if (bundle.plain.drive_count > 0) iterate_drives(bundle, kept);
   solve_rows<W, BiasUse::again>(bundle);
 }
 template <int W>
@@ -223,8 +224,9 @@ GYRE_INLINE void warm_start_limits(const WideBundle<W>& bundle) {
 
 template <int W>
 __attribute__((noinline)) void solve_limits(const WideBundle<W>& bundle, const LaneSettings& s,
-                                            ErrorBounds bounds, Mask<W> lanes = Mask<W>::splat(true)) {
-  if (bundle.plain.limit_count > 0) LimitSolver<W>(bundle, s, bounds).solve(lanes);
+                                            ErrorBounds bounds, Mask<W> lanes = Mask<W>::splat(true),
+                                            Mask<W> kept = Mask<W>::splat(false)) {
+  if (bundle.plain.limit_count > 0) LimitSolver<W>(bundle, s, bounds, kept).solve(lanes);
 }
 
 template <int W>
@@ -299,8 +301,9 @@ void solve_bundle_after_contacts(const ArticulationBundle& plain, const LaneArra
   const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
   const EnergyLimiter<W> limiter(bundle);
-  solve_with_accumulated(bundle);
-  solve_limits(bundle, s, kMaxErrors);
+  const Mask<W> kept = Mask<W>::of_bits(bundle.plain.presses_held);
+  solve_with_accumulated(bundle, kept);
+  solve_limits(bundle, s, kMaxErrors, Mask<W>::splat(true), kept);
   limiter.limit_gain(s.rate, s.substep);
   store_velocities(bundle, arrays);
 }

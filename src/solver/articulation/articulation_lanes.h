@@ -126,6 +126,7 @@ struct ArticulationBundle {
   std::uint32_t drive_count = 0;  // joints with drives or friction
   std::uint32_t servo_count = 0;
   bool has_drives = false;  // joints that do work: drives, servos
+  std::uint32_t presses_held = 0;  // bits: lanes that press a held body (rigid/solve/held_bodies.h)
   std::byte* bodies = nullptr;
   std::byte* joints = nullptr;
   std::byte* drives = nullptr;

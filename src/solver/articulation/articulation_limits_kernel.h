@@ -34,10 +34,12 @@ constexpr float kMinInverseMassShare = 1.0e-5f;
 template <int W>
 class LimitSolver {
  public:
-  GYRE_INLINE LimitSolver(const WideBundle<W>& bundle, const LaneSettings& settings, ErrorBounds bounds)
+  GYRE_INLINE LimitSolver(const WideBundle<W>& bundle, const LaneSettings& settings, ErrorBounds bounds,
+                          Mask<W> kept = Mask<W>::splat(false))
       : b_(bundle),
         s_(settings),
         bounds_(bounds),
+        kept_(kept),
         limits_(reinterpret_cast<WideLimit<W>*>(bundle.plain.limits)),
         responses_(reinterpret_cast<float*>(limits_ + count())),
         // Before floats whose number may be odd.
@@ -166,7 +168,7 @@ class LimitSolver {
     const WideLimitAxis<W>& axis = servo.axis;
     limit.speed = dot(axis.about, b_.bodies[limit.node->b].angular - b_.bodies[limit.node->a].angular);
     const Wide<W> off = limit.speed - limit.low_bias, zero(0.0f), impulse = axis.low_impulse;
-    const Mask<W> is_rotatable = axis.mass > zero,
+    const Mask<W> is_rotatable = and_not(axis.mass > zero, kept_),
                   more = impulse<servo.max_impulse, less = impulse> zero - servo.max_impulse;
     const Mask<W> misses = is_rotatable & (((off < zero) & more) | ((off > zero) & less));
     const Mask<W> live = first ? misses : and_not(misses, limit.low_on);
@@ -548,6 +550,7 @@ class LimitSolver {
   const WideBundle<W>& b_;
   const LaneSettings& s_;
   ErrorBounds bounds_;
+  Mask<W> kept_;  // lanes whose servos keep their impulses
   WideLimit<W>* limits_;
   float* responses_;        // y and D^-1 y, by limit
   std::uint64_t* reached_;  // by limit: its columns

@@ -33,7 +33,7 @@ struct ContactConstraint {
   bool loaded = false;                   // it carried load in the last step
   bool can_roll = false;                 // a curved shape on a flat one
   ContactStiffness stiffness = ContactStiffness::fresh;  // at the beginning of the step
-  bool rigid = false;                    // without spring: part of a tree that is solved directly
+  bool rigid = false;  // without spring: part of a tree that is solved directly, or of a held body
   bool has_joint = false;                // one of the bodies has a joint
   bool speculative = false;              // apart: its features are found anew before it pushes
   bool fast = false;                     // its closing speed may exceed the threshold of hit events
@@ -110,6 +110,8 @@ struct ContactKernels {
   void (*advance_points)(void* blocks, int block, const AdvancedArmsLane* lanes, int count);
   void (*warm_start)(void* blocks, int begin, int end);
   void (*solve)(void* blocks, int begin, int end, float substep);
+  // The same once more in a half-step: the sums over the step count the last impulses.
+  void (*solve_again)(void* blocks, int begin, int end, float substep);
   // Speculative contacts get no impulse from `solve`. Returns the first block in which some would, or `end`, and those
   // lanes as bits, once.
   int (*find_pushing)(void* blocks, int begin, int end, std::uint32_t& lanes);

@@ -398,6 +398,19 @@ void solve_blocks(void* memory, int begin, int end, float substep) {
   }
 }
 
+// Another iteration in the same half-step, whose impulses take the place of the last.
+template <int W>
+void solve_blocks_again(void* memory, int begin, int end, float substep) {
+  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  for (int i = begin; i < end; ++i) {
+    ContactBlock<W>& block = blocks[i];
+    for (int k = 0; k < block.point_count; ++k) block.totals[k] = block.totals[k] - block.impulses[k];
+    block.total_1 = block.total_1 - block.friction_1;
+    block.total_2 = block.total_2 - block.friction_2;
+    solve_blocks<W>(memory, i, i + 1, substep);
+  }
+}
+
 // Runs once at the end of a step, so blocks without body A are treated as if they had one.
 template <int W>
 GYRE_INLINE void relax_block(ContactBlock<W>& block, float substep) {

@@ -30,6 +30,7 @@ struct JointSettings {
   Softness softness;      // of the equations of the joint
   bool iterative = true;  // false: equations and hard limits are solved by an articulation
                           // (solver/articulation/articulation.h)
+  bool keeps_motors = false;  // motors and drives keep their impulses
 };
 
 // One equation of a joint, on the speed direction . (v_b - v_a) + angular_b . w_b - angular_a . w_a.

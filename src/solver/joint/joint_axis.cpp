@@ -167,7 +167,8 @@ void solve_axis_by(AxisConstraint& x, const JointSettings& settings, bool soft, 
     return speed_now;
   };
   if (soft && has_spring(axis)) change(axis.spring_impulse, spring_change(x, speed()), 1.0f);
-  if (axis.motor_force > 0.0f) change(axis.motor_impulse, motor_change(x, speed(), settings.substep), 1.0f);
+  if (axis.motor_force > 0.0f && !settings.keeps_motors)
+    change(axis.motor_impulse, motor_change(x, speed(), settings.substep), 1.0f);
   if (axis.friction > 0.0f)
     change(axis.friction_impulse, friction_change(x, speed(), settings.substep), 1.0f);
   if (x.is_rod) {

@@ -48,7 +48,7 @@ void solve_drive(const JointConstraint& work, JointPair& pair, const JointSettin
   JointDetail& detail = *work.detail;
   const DriveConstraint& d = *work.drive;
   const float h = settings.substep;
-  if (detail.drive.max_torque > 0.0f) {
+  if (detail.drive.max_torque > 0.0f && !settings.keeps_motors) {
     const Vec3 change =
         drive_change(d.angular_mass, pair.relative_spin() - d.target_angular_velocity, d.angular_error,
                      detail.drive_torque_impulse, d.softness, detail.drive.max_torque * h);
@@ -61,7 +61,7 @@ void solve_drive(const JointConstraint& work, JointPair& pair, const JointSettin
     pair.apply_angular_impulse(change);
     detail.friction_impulse += change;
   }
-  if (detail.drive.max_force > 0.0f) {
+  if (detail.drive.max_force > 0.0f && !settings.keeps_motors) {
     const Vec3 speed = pair.point_velocity(d.from_a, work.from_b) - d.target_velocity;
     const Vec3 change = drive_change(d.linear_mass, speed, d.linear_error, detail.drive_force_impulse,
                                      d.softness, detail.drive.max_force * h);

@@ -17,9 +17,10 @@ inline namespace GYRE_TARGET_NAMESPACE {
 template <int W>
 constexpr SolverKernels solver_kernels() {
   return {W,
-          {sizeof(ContactBlock<W>), sizeof(ContactBlockCold<W>), prepare_blocks<W>, advance_points<W>, warm_start_blocks<W>,
-           solve_blocks<W>, find_pushing_block<W>, solve_lane_anew<W>, relax_blocks<W>, project_blocks<W>, read_block_impulse<W>, write_block_impulse<W>,
-           make_block_rigid<W>, finish_blocks<W>},
+          {sizeof(ContactBlock<W>), sizeof(ContactBlockCold<W>), prepare_blocks<W>, advance_points<W>,
+           warm_start_blocks<W>, solve_blocks<W>, solve_blocks_again<W>, find_pushing_block<W>,
+           solve_lane_anew<W>, relax_blocks<W>, project_blocks<W>, read_block_impulse<W>,
+           write_block_impulse<W>, make_block_rigid<W>, finish_blocks<W>},
           motion_kernels<W>(),
           rotation_kernels<W>(),
           articulation_kernels<W>(),
