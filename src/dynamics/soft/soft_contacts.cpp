@@ -364,7 +364,8 @@ void rest_soft(RigidWorld& w, SoftStore& soft, Arena& arena, float seconds) {
   soft.for_each([&](SoftEntry& entry) {
     if (!entry.is_awake()) return;
     SoftRest& rest = entry.rest[0];
-    rest.still_time = !any_field && is_still(w, entry) ? min(rest.still_time + seconds, kMaxStillTime) : 0.0f;
+    const bool is_at_rest = !any_field && !entry.crossings.moves && is_still(w, entry);
+    rest.still_time = is_at_rest ? min(rest.still_time + seconds, kMaxStillTime) : 0.0f;
     if (rest.still_time < kMaxStillTime || !do_all_rest(w, entry)) moves[group[slot_of(entry)]] = 1;
   });
   soft.for_each([&](SoftEntry& entry) {

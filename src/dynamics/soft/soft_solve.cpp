@@ -574,6 +574,7 @@ void finish_soft_members(SoftSolve& s, int begin, int end) {
 }
 
 void keep_soft_rows(SoftSolve& s) {
+  end_soft_surfaces(s);
   for (const SoftRow& row : s.scratch->rows) {
     SoftEntry& entry = entry_of(s, row.member);
     if (row.is_contact) {

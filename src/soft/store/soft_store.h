@@ -109,6 +109,12 @@ struct SoftEvents {
   void clear() { begins.clear(), ends.clear(), inverted.clear(), torn.clear(); }
 };
 
+// Where the surface crosses itself or others, in the last sub-step; it follows from places, so this is no state of its own.
+struct SoftCrossings {
+  int count = 0;       // pairs of an edge and a triangle
+  bool moves = false;  // true if it is being untangled: it must not fall asleep
+};
+
 struct SoftEntry {
   std::shared_ptr<const SoftDef> def;  // null: the slot is free
   SoftKind kind = SoftKind::rope;
@@ -129,6 +135,8 @@ struct SoftEntry {
   float size = 0.0f;    // m: the mean length of its edges, by which speculative distances go
   SoftDamage damage;
   SoftReported reported;
+  SoftCrossings crossings;
+  float crossed_for = 0.0f;  // s: how long it has crossed, for a report; no state
 
   bool is_awake() const { return rest[0].asleep == 0; }
   const SoftSettings& settings() const {
