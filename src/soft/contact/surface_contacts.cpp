@@ -16,7 +16,8 @@ constexpr double kRounding = 1.0 + 0x1p-20;
 constexpr float kNearOfThickness = 0.1f;   // pairs nearer than this have rows whatever their velocity
 constexpr float kSlopOfThickness = 0.01f;  // overlap that stays
 constexpr float kMaxPushOfThickness = 0.25f;
-// The speed with which crossed surfaces are moved apart, as a share of the speed of a fall from the length of an edge: as for vertices in shapes.
+// The speed with which crossed surfaces part, as a share of the speed of a fall from the length of an edge: as for vertices in shapes. It bounds the energy
+// that untangling gives: half the mass times its square.
 constexpr float kUntangleShare = 0.4f;
 
 // Takes the mean from the moves: surfaces that fly together do not look far. Returns it.
@@ -176,12 +177,12 @@ void solve_row(Row& row, std::span<Vec3> velocities) {
   row.impulse = {normal, friction};
 }
 
-// An edge that passes through a triangle: it does not go deeper, and is pushed along its way out.
+// An edge that passes through a triangle moves along its way out, at a given speed or faster.
 struct TangleRow {
   const TangledEdge* edge;
   float change[5];  // 1/kg: weight times inverse mass
   float mass;       // kg
-  float target;     // m/s or m: least normal velocity or displacement
+  float target;     // m/s: least speed along the way
   float impulse;
 };
 
@@ -203,14 +204,14 @@ std::span<TangleRow> make_tangle_rows(const SurfaceTangle& tangle, const Surface
   return rows.first(used);
 }
 
-void solve_tangle_row(TangleRow& row, std::span<Vec3> values) {
+void solve_tangle_row(TangleRow& row, std::span<Vec3> velocities) {
   const TangledEdge& edge = *row.edge;
   Vec3 relative{};
-  for (int k = 0; k < 5; ++k) relative += edge.weight[k] * values[edge.vertex[k]];
+  for (int k = 0; k < 5; ++k) relative += edge.weight[k] * velocities[edge.vertex[k]];
   const float impulse = max(0.0f, row.impulse + (row.target - dot(edge.way, relative)) * row.mass);
   if (impulse == row.impulse) return;
   const Vec3 change = (impulse - row.impulse) * edge.way;
-  for (int k = 0; k < 5; ++k) values[edge.vertex[k]] += row.change[k] * change;
+  for (int k = 0; k < 5; ++k) velocities[edge.vertex[k]] += row.change[k] * change;
   row.impulse = impulse;
 }
 
@@ -266,6 +267,8 @@ void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContac
   }
   rows = rows.first(used);
   const std::span<TangleRow> tangled = make_tangle_rows(contacts.tangle, vertices, arena);
+  for (TangleRow& row : tangled)
+    row.target = row.edge->share * kUntangleShare * std::sqrt(settings.gravity * row.edge->edge);
   for (int n = 0; n < settings.iterations; ++n) {
     for (std::size_t i = 0; i < used; ++i) solve_row(rows[n % 2 == 0 ? i : used - 1 - i], velocities);
     for (TangleRow& row : tangled) solve_tangle_row(row, velocities);
@@ -281,6 +284,14 @@ void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContac
     const Vec3 change = (velocities[v] - start[v]) / w;
     contacts.owed[v] += change;
     contacts.totals[v] += change;
+  }
+  // What untangles does not act again in the next sub-step: other edges cross then.
+  for (const TangleRow& row : tangled) {
+    for (int k = 0; k < 5; ++k) {
+      const std::uint32_t v = row.edge->vertex[k];
+      if (vertices.inverse_mass[v] > 0.0f)
+        contacts.totals[v] += -(row.edge->weight[k] * row.impulse) * row.edge->way;
+    }
   }
 }
 
@@ -298,14 +309,8 @@ void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings
     row = make_row(pair, i, vertices, {});
     row.target = min(settings.pushout * overlap, kMaxPushOfThickness * pair.thickness);
   }
-  const std::span<TangleRow> tangled = make_tangle_rows(contacts.tangle, vertices, arena);
-  for (TangleRow& row : tangled) {
-    const float speed = kUntangleShare * std::sqrt(settings.gravity * row.edge->edge);
-    row.target = settings.step * row.edge->share * speed;
-  }
   for (int n = 0; n < settings.push_iterations; ++n) {
     for (Row& row : rows.first(used)) solve_push(row, contacts.pushes);
-    for (TangleRow& row : tangled) solve_tangle_row(row, contacts.pushes);
   }
 }
 

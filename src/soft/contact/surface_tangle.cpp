@@ -10,9 +10,9 @@ namespace gyre {
 namespace {
 
 // The slope of an edge against a triangle, E.N, is taken to be no less: nearly parallel ones would be sent far away.
-constexpr double kLeastSlope = 0.1;
+constexpr double kMinSlope = 0.1;
 // A gradient of the contour that is shorter than this (of 1: an end of the line) knows no way: the line is nearly straight there.
-constexpr double kLeastGradient = 0.1;
+constexpr double kMinGradient = 0.1;
 
 // The pieces of a surface without the edges that cross another one.
 class Pieces {
@@ -107,7 +107,7 @@ class TangleFinder {
     } else {
       const DVec3 gradient = gradient_of(s, edge, along, normal);
       const double steep = length(gradient);
-      if (!(steep > kLeastGradient)) return;
+      if (!(steep > kMinGradient)) return;
       row.way = to_float(gradient / steep);
       row.share = float(min(steep, 1.0));
     }
@@ -119,7 +119,7 @@ class TangleFinder {
     const SoftTriangle& owner = s.surface->triangles[edge.triangle];
     const std::int32_t both[2] = {std::int32_t(edge.triangle), owner.neighbour[edge.side]};
     double slope = dot(along, normal);
-    if (absolute(slope) < kLeastSlope) slope = slope < 0.0 ? -kLeastSlope : kLeastSlope;
+    if (absolute(slope) < kMinSlope) slope = slope < 0.0 ? -kMinSlope : kMinSlope;
     DVec3 sum{};
     for (const std::int32_t number : both) {
       if (number < 0) continue;
@@ -176,6 +176,21 @@ bool are_in_range(std::span<const DVec3> positions) {
   return all;
 }
 
+// Gives the marks of each vertex to those that share an edge with it: those are the next to go through, and their pairs would keep them a
+// thickness away.
+void spread(std::span<const PlacedSurface> surfaces, Array<std::uint64_t>& marks, Arena& arena) {
+  const ArenaScope scope(arena);
+  const std::span<std::uint64_t> before = arena.make<std::uint64_t>(marks.size());
+  for (std::size_t v = 0; v < before.size(); ++v) before[v] = marks[v];
+  for (const PlacedSurface& placed : surfaces) {
+    const SoftSurface& surface = *placed.surface;
+    for (std::uint32_t i = 0; i < std::uint32_t(surface.vertices); ++i) {
+      for (std::uint32_t n = surface.around_begin[i]; n < surface.around_begin[i + 1]; ++n)
+        marks[placed.first + i] |= before[placed.first + surface.around[n]];
+    }
+  }
+}
+
 }  // namespace
 
 bool SurfaceTangle::has(const SurfacePair& pair) const {
@@ -188,7 +203,6 @@ bool SurfaceTangle::has(const SurfacePair& pair) const {
 void find_tangle(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions, Arena& arena,
                  SurfaceTangle& tangle) {
   tangle.edges.clear(), tangle.surface.clear(), tangle.partners.clear();
-  ++tangle.searches;
   tangle.crossings.clear();
   if (!are_in_range(positions)) return;
   list_crossings(surfaces, positions, arena, tangle.crossings);
@@ -214,6 +228,7 @@ void find_tangle(std::span<const PlacedSurface> surfaces, std::span<const DVec3>
     finder.add(begin, end);
     begin = end;
   }
+  spread(surfaces, tangle.partners, arena);
 }
 
 void leave_out(const SurfaceTangle& tangle, Array<SurfacePair>& pairs) {

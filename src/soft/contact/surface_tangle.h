@@ -37,7 +37,7 @@ struct TangledEdge {
   std::uint32_t vertex[5] = {};  // two of the edge, three of the triangle
   float weight[5] = {};          // of the common point: positive on the edge, negative on the triangle
   Vec3 way{};                    // in which the edge is to move against the triangle, of unit length
-  float share = 1.0f;            // of the speed with which it is to move
+  float share = 1.0f;            // of the speed of untangling
   float edge = 0.0f;             // m: the smaller mean length of the edges of both surfaces
 };
 
@@ -45,8 +45,8 @@ struct SurfaceTangle {
   Array<EdgeCrossing> crossings;
   Array<TangledEdge> edges;        // of the crossings, those that know a way
   Array<std::uint32_t> surface;    // by vertex: its placed surface; only if there are crossings
-  Array<std::uint64_t> partners;   // by vertex: bit n % 64 for surface n if an edge or triangle at it crosses one of n
-  std::uint64_t searches = 0;
+  // By vertex: bit n % 64 for surface n if an edge or triangle at it, or at a vertex next to it, crosses one of n.
+  Array<std::uint64_t> partners;
 
   bool empty() const { return crossings.empty(); }
   // True if features A and B of the pair both have vertices at crossings of their surfaces: the pair may hold them on the wrong side.
