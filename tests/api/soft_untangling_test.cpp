@@ -192,7 +192,9 @@ TEST(SoftUntangling, WhatCannotPartIsTold) {
     ASSERT_EQ(world.problems().size(), 2u) << n;
     const std::string message = world.problems()[0].message;
     const bool is_late = message.find("could not be untangled") != std::string::npos;
-    if (n < 595 || n > 602) EXPECT_EQ(is_late, n > 600) << n << message;
+    if (n < 595 || n > 602) {
+      EXPECT_EQ(is_late, n > 600) << n << message;
+    }
     EXPECT_EQ(world.problems()[0].severity, Severity::warning);
   }
 }

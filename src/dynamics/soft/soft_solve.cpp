@@ -32,6 +32,27 @@ constexpr float kSoftPushShare = 0.4f;
 SoftWork& work_of(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
 SoftEntry& entry_of(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
 
+// Calls visit(vertex, weight) for each vertex of the row.
+template <class Visit>
+void for_each_vertex(const SoftRow& row, Visit&& visit) {
+  visit(row.particle, row.weight[0]);
+  if (!row.is_face) return;
+  visit(row.others[0], row.weight[1]);
+  visit(row.others[1], row.weight[2]);
+}
+// The value at the point of the row, of values by vertex.
+template <class At>
+auto mean_of(const SoftRow& row, At&& at) {
+  auto sum = at(row.particle);
+  if (!row.is_face) return sum;
+  using Weight = decltype(sum.x);
+  return Weight(row.weight[0]) * sum + Weight(row.weight[1]) * at(row.others[0]) +
+         Weight(row.weight[2]) * at(row.others[1]);
+}
+const SoftContact& contact_of(const SoftEntry& entry, const SoftRow& row) {
+  return row.is_face ? entry.faces[row.source].at : entry.contacts[row.source];
+}
+
 // True if the motion of the body changes within the step.
 bool moves(const RigidWorld& w, std::int32_t body) {
   return body >= 0 && is_simulated(w.bodies.flags[std::size_t(body)]);
@@ -127,7 +148,7 @@ float error_rate(const SoftSolve& s) { return min(kErrorRate, kErrorShare / s.h)
 // Where the row acts now, and what it wants. Particles have not moved yet.
 void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
   const RigidWorld& w = *s.w;
-  const DVec3 place = entry.body.particles.place(int(row.particle));
+  const DVec3 place = mean_of(row, [&](std::uint32_t v) { return entry.body.particles.place(int(v)); });
   if (!row.is_contact) {
     row.arm = rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
     const DVec3 point = center_now(w, row.body) + DVec3(row.arm);
@@ -135,7 +156,7 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     const float rate = error_rate(s) / float(s.scratch->grips[row.touched]);
     row.bias = rate * difference(place, point);
   } else {
-    const SoftContact& contact = entry.contacts[row.source];
+    const SoftContact& contact = contact_of(entry, row);
     row.normal = turned_now(w, contact.body, contact.normal);
     row.arm = turned_now(w, contact.body, contact.from_body);
     const DVec3 point = center_now(w, contact.body) + DVec3(row.arm);
@@ -173,9 +194,12 @@ void add_rows(SoftSolve& s, std::uint32_t member) {
   for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
     SoftRow& row = s.scratch->rows[k];
     place_row(s, entry, row);
-    p.fx[row.particle] += rate * row.impulse.x;
-    p.fy[row.particle] += rate * row.impulse.y;
-    p.fz[row.particle] += rate * row.impulse.z;
+    for_each_vertex(row, [&](std::uint32_t v, float weight) {
+      const Vec3 impulse = weight * row.impulse;
+      p.fx[v] += rate * impulse.x;
+      p.fy[v] += rate * impulse.y;
+      p.fz[v] += rate * impulse.z;
+    });
     row.carried = -1;
     if (row.grip == SoftGrip::open || p.loose[row.particle] == 0.0f) continue;
     row.carried = std::int32_t(work.first_row + work.carried++);
@@ -222,6 +246,13 @@ std::span<const CarriedInertia> carried_by(SoftSolve& s, std::uint32_t member) {
 
 void prepare_row(SoftSolve& s, SoftRow& row) {
   row.particle_inverse = inverse_mass(entry_of(s, row.member), work_of(s, row.member).step, row.particle);
+  if (row.is_face) {
+    Sym3 sum{};
+    for_each_vertex(row, [&](std::uint32_t v, float weight) {
+      sum = sum + (weight * weight) * inverse_mass(entry_of(s, row.member), work_of(s, row.member).step, v);
+    });
+    row.particle_inverse = sum;
+  }
   row.compliance = row.particle_inverse + row.body_compliance;
 }
 
@@ -255,13 +286,15 @@ Vec3 next_impulse(const SoftRow& row, Vec3 impulse, Vec3 error) {
 }
 
 Vec3 error_of(SoftSolve& s, const SoftRow& row) {
-  const Vec3 own = entry_of(s, row.member).body.particles.velocity(int(row.particle));
+  const Particles& p = entry_of(s, row.member).body.particles;
+  const Vec3 own = mean_of(row, [&](std::uint32_t v) { return p.velocity(int(v)); });
   return own - velocity_of_body(s, row) + row.bias;
 }
 
 // The change of the relative velocity by impulses that are tried.
 Vec3 tried_change(SoftSolve& s, const SoftRow& row) {
-  const Vec3 own = work_of(s, row.member).change[row.particle];
+  const Array<Vec3>& change = work_of(s, row.member).change;
+  const Vec3 own = mean_of(row, [&](std::uint32_t v) { return change[v]; });
   if (row.touched < 0) return own;
   const VelocityChange& body = s.scratch->changes[row.touched];
   return own - (body.linear + cross(body.angular, row.arm));
@@ -277,7 +310,10 @@ void try_on_body(SoftSolve& s, const Row& row, Vec3 impulse) {
 
 void clear_tried(SoftSolve& s) {
   for (VelocityChange& change : s.scratch->changes) change = {};
-  for (const SoftRow& row : s.scratch->rows) work_of(s, row.member).change[row.particle] = {};
+  for (const SoftRow& row : s.scratch->rows) {
+    Array<Vec3>& change = work_of(s, row.member).change;
+    for_each_vertex(row, [&](std::uint32_t v, float) { change[v] = {}; });
+  }
 }
 
 // Finds the changes of all vertices and touched bodies by the rows' steps.
@@ -289,7 +325,7 @@ void respond_to_steps(SoftSolve& s) {
     for (Vec3& impulse : work.impulses) impulse = {};
     for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
       const SoftRow& row = s.scratch->rows[k];
-      work.impulses[row.particle] += row.step;
+      for_each_vertex(row, [&](std::uint32_t v, float weight) { work.impulses[v] += weight * row.step; });
       try_on_body(s, row, row.step);
     }
     respond(entry_of(s, m), work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena,
@@ -343,7 +379,7 @@ void give_to_bodies(SoftSolve& s) {
 void set_grips(SoftSolve& s) {
   for (std::uint32_t& grips : s.scratch->grips) grips = 0;
   for (SoftRow& row : s.scratch->rows) {
-    if (row.is_contact) {
+    if (row.is_contact && !row.is_face) {
       const float normal = dot(row.normal, row.impulse);
       const float across = length(row.impulse - normal * row.normal);
       const float bound =
@@ -356,6 +392,18 @@ void set_grips(SoftSolve& s) {
   }
 }
 
+// The change of the row's own vertices by an impulse, with the block of each.
+void add_own_change(SoftSolve& s, const SoftRow& row, Vec3 impulse) {
+  SoftWork& work = work_of(s, row.member);
+  if (!row.is_face) {
+    work.change[row.particle] += row.particle_inverse * impulse;
+    return;
+  }
+  for_each_vertex(row, [&](std::uint32_t v, float weight) {
+    work.change[v] += inverse_mass(entry_of(s, row.member), work.step, v) * (weight * impulse);
+  });
+}
+
 void sweep_contacts(SoftSolve& s) {
   for (SoftRow& row : s.scratch->rows) {
     if (!row.is_contact) continue;
@@ -363,7 +411,7 @@ void sweep_contacts(SoftSolve& s) {
     const Vec3 change = next_impulse(row, before, row.error + tried_change(s, row)) - before;
     if (change == Vec3{}) continue;
     row.step += change;
-    work_of(s, row.member).change[row.particle] += row.particle_inverse * change;
+    add_own_change(s, row, change);
     try_on_body(s, row, change);
   }
 }
@@ -387,7 +435,8 @@ double energy_of_fall(SoftSolve& s) {
   const double fall = double(s.h) * double(length(s.w->settings.gravity));
   double mass = 0.0;
   for (const SoftRow& row : s.scratch->rows) {
-    mass += double(entry_of(s, row.member).body.particles.mass[row.particle]);
+    const Particles& p = entry_of(s, row.member).body.particles;
+    for_each_vertex(row, [&](std::uint32_t v, float weight) { mass += double(weight) * double(p.mass[v]); });
   }
   return mass * fall * fall;
 }
@@ -435,7 +484,7 @@ void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   };
   store.for_each([&](const SoftEntry& entry) {
     if (!entry.is_awake()) return;
-    for (const SoftContact& contact : entry.contacts) touch(contact.body);
+    for_each_contact(entry, [&](const SoftContact& contact) { touch(contact.body); });
     for (const SoftAttachment& attachment : entry.attachments) touch(attachment.body);
   });
   for (const std::uint32_t body : w.bodies.awake) {
@@ -475,14 +524,22 @@ void make_soft_rows(SoftSolve& s) {
       row.arm = rotate(orientation_now(w, row.body), one.local);
       row.impulse = s.warm_scale * one.impulse;
     }
-    for (std::uint32_t k = 0; k < entry.contacts.size(); ++k) {
-      const SoftContact& one = entry.contacts[k];
-      SoftRow& row = add(one.particle, one.body, k);
+    const auto add_contact = [&](const SoftContact& one, std::uint32_t source) -> SoftRow& {
+      SoftRow& row = add(one.particle, one.body, source);
       row.is_contact = true;
       row.static_friction = one.static_friction, row.dynamic_friction = one.dynamic_friction;
       row.normal = one.normal, row.arm = one.from_body;
       row.grip = one.grip;
       row.impulse = s.warm_scale * project(row, one.impulse);
+      return row;
+    };
+    for (std::uint32_t k = 0; k < entry.contacts.size(); ++k) add_contact(entry.contacts[k], k);
+    for (std::uint32_t k = 0; k < entry.faces.size(); ++k) {
+      const SoftFaceContact& face = entry.faces[k];
+      SoftRow& row = add_contact(face.at, k);
+      row.is_face = true;
+      for (int n = 0; n < 2; ++n) row.others[n] = face.others[n];
+      for (int n = 0; n < 3; ++n) row.weight[n] = face.weight[n];
     }
     work.last_row = std::uint32_t(scratch.rows.size());
   }
@@ -498,7 +555,7 @@ void turn_soft_rows(SoftSolve& s, int, int) {
     if (row.touched < 0) continue;
     const SoftEntry& entry = entry_of(s, row.member);
     const Vec3 arm = row.is_contact
-                         ? turned_now(w, row.body, entry.contacts[row.source].from_body)
+                         ? turned_now(w, row.body, contact_of(entry, row).from_body)
                          : rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
     const Vec3 moment = cross(arm - row.arm, (-1.0f / float(s.parts)) * row.impulse);
     s.w->bodies.motion[std::size_t(row.body)].angular_velocity +=
@@ -577,7 +634,9 @@ void keep_soft_rows(SoftSolve& s) {
   end_soft_surfaces(s);
   for (const SoftRow& row : s.scratch->rows) {
     SoftEntry& entry = entry_of(s, row.member);
-    if (row.is_contact) {
+    if (row.is_face) {
+      entry.faces[row.source].at.impulse = row.impulse;
+    } else if (row.is_contact) {
       entry.contacts[row.source].impulse = row.impulse, entry.contacts[row.source].grip = row.grip;
     } else {
       entry.attachments[row.source].impulse = row.impulse;
