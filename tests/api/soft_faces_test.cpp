@@ -1,6 +1,7 @@
 // Corners, edges and tips of bodies between the vertices of coarse sheets: none passes through.
 #include "determinism/scenes.h"
-#include "soft/contact/surface_crossings.h"
+#include "geometry/query/face_query.h"
+#include "math/rotation.h"
 
 #include <gyre/gyre.h>
 #include <gyre/replay.h>
@@ -57,39 +58,32 @@ BodyId add_sharp(World& world, const Sharp& sharp, BodyType type, DVec3 at) {
   return world.add_body(body, shape);
 }
 
-// How often lines from the middle of the body to a point of the sharp parts meet the sheet.
-int count_passed(const World& world, SoftId sheet, BodyId body, const AnyShape& shape) {
-  std::vector<DVec3> tips;
-  if (const Box* box = std::get_if<Box>(&shape)) {
-    const Vec3 e = box->half_extents;
-    for (const float x : {-e.x, e.x})
-      for (const float y : {-e.y, e.y})
-        for (const float z : {-e.z, e.z}) tips.push_back({x, y, z});
+// The least signed distance of any point of the sheet to the body, m.
+double depth_of(const World& world, SoftId sheet, BodyId body, const AnyShape& geometry) {
+  Shape shape;
+  if (const Box* box = std::get_if<Box>(&geometry)) {
+    shape.kind = ShapeKind::box, shape.extents = box->half_extents, shape.radius = 0.0f;
   } else {
-    const Cone& cone = std::get<Cone>(shape);
-    tips.push_back({0, double(cone.half_height), 0});
-    for (int k = 0; k < 8; ++k) {
-      const double angle = 0.25 * 3.14159265 * k;
-      tips.push_back({double(cone.radius) * std::cos(angle), -double(cone.half_height), double(cone.radius) * std::sin(angle)});
-    }
+    const Cone& cone = std::get<Cone>(geometry);
+    shape.kind = ShapeKind::cone, shape.radius = cone.radius;
+    shape.extents = {cone.radius, cone.half_height, cone.radius};
   }
   const Pose pose = world.pose(body);
-  const auto place = [&](DVec3 v) {
-    const DVec3 u{pose.orientation.x, pose.orientation.y, pose.orientation.z}, t = 2.0 * cross(u, v);
-    return pose.position + v + double(pose.orientation.w) * t + cross(u, t);
-  };
   const SoftVertices v = world.vertices(sheet);
   const std::span<const std::uint32_t> corner = world.soft_triangles(sheet);
-  int passed = 0;
-  for (const DVec3 tip : tips) {
-    // All but the outermost 5 %.
-    const DVec3 a = place({}), b = place(0.95 * tip);
-    for (std::size_t k = 0; k + 2 < corner.size(); k += 3) {
-      passed += segment_meets_triangle(a, b, v.position(corner[k]), v.position(corner[k + 1]), v.position(corner[k + 2]));
-    }
+  double least = 1.0e9;
+  for (std::size_t k = 0; k + 2 < corner.size(); k += 3) {
+    DVec3 local[3];
+    for (std::size_t n = 0; n < 3; ++n)
+      local[n] = rotate_inverse(to_double(pose.orientation), v.position(corner[k + n]) - pose.position);
+    FaceDistance found;
+    if (find_face_distance(shape, local, least, -1.0e9, found)) least = std::min(least, found.distance);
   }
-  return passed;
+  return least;
 }
+
+// A sheet that strikes a rim goes this deep for some steps, m; what passes through is deeper.
+constexpr double kDeepest = 0.016;
 
 double energy_of(const World& world) {
   const Energy energy = world.energy();
@@ -107,7 +101,7 @@ TEST(SoftFaces, BodiesFallOnASheet) {
       const double start = energy_of(world);
       for (int n = 0; n < 60; ++n) {
         world.step(kStep);
-        ASSERT_EQ(count_passed(world, sheet, body, sharp.shape), 0) << sharp.name << cell << " " << n;
+        ASSERT_GT(depth_of(world, sheet, body, sharp.shape), -kDeepest) << sharp.name << cell << " " << n;
         ASSERT_LT(energy_of(world), start + 0.02) << sharp.name << cell << " " << n;
       }
     }
@@ -122,8 +116,10 @@ TEST(SoftFaces, ASheetFallsOnBodies) {
       const BodyId body = add_sharp(world, sharp, BodyType::fixed, {0, 0.35, 0});
       for (int n = 0; n < 90; ++n) {
         world.step(kStep);
-        ASSERT_EQ(count_passed(world, sheet, body, sharp.shape), 0) << sharp.name << cell << " " << n;
+        ASSERT_GT(depth_of(world, sheet, body, sharp.shape), -kDeepest) << sharp.name << cell << " " << n;
       }
+      // The radius is 2.5 mm.
+      EXPECT_GT(depth_of(world, sheet, body, sharp.shape), -1.0e-3) << sharp.name << cell;
     }
   }
 }
@@ -139,8 +135,10 @@ TEST(SoftFaces, BodiesArePushedUnderASheet) {
       for (int n = 0; n < 90; ++n) {
         world.move_kinematic(body, {{0, 0.4 + 0.15 * std::min(n + 1, 60) / 60.0, 0}, sharp.turn}, kStep);
         world.step(kStep);
-        ASSERT_EQ(count_passed(world, sheet, body, sharp.shape), 0) << sharp.name << cell << " " << n;
+        ASSERT_GT(depth_of(world, sheet, body, sharp.shape), -kDeepest) << sharp.name << cell << " " << n;
       }
+      // The radius is 2.5 mm.
+      EXPECT_GT(depth_of(world, sheet, body, sharp.shape), -1.0e-3) << sharp.name << cell;
     }
   }
 }
@@ -159,35 +157,27 @@ TEST(SoftFaces, KeepMomentum) {
   EXPECT_LT(length(after.angular - before.angular), 1.0e-3 * length(before.linear) * kSize);
 }
 
-// A corner that is drawn along under a sheet takes it along by friction.
+// A sheet hangs over the edge of a box, 10 cm out of balance: friction holds it, and without it slides off.
 TEST(SoftFaces, Rub) {
-  double moved[2] = {};
   for (const bool rough : {false, true}) {
     World world = make_world();
     ClothDef def;
-    def.grid = ClothGrid{{float(kSize), float(kSize)}, {6, 6}};
-    def.pose.position = {0.013, 0.6, 0.007};
+    def.grid = ClothGrid{{float(kSize), float(kSize)}, {10, 10}};
+    def.pose.position = {0.1, 0.51, 0.007};
     def.settings.static_friction = def.settings.dynamic_friction = rough ? 1.0f : 0.0f;
-    def.settings.damping = 1.0e-3f;
+    def.settings.damping = 1.0e-2f;
     const SoftId sheet = world.add_cloth(def);
-    pin_corners(world, sheet, 0.1);
-    const BodyId body = add_sharp(world, kSharp[0], BodyType::kinematic, {0, 0.4, 0});
-    const auto mean = [&] {
-      const SoftVertices v = world.vertices(sheet);
-      double sum = 0.0;
-      for (std::size_t i = 0; i < v.size(); ++i) sum += v.x[i];
-      return sum / double(v.size());
-    };
-    double before = 0.0;
-    for (int n = 0; n < 90; ++n) {
-      const double up = 0.1 * std::min(n + 1, 60) / 60.0, along = 0.05 * std::max(n - 59, 0) / 30.0;
-      world.move_kinematic(body, {{along, 0.4 + up, 0}, kSharp[0].turn}, kStep);
-      if (n == 60) before = mean();
-      world.step(kStep);
+    add_sharp(world, kSharp[3], BodyType::fixed, {0, 0.35, 0});
+    for (int n = 0; n < 120; ++n) world.step(kStep);
+    const SoftVertices v = world.vertices(sheet);
+    double highest = -1.0e9;
+    for (std::size_t i = 0; i < v.size(); ++i) highest = std::max(highest, v.y[i]);
+    if (rough) {
+      EXPECT_GT(highest, 0.4);
+    } else {
+      EXPECT_LT(highest, 0.0);
     }
-    moved[rough] = mean() - before;
   }
-  EXPECT_GT(moved[1], moved[0] + 0.002);
 }
 
 TEST(SoftFaces, ThreadsAndSnapshotsDoNotChangeABit) {
