@@ -24,7 +24,7 @@ constexpr float kAttachedShare = 1.1f;
 
 // A face touches where it comes nearer to a shape than its corners, by more than this share of the radius: where these keep the radius, the face keeps the
 // rest of it.
-constexpr double kFaceShare = 0.5;
+constexpr double kFaceShare = 0.9;
 // A face that is nearer than this share of the length of an edge is pushed along its own normal: the shape's is not to be trusted there.
 constexpr double kTooNear = 1.0e-3;
 

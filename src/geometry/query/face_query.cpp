@@ -12,7 +12,7 @@ constexpr double kAnyDistance = 1.0e9;  // m, more than any triangle is away
 constexpr int kProjections = 4;         // to and fro between triangle and shape
 constexpr int kDescents = 14;           // steps along the triangle; a failed one halves the next
 constexpr double kFirstStep = 0.25;     // of the longest edge
-constexpr double kFlat = 1.0e-3;        // slope along the triangle at which it is level
+constexpr double kLevel = 1.0e-3;        // slope along the triangle at which it is level
 
 class FaceSearch {
  public:
@@ -67,7 +67,7 @@ class FaceSearch {
     for (int n = 0; n < kDescents; ++n) {
       const DVec3 slope = best_.normal - dot(best_.normal, up) * up;
       const double steep = length(slope);
-      if (!(steep > kFlat)) return;
+      if (!(steep > kLevel)) return;
       if (!look_at(into_triangle(at_ - (step / steep) * slope))) step *= 0.5;
     }
   }
