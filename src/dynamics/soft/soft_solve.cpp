@@ -21,6 +21,9 @@ constexpr int kGripPasses = 3;
 // The rate (1/s) at which errors of position are removed, and the largest share of them in a sub-step. A rate, since sub-steps up to an impact
 // may be as short as one likes.
 constexpr float kErrorRate = 48.0f, kErrorShare = 0.2f;
+// Faces come out of shapes at this share of the rate: a sheet of coarse cells that falls on a ball is deep in it between its vertices, and must not be thrown
+// back.
+constexpr float kFaceRate = 0.125f;
 // Largest speed of removal of penetration, as a share of the speed of a fall from the length of an edge: as for contacts of bodies.
 constexpr float kSoftPushShare = 0.4f;
 
@@ -131,7 +134,7 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     const float most = kSoftPushShare * std::sqrt(reference_gravity(w.settings) * entry.size);
     // A vertex that is free may come as near as it likes; one that is held goes to the surface from either side.
     const bool is_free = row.grip == SoftGrip::open && gap > 0.0f;
-    const float wanted = is_free ? gap / s.h : clamp(error_rate(s) * gap, -most, most);
+    const float wanted = is_free ? gap / s.h : clamp((row.is_face ? kFaceRate : 1.0f) * error_rate(s) * gap, -most, most);
     row.bias = wanted * row.normal - contact.surface_velocity;
   }
   row.body_compliance = body_compliance(w, row);
