@@ -58,11 +58,19 @@ bool any_segments_meet(DVec3 p, DVec3 q, DVec3 a, DVec3 b) {
   return orient3(p, q, a, b) == 0 && coplanar_segments_meet(p, q, a, b);
 }
 
-// Calls visit(crossing) for each edge of one surface that meets a triangle of the other.
+// The ends of the edge are on different sides of the triangle, and it has a point in common with it.
+bool segment_passes_triangle(DVec3 p, DVec3 q, DVec3 a, DVec3 b, DVec3 c) {
+  return orient3(a, b, c, p) * orient3(a, b, c, q) < 0 && segment_meets_triangle(p, q, a, b, c);
+}
+
+using SegmentTest = bool (*)(DVec3, DVec3, DVec3, DVec3, DVec3);
+
+// Calls visit(crossing) for each edge of one surface that meets a triangle of the other by the test.
 template <class Visit>
 class CrossingSearch {
  public:
-  CrossingSearch(std::span<const DVec3> positions, Visit& visit) : positions_(positions), visit_(visit) {}
+  CrossingSearch(std::span<const DVec3> positions, SegmentTest test, Visit& visit)
+      : positions_(positions), test_(test), visit_(visit) {}
 
   void search(std::span<const SurfaceBoxes> boxes, std::uint32_t s, std::uint32_t t) {
     for_each_triangle_pair(boxes[s], boxes[t], [&](std::uint32_t i, std::uint32_t k) {
@@ -84,8 +92,7 @@ class CrossingSearch {
       if (s == t && shares(edge.a, to) + shares(edge.b, to) > 0) continue;
       if (!overlap(merge(a.vertices[edge.a], a.vertices[edge.b]), b.triangles[k])) continue;
       const auto at = [&](std::uint32_t corner) { return positions_[b.first + to.corner[corner]]; };
-      if (segment_meets_triangle(positions_[a.first + edge.a], positions_[a.first + edge.b], at(0), at(1),
-                                 at(2)))
+      if (test_(positions_[a.first + edge.a], positions_[a.first + edge.b], at(0), at(1), at(2)))
         visit_(EdgeCrossing{s, std::uint32_t(number), t, k});
     }
   }
@@ -94,19 +101,20 @@ class CrossingSearch {
   }
 
   std::span<const DVec3> positions_;
+  SegmentTest test_;
   Visit& visit_;
 };
 
 template <class Visit>
 void for_each_crossing(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
-                       Arena& arena, Visit&& visit) {
+                       SegmentTest test, Arena& arena, Visit&& visit) {
   const ArenaScope scope(arena);
   if (surfaces.empty() || positions.empty()) return;
   const DVec3 origin = positions[surfaces[0].first];
   const std::span<SurfaceBoxes> boxes = arena.make<SurfaceBoxes>(surfaces.size());
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     boxes[i] = fit_boxes(surfaces[i], positions, {}, origin, arena);
-  CrossingSearch search(positions, visit);
+  CrossingSearch search(positions, test, visit);
   for (std::uint32_t i = 0; i < std::uint32_t(boxes.size()); ++i) {
     for (std::uint32_t k = i; k < std::uint32_t(boxes.size()); ++k) search.search(boxes, i, k);
   }
@@ -128,14 +136,15 @@ bool segment_meets_triangle(DVec3 p, DVec3 q, DVec3 a, DVec3 b, DVec3 c) {
 long count_crossings(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
                      Arena& arena) {
   long count = 0;
-  for_each_crossing(surfaces, positions, arena, [&](const EdgeCrossing&) { ++count; });
+  for_each_crossing(surfaces, positions, segment_meets_triangle, arena,
+                    [&](const EdgeCrossing&) { ++count; });
   return count;
 }
 
-void list_crossings(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions, Arena& arena,
-                    Array<EdgeCrossing>& crossings) {
+void list_passing_edges(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
+                        Arena& arena, Array<EdgeCrossing>& crossings) {
   crossings.clear();
-  for_each_crossing(surfaces, positions, arena,
+  for_each_crossing(surfaces, positions, segment_passes_triangle, arena,
                     [&](const EdgeCrossing& one) { crossings.push_back(one); });
 }
 

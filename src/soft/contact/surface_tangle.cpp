@@ -1,7 +1,6 @@
 #include "soft/contact/surface_tangle.h"
 
 #include "base/container/sort.h"
-#include "soft/contact/orientation.h"
 
 #include <cmath>
 
@@ -154,18 +153,6 @@ void sort_by_surfaces(Array<EdgeCrossing>& crossings, Arena& arena) {
              });
 }
 
-// True if the ends of the edge are on different sides of the triangle, and not on its plane.
-bool passes_through(const EdgeCrossing& one, std::span<const PlacedSurface> surfaces,
-                    std::span<const DVec3> positions) {
-  const PlacedSurface &s = surfaces[one.edge_surface], &t = surfaces[one.triangle_surface];
-  if (one.edge_surface == one.triangle_surface && !s.surface->self_collision) return false;
-  const SurfaceEdge& edge = s.surface->edges[one.edge];
-  const std::uint32_t* const corner = t.surface->triangles[one.triangle].corner;
-  const DVec3 a = positions[t.first + corner[0]], b = positions[t.first + corner[1]],
-              c = positions[t.first + corner[2]];
-  return orient3(a, b, c, positions[s.first + edge.a]) * orient3(a, b, c, positions[s.first + edge.b]) < 0;
-}
-
 // An explicit integrator that gains energy comes to places whose products are beyond the range of doubles.
 bool are_in_range(std::span<const DVec3> positions) {
   constexpr double kFarthest = 1.0e30;  // m: three of them multiply
@@ -205,10 +192,12 @@ void find_tangle(std::span<const PlacedSurface> surfaces, std::span<const DVec3>
   tangle.edges.clear(), tangle.surface.clear(), tangle.partners.clear();
   tangle.crossings.clear();
   if (!are_in_range(positions)) return;
-  list_crossings(surfaces, positions, arena, tangle.crossings);
+  list_passing_edges(surfaces, positions, arena, tangle.crossings);
   std::size_t kept = 0;
-  for (const EdgeCrossing& one : tangle.crossings)
-    if (passes_through(one, surfaces, positions)) tangle.crossings[kept++] = one;
+  for (const EdgeCrossing& one : tangle.crossings) {
+    const bool is_self = one.edge_surface == one.triangle_surface;
+    if (!is_self || surfaces[one.edge_surface].surface->self_collision) tangle.crossings[kept++] = one;
+  }
   tangle.crossings.resize(kept);
   if (tangle.empty()) return;
   sort_by_surfaces(tangle.crossings, arena);
