@@ -16,7 +16,7 @@ enum class ErrorCode : std::uint8_t {
   stale_id,          // the object of an id does not exist (any more), or is another world's
   busy,              // the world is in the middle of a step
   cancelled,         // a progress callback asked to stop
-  unstable,          // an explicit scheme cannot follow what it is to compute: it will gain energy
+  unstable,          // what is computed is not to be relied on yet: an explicit scheme that gains energy, or soft matter that crosses
 };
 
 // An error code, and a message that names the object, the field, the value found and the range allowed. As a truth value it is

@@ -66,6 +66,7 @@ void let_out(SoftEntry& entry, std::int32_t body) {
 // Contacts of the last step, between steps of a scheme, and the changes that the next step begins with, belong to the old places.
 void forget_motion(SoftEntry& entry) {
   entry.contacts.clear();
+  entry.faces.clear();
   wake(entry);
   for (Array<float>& pull : entry.body.pull) pull.clear();
   for (Array<double>& moved : entry.body.moved) moved.clear();
@@ -155,9 +156,9 @@ CommandResult execute(WorldState& s, const AddSoft& c) {
 }
 CommandResult execute(WorldState& s, const RemoveSoft& c) {
   end_soft_touches(s, c.soft.index);
-  for (const SoftContact& contact : s.soft.entries[c.soft.index].contacts) {
+  for_each_contact(s.soft.entries[c.soft.index], [&](const SoftContact& contact) {
     if (contact.body != kWorldAnchor) wake(s.rigid, std::uint32_t(contact.body));
-  }
+  });
   for (const SoftAttachment& attachment : s.soft.entries[c.soft.index].attachments) {
     if (attachment.body != kWorldAnchor) wake(s.rigid, std::uint32_t(attachment.body));
   }
@@ -219,7 +220,7 @@ CommandResult execute(WorldState& s, const SetVertexLimits& c) {
 void wake_touching(SoftStore& soft, std::uint32_t body) {
   soft.for_each([&](SoftEntry& entry) {
     bool touches = false;
-    for (const SoftContact& one : entry.contacts) touches = touches || one.body == std::int32_t(body);
+    for_each_contact(entry, [&](const SoftContact& one) { touches = touches || one.body == std::int32_t(body); });
     for (const SoftAttachment& one : entry.attachments) touches = touches || one.body == std::int32_t(body);
     if (touches) wake(entry);
   });
@@ -279,7 +280,7 @@ SoftInfo World::soft_info(SoftId soft) const {
   info.kind = entry.kind;
   info.vertices = p.count;
   info.radius = entry.radius;
-  info.contacts = int(entry.contacts.size());
+  info.contacts = int(entry.contacts.size() + entry.faces.size());
   info.user_data = entry.settings().user_data;
   info.awake = entry.is_awake();
   info.visual = entry.settings().integrator == SoftIntegrator::visual;
@@ -411,6 +412,14 @@ Error check_soft_columns(const RigidWorld& w, const SoftStore& soft) {
       if (one.particle >= count || one.shape >= w.shapes.ids.capacity() || !good_body(one.body))
         return bad("a contact of a vertex that is not there");
       if (!is_finite(one.impulse) || !is_finite(one.normal) || !is_finite(one.from_body)) return bad("a contact that is not finite");
+    }
+    for (const SoftFaceContact& one : entry.faces) {
+      if (one.at.particle >= count || one.others[0] >= count || one.others[1] >= count ||
+          one.at.shape >= w.shapes.ids.capacity() || !good_body(one.at.body))
+        return bad("a contact of a face that is not there");
+      if (!is_finite(one.at.impulse) || !is_finite(one.at.normal) || !is_finite(one.at.from_body) ||
+          !is_finite(Vec3{one.weight[0], one.weight[1], one.weight[2]}))
+        return bad("a contact of a face that is not finite");
     }
   }
   return {};

@@ -16,11 +16,11 @@ bool touches(const SoftContact& contact) { return contact.gap <= 0.0f || contact
 // The shapes that an entry touches, ascending. `mark` is 0 for every shape, before and after.
 void find_touching(const SoftEntry& entry, Array<std::uint8_t>& mark, Array<SoftTouch>& out) {
   out.clear();
-  for (const SoftContact& contact : entry.contacts) {
-    if (!touches(contact) || mark[contact.shape] != 0) continue;
+  for_each_contact(entry, [&](const SoftContact& contact) {
+    if (!touches(contact) || mark[contact.shape] != 0) return;
     mark[contact.shape] = 1;
     out.push_back({contact.shape, contact.particle});
-  }
+  });
   for (const SoftTouch& one : out) mark[one.shape] = 0;
   Array<SoftTouch> scratch;
   scratch.resize(out.size());
@@ -140,6 +140,13 @@ void drop_soft_contacts(WorldState& s, std::uint32_t shape) {
       if (entry.contacts[k].shape != shape) continue;
       touched = touched || touches(entry.contacts[k]);
       entry.contacts.erase_at(k);
+      wake(entry);
+      entry.reported.known = false;
+    }
+    for (std::size_t k = entry.faces.size(); k-- > 0;) {
+      if (entry.faces[k].at.shape != shape) continue;
+      touched = touched || touches(entry.faces[k].at);
+      entry.faces.erase_at(k);
       wake(entry);
       entry.reported.known = false;
     }

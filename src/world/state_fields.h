@@ -236,6 +236,10 @@ void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.shape), f(r.body), f(r.triangle), for_each_field(r.normal, f), for_each_field(r.from_body, f), f(r.gap);
   f(r.static_friction), f(r.dynamic_friction), for_each_field(r.surface_velocity, f), for_each_field(r.impulse, f), f(r.grip);
 }
+template <Is<SoftFaceContact> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.at, f), f(r.others[0]), f(r.others[1]), f(r.weight[0]), f(r.weight[1]), f(r.weight[2]), f(r.face);
+}
 template <Is<GasEmitter> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.position, f), f(r.radius), f(r.density), f(r.temperature), for_each_field(r.velocity, f);

@@ -133,6 +133,26 @@ void report_missed_impulses(WorldState& s) {
                  rows.sweeps, rows.missed_share);
 }
 
+// Cloths and solids that cross are told for as long as they do; and those that stay crossed for longer than untangling takes.
+void report_crossings(WorldState& s, float seconds) {
+  constexpr float kUntangling = 10.0f;  // s: a sheet of 2 m that lies half through another is out of it by then
+  for (std::size_t slot = 0; slot < s.soft.entries.size(); ++slot) {
+    SoftEntry& entry = s.soft.entries[slot];
+    if (entry.def == nullptr || entry.crossings.count == 0) {
+      entry.crossed_for = 0.0f;
+      continue;
+    }
+    entry.crossed_for += seconds;
+    const bool is_late = entry.crossed_for > kUntangling;
+    report_problem(s, ErrorCode::unstable, {},
+                   is_late ? "soft matter %d crosses itself or others in %d places and could not be untangled "
+                             "within %.3g s"
+                           : "soft matter %d crosses itself or others in %d places; it is being untangled, for "
+                             "%.3g s so far",
+                   int(slot), entry.crossings.count, double(is_late ? kUntangling : entry.crossed_for));
+  }
+}
+
 void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
 
 // Must run right after the stage `collide`, which leaves contacts that it did not update as they were.
@@ -366,6 +386,7 @@ void step_world(WorldState& s, float seconds) {
   end_step(s, seconds);
   report_frozen(s);
   report_fluids(s);
+  report_crossings(s, seconds);
   report_stiffness(s);
   report_large_islands(s);
   report_missed_impulses(s);

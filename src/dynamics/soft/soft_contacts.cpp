@@ -2,6 +2,7 @@
 
 #include "collision/broadphase/fat_box.h"
 #include "dynamics/soft/soft_groups.h"
+#include "geometry/query/face_query.h"
 #include "geometry/query/point_query.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
@@ -20,6 +21,12 @@ constexpr float kReachShare = 1.5f;
 constexpr float kSpeculativeEdge = 0.25f;
 // A vertex so near to an attachment, in lengths of an edge, does not collide with the body that it is attached to.
 constexpr float kAttachedShare = 1.1f;
+
+// A face touches where it comes nearer to a shape than its corners, by more than this share of the radius: where these keep the radius, the face keeps the
+// rest of it.
+constexpr double kFaceShare = 0.9;
+// A face that is nearer than this share of the length of an edge is pushed along its own normal: the shape's is not to be trusted there.
+constexpr double kTooNear = 1.0e-3;
 
 struct Candidate {
   std::uint32_t shape = 0;
@@ -42,7 +49,10 @@ class ContactFinder {
   }
 
   void run(TaskSystem& tasks) {
-    if (candidates_.empty()) return entry_.contacts.clear();
+    if (candidates_.empty()) {
+      entry_.contacts.clear(), entry_.faces.clear();
+      return;
+    }
     const std::size_t count = std::size_t(p_.count);
     const std::span<SoftContact> room = arena_.make<SoftContact>(count * kMaxVertexContacts);
     const std::span<std::uint8_t> found = arena_.make<std::uint8_t>(count);
@@ -59,6 +69,7 @@ class ContactFinder {
       for (std::size_t k = 0; k < found[i]; ++k) contacts.push_back(room[i * kMaxVertexContacts + k]);
     }
     keep_impulses(before);
+    touch_faces(tasks, room, found);
   }
 
   // True if a body moves that is near or that a vertex is attached to.
@@ -151,6 +162,130 @@ class ContactFinder {
     return count;
   }
 
+  // ------------------------------------------------------------------------------------------------------- faces
+
+  void touch_faces(TaskSystem& tasks, std::span<const SoftContact> touching,
+                   std::span<const std::uint8_t> counts) {
+    const std::span<SoftFaceContact> before = arena_.make<SoftFaceContact>(entry_.faces.size());
+    for (std::size_t k = 0; k < before.size(); ++k) before[k] = entry_.faces[k];
+    entry_.faces.clear();
+    bool any = false;
+    for (const Candidate& one : candidates_)
+      any = any || has_face_distance(w_.shapes.colliders[one.shape].shape);
+    if (!any || entry_.contact_surface == nullptr) return;
+    const std::size_t faces = entry_.contact_surface->triangles.size();
+    const std::span<SoftFaceContact> room = arena_.make<SoftFaceContact>(faces);
+    const std::span<std::uint8_t> found = arena_.make<std::uint8_t>(faces);
+    const std::span<float> reach = arena_.make<float>(std::size_t(p_.count));
+    for (int i = 0; i < p_.count; ++i) reach[std::size_t(i)] = reach_of(i);
+    for_blocks(tasks, int(faces), kParticlesPerBlock, [&](int begin, int end, int) {
+      for (std::size_t t = std::size_t(begin); t < std::size_t(end); ++t)
+        found[t] = find_face(std::uint32_t(t), reach, touching, counts, before, room[t]);
+    });
+    for (std::size_t t = 0; t < faces; ++t)
+      if (found[t] != 0) entry_.faces.push_back(room[t]);
+  }
+
+  // True if the corners touch the shape along normals so alike that the face between them cannot come nearer by more than its share of the radius: for an
+  // angle of a between normals, by no more than 0.29 a of the length of an edge.
+  bool is_level(const std::uint32_t* corner, std::uint32_t shape, std::span<const SoftContact> touching,
+                std::span<const std::uint8_t> counts) const {
+    const float share = float(kFaceShare) * entry_.radius / entry_.size, alike = 1.0f - 6.0f * share * share;
+    Vec3 normal[3];
+    for (int k = 0; k < 3; ++k) {
+      bool there = false;
+      for (std::size_t n = 0; n < counts[corner[k]] && !there; ++n) {
+        const SoftContact& one = touching[std::size_t(corner[k]) * kMaxVertexContacts + n];
+        there = one.shape == shape;
+        normal[k] = one.normal;
+      }
+      if (!there) return false;
+    }
+    return dot(normal[0], normal[1]) > alike && dot(normal[1], normal[2]) > alike &&
+           dot(normal[2], normal[0]) > alike;
+  }
+
+  // The contact of a face with the shape that it is nearest to, if it has one.
+  bool find_face(std::uint32_t number, std::span<const float> reach, std::span<const SoftContact> touching,
+                 std::span<const std::uint8_t> counts, std::span<const SoftFaceContact> before,
+                 SoftFaceContact& out) const {
+    const SoftTriangle& face = entry_.contact_surface->triangles[number];
+    const std::uint32_t* const v = face.corner;
+    const DVec3 at[3] = {p_.place(int(v[0])), p_.place(int(v[1])), p_.place(int(v[2]))};
+    const DVec3 middle = (1.0 / 3.0) * (at[0] + at[1] + at[2]);
+    double size = 0.0;
+    for (const DVec3 corner : at) size = max(size, length(corner - middle));
+    double own_reach = double(max(reach[v[0]], max(reach[v[1]], reach[v[2]])));
+    bool any = false;
+    for (const Candidate& candidate : candidates_) {
+      const Shape& shape = w_.shapes.colliders[candidate.shape].shape;
+      if (!has_face_distance(shape)) continue;
+      if (is_beyond(w_.shapes.proxies[candidate.shape].fat_box, middle, size + own_reach)) continue;
+      if (is_level(v, candidate.shape, touching, counts)) continue;
+      const Vec3 arm = difference(middle, w_.bodies.poses[candidate.body].center);
+      const float speed = length(point_velocity(w_.bodies.motion[candidate.body], arm));
+      const DQuat turn = to_double(candidate.pose.orientation);
+      DVec3 local[3];
+      for (int k = 0; k < 3; ++k) local[k] = rotate_inverse(turn, at[k] - candidate.pose.position);
+      FaceDistance found;
+      if (!find_face_distance(shape, local, own_reach + double(kReachShare * seconds_ * speed),
+                              kFaceShare * double(entry_.radius), found))
+        continue;
+      if (any && found.distance - double(entry_.radius) >= double(out.at.gap)) continue;
+      if (is_shared_edge(number, found) || is_kept_off(v, candidate.body)) continue;
+      any = true;
+      out = {};
+      out.face = number;
+      for (int k = 0; k < 3; ++k) out.weight[k] = float(found.weight[k]);
+      out.at.particle = v[0], out.others[0] = v[1], out.others[1] = v[2];
+      set_face(candidate, at, found, before, out);
+    }
+    return any;
+  }
+
+  // An edge between two faces is one contact: that of the face that owns it.
+  bool is_shared_edge(std::uint32_t number, const FaceDistance& found) const {
+    const SoftTriangle& face = entry_.contact_surface->triangles[number];
+    for (int side = 0; side < 3; ++side) {
+      if (!(found.weight[(side + 2) % 3] > 0.0)) return face.owned_edge[side] < 0 && face.neighbour[side] >= 0;
+    }
+    return false;
+  }
+  bool is_kept_off(const std::uint32_t* corner, std::uint32_t body) const {
+    for (int k = 0; k < 3; ++k) {
+      if (is_inside(entry_, corner[k], body) || is_attached_near(int(corner[k]), body)) return true;
+    }
+    return false;
+  }
+
+  void set_face(const Candidate& candidate, const DVec3 (&at)[3], const FaceDistance& found,
+                std::span<const SoftFaceContact> before, SoftFaceContact& out) const {
+    const SoftFaceContact* last = nullptr;
+    for (const SoftFaceContact& one : before) {
+      if (one.face == out.face && one.at.shape == candidate.shape) last = &one;
+    }
+    const DQuat turn = to_double(candidate.pose.orientation);
+    const DVec3 center = w_.bodies.poses[candidate.body].center;
+    DVec3 place{};
+    for (int k = 0; k < 3; ++k) place += found.weight[k] * at[k];
+    DVec3 normal = rotate(turn, found.normal);
+    if (found.distance < kTooNear * double(entry_.size)) {
+      // The side on which it was, or else that away from the body.
+      const DVec3 area = cross(at[1] - at[0], at[2] - at[0]);
+      const DVec3 toward = last != nullptr ? DVec3(last->at.normal) : place - center;
+      const double size = length(area), along = dot(area, toward);
+      if (size > 0.0 && along != 0.0) normal = (along > 0.0 ? 1.0 / size : -1.0 / size) * area;
+    }
+    SoftContact& contact = out.at;
+    contact.shape = candidate.shape, contact.body = std::int32_t(candidate.body);
+    contact.normal = to_float(normal);
+    contact.from_body = difference(place - found.distance * normal, center);
+    contact.gap = float(found.distance) - entry_.radius;
+    contact.static_friction = candidate.static_friction;
+    contact.dynamic_friction = candidate.dynamic_friction;
+    if (last != nullptr) contact.impulse = last->at.impulse;
+  }
+
   static bool is_beyond(const Aabb& box, DVec3 at, double reach) {
     return at.x < double(box.low.x) - reach || at.x > double(box.high.x) + reach ||
            at.y < double(box.low.y) - reach || at.y > double(box.high.y) + reach ||
@@ -195,9 +330,9 @@ class ContactFinder {
 // Wakes bodies that are touched or held by what moves. An awake one does not fall asleep meanwhile.
 void wake_bodies(RigidWorld& w, const SoftEntry& entry) {
   if (entry.rest[0].still_time >= kTimeToSleep) return;
-  for (const SoftContact& contact : entry.contacts) {
+  for_each_contact(entry, [&](const SoftContact& contact) {
     if (contact.gap <= 0.0f || contact.impulse != Vec3{}) wake(w, std::uint32_t(contact.body));
-  }
+  });
   for (const SoftAttachment& attachment : entry.attachments) {
     if (attachment.body != kWorldAnchor) wake(w, std::uint32_t(attachment.body));
   }
@@ -224,8 +359,11 @@ bool is_still(const RigidWorld& w, const SoftEntry& entry) {
 }
 
 bool do_all_rest(const RigidWorld& w, const SoftEntry& entry) {
-  for (const SoftContact& contact : entry.contacts)
-    if (contact.impulse != Vec3{} && can_wake_others(w, std::uint32_t(contact.body))) return false;
+  bool all = true;
+  for_each_contact(entry, [&](const SoftContact& contact) {
+    all = all && (contact.impulse == Vec3{} || !can_wake_others(w, std::uint32_t(contact.body)));
+  });
+  if (!all) return false;
   for (const SoftAttachment& one : entry.attachments)
     if (one.body != kWorldAnchor && can_wake_others(w, std::uint32_t(one.body))) return false;
   return true;
@@ -364,7 +502,8 @@ void rest_soft(RigidWorld& w, SoftStore& soft, Arena& arena, float seconds) {
   soft.for_each([&](SoftEntry& entry) {
     if (!entry.is_awake()) return;
     SoftRest& rest = entry.rest[0];
-    rest.still_time = !any_field && is_still(w, entry) ? min(rest.still_time + seconds, kMaxStillTime) : 0.0f;
+    const bool is_at_rest = !any_field && !entry.crossings.moves && is_still(w, entry);
+    rest.still_time = is_at_rest ? min(rest.still_time + seconds, kMaxStillTime) : 0.0f;
     if (rest.still_time < kMaxStillTime || !do_all_rest(w, entry)) moves[group[slot_of(entry)]] = 1;
   });
   soft.for_each([&](SoftEntry& entry) {

@@ -1,6 +1,7 @@
 #include "dynamics/soft/soft_solve.h"
 
 #include "dynamics/soft/soft_forces.h"
+#include "dynamics/soft/soft_rounds.h"
 #include "math/rotation.h"
 #include "rigid/batch/solve_batch.h"
 #include "soft/solver/vertex_limits.h"
@@ -11,26 +12,24 @@ namespace gyre {
 
 namespace {
 
-// Rounds of a half-step, and sweeps over all contacts in each.
-constexpr int kRounds = 2, kSweeps = 2;
 // In which contacts of surfaces and those with shapes are solved again: what a shape stops, the layer above it runs into.
 constexpr int kTurns = 2;
-// Rounds end when they would take less than this share of the energy that a fall in the half-step gives to the vertices in contact.
-constexpr double kContactTolerance = 1.0e-3;
 // The inertia of a fixed body that a vertex carries, in its own masses: beyond what hangs on it, below what rounding would show.
 constexpr float kGripShare = 1.0e3f;
 // How often a sub-step is solved because contacts open or begin to slide.
 constexpr int kGripPasses = 3;
-// Friction below this share of its bound sticks.
-constexpr float kStickShare = 0.999f;
 // The rate (1/s) at which errors of position are removed, and the largest share of them in a sub-step. A rate, since sub-steps up to an impact
 // may be as short as one likes.
 constexpr float kErrorRate = 48.0f, kErrorShare = 0.2f;
+// Faces come out of shapes at this share of the rate: a sheet of coarse cells that falls on a ball is deep in it between its vertices, and must not be thrown
+// back.
+constexpr float kFaceRate = 0.125f;
 // Largest speed of removal of penetration, as a share of the speed of a fall from the length of an edge: as for contacts of bodies.
 constexpr float kSoftPushShare = 0.4f;
 
-SoftWork& work_of(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
-SoftEntry& entry_of(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
+const SoftContact& contact_of(const SoftEntry& entry, const SoftRow& row) {
+  return row.is_face ? entry.faces[row.source].at : entry.contacts[row.source];
+}
 
 // True if the motion of the body changes within the step.
 bool moves(const RigidWorld& w, std::int32_t body) {
@@ -57,14 +56,6 @@ Quat orientation_now(const RigidWorld& w, std::int32_t body) {
   return moves(w, body) ? w.bodies.orientations[b] : w.bodies.poses[b].orientation;
 }
 
-// With what the body is still to get in this sub-step.
-template <class Row>
-Vec3 velocity_of_body(const SoftSolve& s, const Row& row) {
-  if (row.touched < 0) return {};
-  const VelocityChange& pending = s.scratch->pending[row.touched];
-  return point_velocity(s.w->bodies.motion[std::size_t(row.body)], row.arm) + pending.linear +
-         cross(pending.angular, row.arm);
-}
 // The index of a body that is touched and moves; -1 if it is none.
 std::int32_t find_touched(const SoftScratch& scratch, std::int32_t body) {
   if (body < 0) return -1;
@@ -127,7 +118,7 @@ float error_rate(const SoftSolve& s) { return min(kErrorRate, kErrorShare / s.h)
 // Where the row acts now, and what it wants. Particles have not moved yet.
 void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
   const RigidWorld& w = *s.w;
-  const DVec3 place = entry.body.particles.place(int(row.particle));
+  const DVec3 place = mean_of(row, [&](std::uint32_t v) { return entry.body.particles.place(int(v)); });
   if (!row.is_contact) {
     row.arm = rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
     const DVec3 point = center_now(w, row.body) + DVec3(row.arm);
@@ -135,7 +126,7 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     const float rate = error_rate(s) / float(s.scratch->grips[row.touched]);
     row.bias = rate * difference(place, point);
   } else {
-    const SoftContact& contact = entry.contacts[row.source];
+    const SoftContact& contact = contact_of(entry, row);
     row.normal = turned_now(w, contact.body, contact.normal);
     row.arm = turned_now(w, contact.body, contact.from_body);
     const DVec3 point = center_now(w, contact.body) + DVec3(row.arm);
@@ -143,7 +134,7 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     const float most = kSoftPushShare * std::sqrt(reference_gravity(w.settings) * entry.size);
     // A vertex that is free may come as near as it likes; one that is held goes to the surface from either side.
     const bool is_free = row.grip == SoftGrip::open && gap > 0.0f;
-    const float wanted = is_free ? gap / s.h : clamp(error_rate(s) * gap, -most, most);
+    const float wanted = is_free ? gap / s.h : clamp((row.is_face ? kFaceRate : 1.0f) * error_rate(s) * gap, -most, most);
     row.bias = wanted * row.normal - contact.surface_velocity;
   }
   row.body_compliance = body_compliance(w, row);
@@ -173,9 +164,12 @@ void add_rows(SoftSolve& s, std::uint32_t member) {
   for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
     SoftRow& row = s.scratch->rows[k];
     place_row(s, entry, row);
-    p.fx[row.particle] += rate * row.impulse.x;
-    p.fy[row.particle] += rate * row.impulse.y;
-    p.fz[row.particle] += rate * row.impulse.z;
+    for_each_vertex(row, [&](std::uint32_t v, float weight) {
+      const Vec3 impulse = weight * row.impulse;
+      p.fx[v] += rate * impulse.x;
+      p.fy[v] += rate * impulse.y;
+      p.fz[v] += rate * impulse.z;
+    });
     row.carried = -1;
     if (row.grip == SoftGrip::open || p.loose[row.particle] == 0.0f) continue;
     row.carried = std::int32_t(work.first_row + work.carried++);
@@ -222,190 +216,14 @@ std::span<const CarriedInertia> carried_by(SoftSolve& s, std::uint32_t member) {
 
 void prepare_row(SoftSolve& s, SoftRow& row) {
   row.particle_inverse = inverse_mass(entry_of(s, row.member), work_of(s, row.member).step, row.particle);
+  if (row.is_face) {
+    Sym3 sum{};
+    for_each_vertex(row, [&](std::uint32_t v, float weight) {
+      sum = sum + (weight * weight) * inverse_mass(entry_of(s, row.member), work_of(s, row.member).step, v);
+    });
+    row.particle_inverse = sum;
+  }
   row.compliance = row.particle_inverse + row.body_compliance;
-}
-
-// ------------------------------------------------------------------------------------------------------------- rows
-
-// The impulse that a contact ends with: no pull, and friction within Coulomb's cone.
-Vec3 project(const SoftRow& row, Vec3 impulse) {
-  const float normal = dot(row.normal, impulse);
-  if (!(normal > 0.0f)) return {};
-  const Vec3 tangent = impulse - normal * row.normal;
-  const float size = length(tangent);
-  if (size <= row.static_friction * normal) return impulse;
-  return normal * row.normal + (row.dynamic_friction * normal / size) * tangent;
-}
-
-// The new impulse of a contact, from its error.
-Vec3 next_impulse(const SoftRow& row, Vec3 impulse, Vec3 error) {
-  // Along the normal first, so that friction has its bound; then the rest.
-  const float stiff = dot(row.normal, row.compliance * row.normal);
-  if (!(stiff > 0.0f)) return impulse;
-  const float before = dot(row.normal, impulse);
-  const float after = max(before - dot(row.normal, error) / stiff, 0.0f);
-  if (!(after > 0.0f)) return {};
-  const Vec3 with_normal = impulse + (after - before) * row.normal;
-  const Vec3 slide = error + (after - before) * (row.compliance * row.normal);
-  const Vec3 across = slide - dot(row.normal, slide) * row.normal;
-  // The sum of both tangential compliances, which is safe for each of them.
-  const float sideways = row.compliance.xx + row.compliance.yy + row.compliance.zz - stiff;
-  if (!(sideways > 0.0f)) return project(row, with_normal);
-  return project(row, with_normal - (1.0f / sideways) * across);
-}
-
-Vec3 error_of(SoftSolve& s, const SoftRow& row) {
-  const Vec3 own = entry_of(s, row.member).body.particles.velocity(int(row.particle));
-  return own - velocity_of_body(s, row) + row.bias;
-}
-
-// The change of the relative velocity by impulses that are tried.
-Vec3 tried_change(SoftSolve& s, const SoftRow& row) {
-  const Vec3 own = work_of(s, row.member).change[row.particle];
-  if (row.touched < 0) return own;
-  const VelocityChange& body = s.scratch->changes[row.touched];
-  return own - (body.linear + cross(body.angular, row.arm));
-}
-template <class Row>
-void try_on_body(SoftSolve& s, const Row& row, Vec3 impulse) {
-  if (row.touched < 0) return;
-  const BodyInertia& inertia = s.w->bodies.inertia[std::size_t(row.body)];
-  VelocityChange& body = s.scratch->changes[row.touched];
-  body.linear -= inertia.inverse_mass * impulse;
-  body.angular -= inertia.inverse * cross(row.arm, impulse);
-}
-
-void clear_tried(SoftSolve& s) {
-  for (VelocityChange& change : s.scratch->changes) change = {};
-  for (const SoftRow& row : s.scratch->rows) work_of(s, row.member).change[row.particle] = {};
-}
-
-// Finds the changes of all vertices and touched bodies by the rows' steps.
-void respond_to_steps(SoftSolve& s) {
-  for (VelocityChange& change : s.scratch->changes) change = {};
-  for (std::uint32_t m = 0; m < s.members.size(); ++m) {
-    SoftWork& work = work_of(s, m);
-    if (work.first_row == work.last_row) continue;
-    for (Vec3& impulse : work.impulses) impulse = {};
-    for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
-      const SoftRow& row = s.scratch->rows[k];
-      work.impulses[row.particle] += row.step;
-      try_on_body(s, row, row.step);
-    }
-    respond(entry_of(s, m), work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena,
-            work.tasks);
-    for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
-      SoftRow& row = s.scratch->rows[k];
-      if (row.carried < 0) continue;
-      row.carried_step = -(s.scratch->carried[row.carried].inertia * work.change[row.particle]);
-      try_on_body(s, row, row.carried_step);
-    }
-  }
-}
-
-void change_bodies(SoftSolve& s, float share) {
-  for (std::size_t k = 0; k < s.scratch->touched.size(); ++k) {
-    BodyMotion& motion = s.w->bodies.motion[s.scratch->touched[k]];
-    const Vec3 linear = share * s.scratch->changes[k].linear, angular = share * s.scratch->changes[k].angular;
-    const float now = 1.0f / float(s.parts);
-    motion.linear_velocity += now * linear;
-    motion.angular_velocity += now * angular;
-    VelocityChange& pending = s.scratch->pending[k];
-    pending.linear += (1.0f - now) * linear, pending.angular += (1.0f - now) * angular;
-  }
-}
-
-// Takes a share of the steps and of the changes that they make.
-void take_steps(SoftSolve& s, float share) {
-  for (SoftRow& row : s.scratch->rows) {
-    row.impulse += share * row.step;
-    if (row.carried >= 0) row.impulse += share * row.carried_step;
-  }
-  for (std::uint32_t m = 0; m < s.members.size(); ++m) {
-    SoftWork& work = work_of(s, m);
-    if (work.first_row != work.last_row) add_change(entry_of(s, m), work.step, work.change.view(), share);
-  }
-  change_bodies(s, share);
-}
-
-// Gives bodies the momentum that the parts carried by vertices have gained.
-void give_to_bodies(SoftSolve& s) {
-  for (VelocityChange& change : s.scratch->changes) change = {};
-  for (SoftRow& row : s.scratch->rows) {
-    if (row.carried < 0) continue;
-    try_on_body(s, row, row.carried_step);
-    row.impulse += row.carried_step;
-  }
-  change_bodies(s, 1.0f);
-}
-
-// How contacts hold from now on: they stick within the cone of friction, slide at its bound, and are open without load.
-void set_grips(SoftSolve& s) {
-  for (std::uint32_t& grips : s.scratch->grips) grips = 0;
-  for (SoftRow& row : s.scratch->rows) {
-    if (row.is_contact) {
-      const float normal = dot(row.normal, row.impulse);
-      const float across = length(row.impulse - normal * row.normal);
-      const float bound =
-          row.grip == SoftGrip::sticks ? row.static_friction : kStickShare * row.dynamic_friction;
-      row.grip = !(normal > 0.0f)           ? SoftGrip::open
-                 : across <= bound * normal ? SoftGrip::sticks
-                                            : SoftGrip::slides;
-    }
-    if (row.touched >= 0 && row.grip != SoftGrip::open) ++s.scratch->grips[row.touched];
-  }
-}
-
-void sweep_contacts(SoftSolve& s) {
-  for (SoftRow& row : s.scratch->rows) {
-    if (!row.is_contact) continue;
-    const Vec3 before = row.impulse + row.step;
-    const Vec3 change = next_impulse(row, before, row.error + tried_change(s, row)) - before;
-    if (change == Vec3{}) continue;
-    row.step += change;
-    work_of(s, row.member).change[row.particle] += row.particle_inverse * change;
-    try_on_body(s, row, change);
-  }
-}
-
-// The energy that the steps take from the coupled system, to the first order.
-double slope_of(SoftSolve& s) {
-  double slope = 0.0;
-  for (const SoftRow& row : s.scratch->rows) slope -= double(dot(row.step, row.error));
-  return slope;
-}
-// The share of the steps that is best, at most all of them: contacts would leave their cones.
-float best_share(SoftSolve& s, double slope) {
-  double curvature = 0.0;
-  for (const SoftRow& row : s.scratch->rows) curvature += double(dot(row.step, tried_change(s, row)));
-  if (!(slope > 0.0)) return 0.0f;
-  return curvature > slope ? float(slope / curvature) : 1.0f;
-}
-
-// The kinetic energy of what a fall in the half-step gives to all soft matter that touches something.
-double energy_of_fall(SoftSolve& s) {
-  const double fall = double(s.h) * double(length(s.w->settings.gravity));
-  double mass = 0.0;
-  for (const SoftRow& row : s.scratch->rows) {
-    mass += double(entry_of(s, row.member).body.particles.mass[row.particle]);
-  }
-  return mass * fall * fall;
-}
-
-void solve_contacts_in_rounds(SoftSolve& s) {
-  const double wanted = kContactTolerance * energy_of_fall(s);
-  for (int round = 0; round < kRounds; ++round) {
-    for (SoftRow& row : s.scratch->rows) {
-      row.step = {};
-      row.error = error_of(s, row);
-    }
-    clear_tried(s);
-    for (int n = 0; n < kSweeps; ++n) sweep_contacts(s);
-    const double slope = slope_of(s);
-    if (!(slope > wanted)) return;
-    respond_to_steps(s);
-    take_steps(s, best_share(s, slope));
-  }
 }
 
 }  // namespace
@@ -435,7 +253,7 @@ void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   };
   store.for_each([&](const SoftEntry& entry) {
     if (!entry.is_awake()) return;
-    for (const SoftContact& contact : entry.contacts) touch(contact.body);
+    for_each_contact(entry, [&](const SoftContact& contact) { touch(contact.body); });
     for (const SoftAttachment& attachment : entry.attachments) touch(attachment.body);
   });
   for (const std::uint32_t body : w.bodies.awake) {
@@ -475,14 +293,22 @@ void make_soft_rows(SoftSolve& s) {
       row.arm = rotate(orientation_now(w, row.body), one.local);
       row.impulse = s.warm_scale * one.impulse;
     }
-    for (std::uint32_t k = 0; k < entry.contacts.size(); ++k) {
-      const SoftContact& one = entry.contacts[k];
-      SoftRow& row = add(one.particle, one.body, k);
+    const auto add_contact = [&](const SoftContact& one, std::uint32_t source) -> SoftRow& {
+      SoftRow& row = add(one.particle, one.body, source);
       row.is_contact = true;
       row.static_friction = one.static_friction, row.dynamic_friction = one.dynamic_friction;
       row.normal = one.normal, row.arm = one.from_body;
       row.grip = one.grip;
       row.impulse = s.warm_scale * project(row, one.impulse);
+      return row;
+    };
+    for (std::uint32_t k = 0; k < entry.contacts.size(); ++k) add_contact(entry.contacts[k], k);
+    for (std::uint32_t k = 0; k < entry.faces.size(); ++k) {
+      const SoftFaceContact& face = entry.faces[k];
+      SoftRow& row = add_contact(face.at, k);
+      row.is_face = true;
+      for (int n = 0; n < 2; ++n) row.others[n] = face.others[n];
+      for (int n = 0; n < 3; ++n) row.weight[n] = face.weight[n];
     }
     work.last_row = std::uint32_t(scratch.rows.size());
   }
@@ -498,7 +324,7 @@ void turn_soft_rows(SoftSolve& s, int, int) {
     if (row.touched < 0) continue;
     const SoftEntry& entry = entry_of(s, row.member);
     const Vec3 arm = row.is_contact
-                         ? turned_now(w, row.body, entry.contacts[row.source].from_body)
+                         ? turned_now(w, row.body, contact_of(entry, row).from_body)
                          : rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
     const Vec3 moment = cross(arm - row.arm, (-1.0f / float(s.parts)) * row.impulse);
     s.w->bodies.motion[std::size_t(row.body)].angular_velocity +=
@@ -574,9 +400,12 @@ void finish_soft_members(SoftSolve& s, int begin, int end) {
 }
 
 void keep_soft_rows(SoftSolve& s) {
+  end_soft_surfaces(s);
   for (const SoftRow& row : s.scratch->rows) {
     SoftEntry& entry = entry_of(s, row.member);
-    if (row.is_contact) {
+    if (row.is_face) {
+      entry.faces[row.source].at.impulse = row.impulse;
+    } else if (row.is_contact) {
       entry.contacts[row.source].impulse = row.impulse, entry.contacts[row.source].grip = row.grip;
     } else {
       entry.attachments[row.source].impulse = row.impulse;

@@ -1,6 +1,6 @@
 // Ropes, cloths and solids within the sub-steps of a batch: their own step, and the rows that couple them with bodies and with each other.
 //
-// A row is a vertex against a point of a body: an attachment, or a contact with friction. A row that grips (an attachment; a contact that bore
+// A row is a vertex against a point of a body: an attachment, or a contact with friction; or a point of a face, the mean of its corners, which carries nothing. A row that grips (an attachment; a contact that bore
 // load in the last sub-step) lets its vertex carry inertia of the body: K^-1 / n, with K the compliance of the point and n the number of rows
 // that grip the body; of a fixed body kGripShare times its own mass. A contact that sticks does so in all directions, one that slides
 // along its normal. The vertex and this part move as one through the whole solve, so a rope between heavy bodies, or over a pulley with loads
@@ -42,6 +42,10 @@ struct SoftRow {
   std::int32_t touched = -1;  // index of the body in SoftScratch::touched
   std::uint32_t source = 0;   // index among the entry's attachments or contacts
   bool is_contact = false;
+  // Of a face: its other corners, and the weights of all three; the point of the row is their mean. Its vertices carry nothing.
+  bool is_face = false;
+  std::uint32_t others[2] = {};
+  float weight[3] = {1.0f, 0.0f, 0.0f};
   SoftGrip grip = SoftGrip::open;
   std::int32_t carried = -1;  // index in SoftScratch::carried
   float static_friction = 0.0f, dynamic_friction = 0.0f;

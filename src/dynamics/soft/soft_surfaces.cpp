@@ -24,6 +24,7 @@ void for_each_surface(SoftSurfaces& all, Fn&& fn) {
 SurfaceContactSettings settings_of(const SoftSolve& s) {
   SurfaceContactSettings settings;
   settings.step = s.h;
+  settings.gravity = reference_gravity(s.w->settings);
   return settings;
 }
 SurfaceVertices vertices_of(SoftSurfaces& all) { return {all.positions, all.velocities, all.inverse_mass}; }
@@ -90,6 +91,29 @@ void place_vertices(SoftSolve& s, std::uint32_t member, std::uint32_t first) {
   }
 }
 
+// Finds where surfaces cross, if they may, and tells their bodies.
+void find_crossings(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  SurfaceTangle& tangle = all.contacts.tangle;
+  if (!all.may_cross) return;
+  find_tangle(all.placed, all.positions, all.arena, tangle);
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t) { entry_at(s, member).crossings = {}; });
+  const auto crossings_of = [&](std::uint32_t placed) -> SoftCrossings& {
+    return entry_at(s, all.member[placed]).crossings;
+  };
+  for (const EdgeCrossing& one : tangle.crossings) {
+    ++crossings_of(one.edge_surface).count;
+    if (one.triangle_surface != one.edge_surface) ++crossings_of(one.triangle_surface).count;
+  }
+  for (const TangledEdge& one : tangle.edges) {
+    bool moves = false;
+    for (const std::uint32_t v : one.vertex) moves = moves || all.inverse_mass[v] > 0.0f;
+    if (!moves) continue;
+    for (const std::uint32_t v : {one.vertex[0], one.vertex[2]})
+      crossings_of(tangle.surface[v]).moves = true;
+  }
+}
+
 }  // namespace
 
 void begin_soft_surfaces(SoftSolve& s) {
@@ -110,8 +134,12 @@ void begin_soft_surfaces(SoftSolve& s) {
     vertices += std::size_t(entry.contact_surface->vertices);
   }
   all.active = any_self || all.placed.size() > 1;
-  if (all.surfaces != before) all.contacts.candidates.surfaces.clear();
-  if (!all.active) return;
+  if (all.surfaces != before) {
+    all.contacts.candidates.surfaces.clear();
+    all.may_cross = true;
+  }
+  for (const std::uint32_t slot : s.members) s.store->entries[slot].crossings = {};
+  if (!all.active) return all.left.clear();
   all.positions.resize(vertices), all.targets.resize(vertices);
   all.velocities.resize(vertices), all.inverse_mass.resize(vertices);
   all.contacts.clear(vertices);
@@ -119,6 +147,10 @@ void begin_soft_surfaces(SoftSolve& s) {
     const Particles& p = entry_at(s, member).body.particles;
     for (int i = 0; i < p.count; ++i) all.positions[first + std::uint32_t(i)] = p.place(i);
   });
+  all.may_cross = all.may_cross || all.left.size() != vertices;
+  for (std::size_t v = 0; v < vertices && !all.may_cross; ++v)
+    all.may_cross = !(all.left[v] == all.positions[v]);
+  all.left.clear();
 }
 
 void add_forces_of_surfaces(SoftSolve& s, std::uint32_t member) {
@@ -156,6 +188,7 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
   });
   const SurfaceVertices vertices = vertices_of(all);
   const SurfaceContactSettings settings = settings_of(s);
+  find_crossings(s);
   find_surface_contacts(all.placed, vertices, settings, all.arena, all.contacts);
   for (int round = 0; round < kSurfaceRounds; ++round) {
     solve_surface_contacts(vertices, settings, all.arena, all.contacts);
@@ -163,6 +196,11 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
     gather_velocities(s);
   }
   push_surfaces(vertices, settings, all.arena, all.contacts);
+}
+
+void end_soft_surfaces(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  if (all.active) all.left.assign(all.positions);
 }
 
 bool solve_soft_surfaces_again(SoftSolve& s) {
@@ -186,6 +224,7 @@ void bound_soft_surfaces(SoftSolve& s, int, int) {
   all.report =
       move_surfaces(all.placed, vertices_of(all), all.targets, settings_of(s), all.arena, all.contacts);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) { place_vertices(s, member, first); });
+  all.may_cross = !all.contacts.tangle.empty() || all.report.forced > 0 || all.report.crossed > 0;
 }
 
 }  // namespace gyre

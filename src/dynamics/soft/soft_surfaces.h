@@ -31,11 +31,16 @@ struct SoftSurfaces {
   Array<float> inverse_mass;
   SurfaceContacts contacts;
   BoundReport report;
+  // True if surfaces may cross now: they are not where the last sub-step left them, or crossed then, or were held where they cross.
+  bool may_cross = true;
+  Array<DVec3> left;  // by vertex: where the last step left them
   Arena arena;  // used within a stage
 };
 
-// Lists the surfaces of a step.
+// Lists the surfaces of a step. Those that are not as the last step left them are searched for crossings in its first sub-step.
 void begin_soft_surfaces(SoftSolve& s);
+// Notes where the step leaves them.
+void end_soft_surfaces(SoftSolve& s);
 // Adds the impulses of the last sub-step to the forces from outside.
 void add_forces_of_surfaces(SoftSolve& s, std::uint32_t member);
 

@@ -34,11 +34,17 @@ void write_soft(ByteWriter& out, const SoftStore& soft) {
   });
   // By slot; left out if there are none.
   bool any = false;
-  soft.for_each([&](const SoftEntry& entry) { any = any || has_rare_state(entry); });
+  bool any_faces = false;
+  soft.for_each([&](const SoftEntry& entry) {
+    any_faces = any_faces || !entry.faces.empty();
+    any = any || has_rare_state(entry) || any_faces;
+  });
   if (!any) return;
   soft.for_each([&](const SoftEntry& entry) {
     for_each_rare_array(entry, [&](const auto& array) { write_array(out, array); });
   });
+  if (!any_faces) return;
+  soft.for_each([&](const SoftEntry& entry) { write_array(out, entry.faces); });
 }
 
 bool read_soft(ByteReader& in, SoftStore& soft) {
@@ -62,6 +68,8 @@ bool read_soft(ByteReader& in, SoftStore& soft) {
   soft.for_each([&](SoftEntry& entry) {
     for_each_rare_array(entry, [&](auto& array) { good = good && read_array(in, array); });
   });
+  if (!good || in.left() == 0) return good;
+  soft.for_each([&](SoftEntry& entry) { good = good && read_array(in, entry.faces); });
   return good;
 }
 

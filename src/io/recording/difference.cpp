@@ -67,6 +67,7 @@ struct Tracer {
       for_each_damage_array(entry, add_array);
       for_each_soft_array(entry, add_array);
       for_each_rare_array(entry, add_array);
+      add_array(entry.faces);
       out.rows.push_back(hash);
     });
   }

@@ -16,6 +16,9 @@ constexpr double kRounding = 1.0 + 0x1p-20;
 constexpr float kNearOfThickness = 0.1f;   // pairs nearer than this have rows whatever their velocity
 constexpr float kSlopOfThickness = 0.01f;  // overlap that stays
 constexpr float kMaxPushOfThickness = 0.25f;
+// The speed with which crossed surfaces part, as a share of the speed of a fall from the length of an edge: as for vertices in shapes. It bounds the energy
+// that untangling gives: half the mass times its square.
+constexpr float kUntangleShare = 0.4f;
 
 // Takes the mean from the moves: surfaces that fly together do not look far. Returns it.
 DVec3 take_mean(std::span<const PlacedSurface> surfaces, std::span<DVec3> moves) {
@@ -174,6 +177,44 @@ void solve_row(Row& row, std::span<Vec3> velocities) {
   row.impulse = {normal, friction};
 }
 
+// An edge that passes through a triangle moves along its way out, at a given speed or faster.
+struct TangleRow {
+  const TangledEdge* edge;
+  float change[5];  // 1/kg: weight times inverse mass
+  float mass;       // kg
+  float target;     // m/s: least speed along the way
+  float impulse;
+};
+
+std::span<TangleRow> make_tangle_rows(const SurfaceTangle& tangle, const SurfaceVertices& vertices,
+                                      Arena& arena) {
+  const std::span<TangleRow> rows = arena.make<TangleRow>(tangle.edges.size());
+  std::size_t used = 0;
+  for (const TangledEdge& edge : tangle.edges) {
+    TangleRow& row = rows[used];
+    float mobility = 0.0f;
+    for (int k = 0; k < 5; ++k) {
+      row.change[k] = edge.weight[k] * vertices.inverse_mass[edge.vertex[k]];
+      mobility += edge.weight[k] * row.change[k];
+    }
+    if (!(mobility > 0.0f)) continue;
+    row.edge = &edge, row.mass = 1.0f / mobility, row.target = row.impulse = 0.0f;
+    ++used;
+  }
+  return rows.first(used);
+}
+
+void solve_tangle_row(TangleRow& row, std::span<Vec3> velocities) {
+  const TangledEdge& edge = *row.edge;
+  Vec3 relative{};
+  for (int k = 0; k < 5; ++k) relative += edge.weight[k] * velocities[edge.vertex[k]];
+  const float impulse = max(0.0f, row.impulse + (row.target - dot(edge.way, relative)) * row.mass);
+  if (impulse == row.impulse) return;
+  const Vec3 change = (impulse - row.impulse) * edge.way;
+  for (int k = 0; k < 5; ++k) velocities[edge.vertex[k]] += row.change[k] * change;
+  row.impulse = impulse;
+}
+
 void solve_push(Row& row, std::span<Vec3> pushes) {
   const float now = dot(row.normal, sum_of(pushes, row.vertex, row.weight));
   const float push = max(0.0f, row.impulse.normal + (row.target - now) * row.mass);
@@ -201,6 +242,7 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
   }
   find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
                      float(settings.bounds.least_gap), arena, contacts.candidates, contacts.pairs);
+  leave_out(contacts.tangle, contacts.pairs);
   keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
   sum_impulses(vertices, contacts);
 }
@@ -224,8 +266,12 @@ void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContac
     if (gap > 0.0f) row.target = -gap / settings.step;
   }
   rows = rows.first(used);
+  const std::span<TangleRow> tangled = make_tangle_rows(contacts.tangle, vertices, arena);
+  for (TangleRow& row : tangled)
+    row.target = row.edge->share * kUntangleShare * std::sqrt(settings.gravity * row.edge->edge);
   for (int n = 0; n < settings.iterations; ++n) {
     for (std::size_t i = 0; i < used; ++i) solve_row(rows[n % 2 == 0 ? i : used - 1 - i], velocities);
+    for (TangleRow& row : tangled) solve_tangle_row(row, velocities);
   }
   contacts.touching = 0;
   for (const Row& row : rows) {
@@ -238,6 +284,14 @@ void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContac
     const Vec3 change = (velocities[v] - start[v]) / w;
     contacts.owed[v] += change;
     contacts.totals[v] += change;
+  }
+  // What untangles does not act again in the next sub-step: other edges cross then.
+  for (const TangleRow& row : tangled) {
+    for (int k = 0; k < 5; ++k) {
+      const std::uint32_t v = row.edge->vertex[k];
+      if (vertices.inverse_mass[v] > 0.0f)
+        contacts.totals[v] += -(row.edge->weight[k] * row.impulse) * row.edge->way;
+    }
   }
 }
 
@@ -294,6 +348,7 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     }
     find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
                        float(settings.bounds.least_gap), arena, contacts.candidates, found);
+    leave_out(contacts.tangle, found);
     pairs = found;
   }
   for (std::size_t v = 0; v < count; ++v) {

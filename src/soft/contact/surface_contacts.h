@@ -8,9 +8,11 @@
 //   normal     u.n >= -gap / h while the gap is positive, else u.n >= 0;  impulse >= 0
 //   friction   u_t = 0 within the disc of radius mu times the normal impulse
 //   pushout    the same rows over displacements remove a share of the overlap, without momentum
+//   untangling u.n >= a speed along the way out, of an edge that passes through a triangle: five vertices (soft/contact/surface_tangle.h). Pairs that
+//              would hold the surfaces on the wrong sides have no rows and no bounds meanwhile
 //
 // The impulse of a pair, equal and opposite on its two closest points, keeps linear momentum exactly, and angular momentum up to the friction times the
-// gap. No impulse adds kinetic energy: contacts are inelastic.
+// gap. No impulse adds kinetic energy, but for untangling: contacts are inelastic.
 //
 // W_i is the bare inverse mass, while the bodies answer impulses through their stiffness, with A^-1, A = M + s K (soft/solver/implicit_step.h). Since A - M
 // is positive semi-definite, the rows see vertices as more mobile than they are, so that no solve goes too far: each lowers the energy of the
@@ -22,6 +24,7 @@
 #include "soft/contact/displacement_bounds.h"
 #include "soft/contact/soft_surface.h"
 #include "soft/contact/surface_pairs.h"
+#include "soft/contact/surface_tangle.h"
 
 #include <gyre/math.h>
 
@@ -44,6 +47,7 @@ struct SurfaceContactSettings {
   float pushout = 0.25f;    // share of the overlap removed in a sub-step
   int most_rounds =
       4;  // of finding pairs, for vertices that end farther from their plan than they were looked for
+  float gravity = 9.81f;  // m/s^2, by which the speed of untangling goes
   BoundSettings bounds{};
 };
 
@@ -60,6 +64,7 @@ struct SurfaceContacts {
   // body spreads them exactly. And the part of them that the velocities do not have yet.
   Array<Vec3> totals, owed;
   SurfaceCandidates candidates;
+  SurfaceTangle tangle;  // when the sub-step began
   Array<DVec3> plan;    // m, by vertex: the moves for which pairs were found, against the mean of all
   Array<float> limits;  // m, by vertex: how far it may end from its plan, or pairs are found again
   Array<Vec3> pushes;   // m, by vertex

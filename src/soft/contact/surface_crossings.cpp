@@ -58,42 +58,67 @@ bool any_segments_meet(DVec3 p, DVec3 q, DVec3 a, DVec3 b) {
   return orient3(p, q, a, b) == 0 && coplanar_segments_meet(p, q, a, b);
 }
 
-class CrossingCount {
- public:
-  CrossingCount(std::span<const DVec3> positions) : positions_(positions) {}
+// The ends of the edge are on different sides of the triangle, and it has a point in common with it.
+bool segment_passes_triangle(DVec3 p, DVec3 q, DVec3 a, DVec3 b, DVec3 c) {
+  return orient3(a, b, c, p) * orient3(a, b, c, q) < 0 && segment_meets_triangle(p, q, a, b, c);
+}
 
-  void add(const SurfaceBoxes& a, const SurfaceBoxes& b) {
-    for_each_triangle_pair(a, b, [&](std::uint32_t i, std::uint32_t k) {
-      count_ += owned_edges(a, i, b, k) + owned_edges(b, k, a, i);
+using SegmentTest = bool (*)(DVec3, DVec3, DVec3, DVec3, DVec3);
+
+// Calls visit(crossing) for each edge of one surface that meets a triangle of the other by the test.
+template <class Visit>
+class CrossingSearch {
+ public:
+  CrossingSearch(std::span<const DVec3> positions, SegmentTest test, Visit& visit)
+      : positions_(positions), test_(test), visit_(visit) {}
+
+  void search(std::span<const SurfaceBoxes> boxes, std::uint32_t s, std::uint32_t t) {
+    for_each_triangle_pair(boxes[s], boxes[t], [&](std::uint32_t i, std::uint32_t k) {
+      visit_owned_edges(boxes, s, i, t, k);
+      visit_owned_edges(boxes, t, k, s, i);
     });
   }
-  long count() const { return count_; }
 
  private:
-  // Edges that triangle i owns, against triangle k.
-  long owned_edges(const SurfaceBoxes& a, std::uint32_t i, const SurfaceBoxes& b, std::uint32_t k) const {
+  // Edges that triangle i of surface s owns, against triangle k of surface t.
+  void visit_owned_edges(std::span<const SurfaceBoxes> boxes, std::uint32_t s, std::uint32_t i,
+                         std::uint32_t t, std::uint32_t k) {
+    const SurfaceBoxes &a = boxes[s], &b = boxes[t];
     const SoftTriangle& from = a.surface->triangles[i];
     const SoftTriangle& to = b.surface->triangles[k];
-    const bool same = a.surface == b.surface && a.first == b.first;
-    long found = 0;
     for (const std::int32_t number : from.owned_edge) {
       if (number < 0) continue;
       const SurfaceEdge edge = a.surface->edges[number];
-      if (same && shares(edge.a, to) + shares(edge.b, to) > 0) continue;
+      if (s == t && shares(edge.a, to) + shares(edge.b, to) > 0) continue;
       if (!overlap(merge(a.vertices[edge.a], a.vertices[edge.b]), b.triangles[k])) continue;
       const auto at = [&](std::uint32_t corner) { return positions_[b.first + to.corner[corner]]; };
-      found += segment_meets_triangle(positions_[a.first + edge.a], positions_[a.first + edge.b], at(0),
-                                      at(1), at(2));
+      if (test_(positions_[a.first + edge.a], positions_[a.first + edge.b], at(0), at(1), at(2)))
+        visit_(EdgeCrossing{s, std::uint32_t(number), t, k});
     }
-    return found;
   }
   static int shares(std::uint32_t v, const SoftTriangle& one) {
     return one.corner[0] == v || one.corner[1] == v || one.corner[2] == v;
   }
 
   std::span<const DVec3> positions_;
-  long count_ = 0;
+  SegmentTest test_;
+  Visit& visit_;
 };
+
+template <class Visit>
+void for_each_crossing(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
+                       SegmentTest test, Arena& arena, Visit&& visit) {
+  const ArenaScope scope(arena);
+  if (surfaces.empty() || positions.empty()) return;
+  const DVec3 origin = positions[surfaces[0].first];
+  const std::span<SurfaceBoxes> boxes = arena.make<SurfaceBoxes>(surfaces.size());
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    boxes[i] = fit_boxes(surfaces[i], positions, {}, origin, arena);
+  CrossingSearch search(positions, test, visit);
+  for (std::uint32_t i = 0; i < std::uint32_t(boxes.size()); ++i) {
+    for (std::uint32_t k = i; k < std::uint32_t(boxes.size()); ++k) search.search(boxes, i, k);
+  }
+}
 
 }  // namespace
 
@@ -110,17 +135,17 @@ bool segment_meets_triangle(DVec3 p, DVec3 q, DVec3 a, DVec3 b, DVec3 c) {
 
 long count_crossings(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
                      Arena& arena) {
-  const ArenaScope scope(arena);
-  if (surfaces.empty() || positions.empty()) return 0;
-  const DVec3 origin = positions[surfaces[0].first];
-  const std::span<SurfaceBoxes> boxes = arena.make<SurfaceBoxes>(surfaces.size());
-  for (std::size_t i = 0; i < surfaces.size(); ++i)
-    boxes[i] = fit_boxes(surfaces[i], positions, {}, origin, arena);
-  CrossingCount crossings(positions);
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    for (std::size_t k = i; k < boxes.size(); ++k) crossings.add(boxes[i], boxes[k]);
-  }
-  return crossings.count();
+  long count = 0;
+  for_each_crossing(surfaces, positions, segment_meets_triangle, arena,
+                    [&](const EdgeCrossing&) { ++count; });
+  return count;
+}
+
+void list_passing_edges(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
+                        Arena& arena, Array<EdgeCrossing>& crossings) {
+  crossings.clear();
+  for_each_crossing(surfaces, positions, segment_passes_triangle, arena,
+                    [&](const EdgeCrossing& one) { crossings.push_back(one); });
 }
 
 }  // namespace gyre

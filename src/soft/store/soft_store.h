@@ -63,6 +63,14 @@ struct SoftContact {
   SoftGrip grip = SoftGrip::open;
 };
 
+// A face near a shape that comes nearer to it between its corners than at them: a corner, an edge or a tip of the shape. Found once a step.
+struct SoftFaceContact {
+  SoftContact at;                // of the first corner; its gap is that of the point
+  std::uint32_t others[2] = {};  // the other corners
+  float weight[3] = {};          // of the corners: where the point is
+  std::uint32_t face = 0;        // of the surface
+};
+
 // True for the integrators that solve a system of equations, whose stability does not depend on the step.
 inline bool is_implicit(SoftIntegrator integrator) {
   return integrator == SoftIntegrator::implicit || integrator == SoftIntegrator::sdirk2;
@@ -109,12 +117,19 @@ struct SoftEvents {
   void clear() { begins.clear(), ends.clear(), inverted.clear(), torn.clear(); }
 };
 
+// Where the surface crosses itself or others, in the last sub-step; it follows from places, so this is no state of its own.
+struct SoftCrossings {
+  int count = 0;       // pairs of an edge and a triangle
+  bool moves = false;  // true if it is being untangled: it must not fall asleep
+};
+
 struct SoftEntry {
   std::shared_ptr<const SoftDef> def;  // null: the slot is free
   SoftKind kind = SoftKind::rope;
   SoftBody body;
   Array<SoftAttachment> attachments;  // ascending by particle
   Array<SoftContact> contacts;        // ascending by particle, then shape
+  Array<SoftFaceContact> faces;       // ascending by face
   Array<SoftInside> inside;           // ascending by particle, then body
   Array<SoftLimit> limits;            // by vertex; none: there are no limits
   Array<std::uint32_t>
@@ -129,6 +144,8 @@ struct SoftEntry {
   float size = 0.0f;    // m: the mean length of its edges, by which speculative distances go
   SoftDamage damage;
   SoftReported reported;
+  SoftCrossings crossings;
+  float crossed_for = 0.0f;  // s: how long it has crossed, for a report; no state
 
   bool is_awake() const { return rest[0].asleep == 0; }
   const SoftSettings& settings() const {
@@ -200,6 +217,13 @@ void for_each_rare_array(Entry& entry, Visitor&& visit) {
   visit(entry.inside);
   visit(entry.limits);
 }
+// Calls visit(contact) for the contacts of vertices and of faces.
+template <class Entry, class Visit>
+void for_each_contact(Entry& entry, Visit&& visit) {
+  for (auto& contact : entry.contacts) visit(contact);
+  for (auto& face : entry.faces) visit(face.at);
+}
+
 inline bool has_rare_state(const SoftEntry& entry) { return !entry.inside.empty() || !entry.limits.empty(); }
 
 // Begins to move again, and does not fall asleep for a while.

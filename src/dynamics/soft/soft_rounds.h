@@ -1,0 +1,48 @@
+// Rounds of sequential impulses on the rows of soft matter: contacts find impulses with the block of each vertex alone, and of these the share is taken that
+// minimises the energy of the coupled system.
+//
+// In: rows that are placed, velocities. Out: impulses and velocities of both sides, and how contacts hold from now on.
+#pragma once
+
+#include "dynamics/soft/soft_solve.h"
+
+namespace gyre {
+
+inline SoftWork& work_of(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
+inline SoftEntry& entry_of(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
+
+// Calls visit(vertex, weight) for each vertex of the row.
+template <class Visit>
+void for_each_vertex(const SoftRow& row, Visit&& visit) {
+  visit(row.particle, row.weight[0]);
+  if (!row.is_face) return;
+  visit(row.others[0], row.weight[1]);
+  visit(row.others[1], row.weight[2]);
+}
+// The value at the point of the row, of values by vertex.
+template <class At>
+auto mean_of(const SoftRow& row, At&& at) {
+  auto sum = at(row.particle);
+  if (!row.is_face) return sum;
+  using Weight = decltype(sum.x);
+  return Weight(row.weight[0]) * sum + Weight(row.weight[1]) * at(row.others[0]) +
+         Weight(row.weight[2]) * at(row.others[1]);
+}
+// With what the body is still to get in this sub-step.
+template <class Row>
+Vec3 velocity_of_body(const SoftSolve& s, const Row& row) {
+  if (row.touched < 0) return {};
+  const VelocityChange& pending = s.scratch->pending[row.touched];
+  return point_velocity(s.w->bodies.motion[std::size_t(row.body)], row.arm) + pending.linear +
+         cross(pending.angular, row.arm);
+}
+
+// The impulse that a contact ends with: no pull, and friction within Coulomb's cone.
+Vec3 project(const SoftRow& row, Vec3 impulse);
+// Gives bodies the momentum that the parts carried by vertices have gained.
+void give_to_bodies(SoftSolve& s);
+void solve_contacts_in_rounds(SoftSolve& s);
+// How contacts hold from now on: they stick within the cone of friction, slide at its bound, and are open without load.
+void set_grips(SoftSolve& s);
+
+}  // namespace gyre
