@@ -42,8 +42,9 @@ struct ContactBlockCold {
   // Rolling friction.
   Wide<W> rolling_friction, rolling_mass;
   Vec3W<W> rolling;
-  // m: how far the arms on A and B have moved since the step began, in the lanes of `carried_a` and `carried_b`.
+  // m: how far the arms on A and B have moved since the step began, in the lanes of `carried_a` and `carried_b`, and may move.
   Vec3W<W> moved_a, moved_b;
+  Wide<W> reach_a, reach_b;
   alignas(64) float nowhere[kRecordFloats];
 };
 
@@ -234,6 +235,43 @@ struct BodyDisplacement {
 // outward by 6e-4 sizes a second at most, at 60 steps a second.
 constexpr float kMinBend = 1.0e-5f;
 
+// Arms move only so far that the response to an impulse grows by at most this share: rows keep the effective mass of the step's beginning,
+// and twice the response would feed on itself. What is thrown past a light support at several sizes a step gained energy without end.
+constexpr float kMaxResponseGrowth = 0.25f;
+
+// How far the arm on a body may move: the response of the body's rotation grows with the square of its arm.
+template <int W>
+GYRE_INLINE Wide<W> find_reach(const ContactBlock<W>& block, const Sym3W<W>& inverse_inertia, Vec3W<W> arm) {
+  const Wide<W> rotation = max(inverse_inertia.xx + inverse_inertia.yy + inverse_inertia.zz, Wide<W>(1.0e-30f));
+  const Wide<W> growth =
+      (Wide<W>(kMaxResponseGrowth) * (block.inverse_mass_a + block.inverse_mass_b)) / rotation;
+  const Wide<W> square = length_squared(arm);
+  return growth / (sqrt(square + growth) + sqrt(square));
+}
+template <int W>
+GYRE_INLINE Vec3W<W> within(Vec3W<W> moved, Wide<W> reach) {
+  return (reach / max(max(reach, length(moved)), Wide<W>(1.0e-30f))) * moved;
+}
+
+// Finds the lanes in which the body whose centre is farther turns, and carries the other along an arc. `from_a` and `from_b` are the arms
+// of one point.
+template <int W>
+__attribute__((noinline)) void find_carried(ContactBlock<W>& block, Mask<W> nearer_a, Vec3W<W> from_a,
+                                            Vec3W<W> from_b, Wide<W> size, float step) {
+  const Wide<W> zero(0.0f), half_step_squared(0.5f * step * step);
+  const PairMotion<W> pair = load_pair<W>(block);
+  const Wide<W> radius = length(from_a - from_b);
+  const auto bends = [&](Vec3W<W> spin) {
+    return half_step_squared * length_squared(spin) * radius > Wide<W>(kMinBend) * size;
+  };
+  const auto pairs = Mask<W>::of_bits(std::uint32_t(block.has_a & block.has_b));
+  block.carried_a = lane_bits<W>(pairs & ~nearer_a & bends(pair.angular_a));
+  block.carried_b = lane_bits<W>(pairs & nearer_a & bends(pair.angular_b));
+  block.cold->moved_a = block.cold->moved_b = {zero, zero, zero};
+  block.cold->reach_a = find_reach<W>(block, block.inverse_inertia_a, from_a);
+  block.cold->reach_b = find_reach<W>(block, block.inverse_inertia_b, from_b);
+}
+
 // A support that turns carries what lies on it: the point of contact stays where it is on the body whose centre is nearer, and moves over
 // the other one, whose arm changes by the motion of the two centres against each other. Both bodies then act at one point, so their
 // angular momentum is kept, and the surface has the velocity of the place where the carried body is. Displacements use the mean of the
@@ -252,16 +290,17 @@ __attribute__((noinline)) void move_arms(ContactBlock<W>& block, const PairMotio
     arm_shift = select<W>(carried, arm_shift + cross(change, block.normal), arm_shift);
     before = select<W>(carried, now, before);
   };
-  move(block.carried_a, moved, block.cold->moved_a, block.friction_from_a, block.arm_shift_a);
-  move(block.carried_b, -moved, block.cold->moved_b, block.friction_from_b, block.arm_shift_b);
+  move(block.carried_a, within<W>(moved, block.cold->reach_a), block.cold->moved_a, block.friction_from_a, block.arm_shift_a);
+  move(block.carried_b, within<W>(-moved, block.cold->reach_b), block.cold->moved_b, block.friction_from_b, block.arm_shift_b);
 }
 // The difference that the mean arm makes to the displacement along the normal.
 template <int W>
 __attribute__((noinline)) Wide<W> mean_arm_excess(const ContactBlock<W>& block, const BodyDisplacement<W>& a,
                                                   const BodyDisplacement<W>& b) {
   const Vec3W<W> half = Wide<W>(0.5f) * (b.delta_position - a.delta_position);
-  const Wide<W> of_a = dot(a.delta_rotation, cross(block.cold->moved_a - half, block.normal)),
-                of_b = dot(b.delta_rotation, cross(block.cold->moved_b + half, block.normal));
+  const ContactBlockCold<W>& cold = *block.cold;
+  const Wide<W> of_a = dot(a.delta_rotation, cross(cold.moved_a - within<W>(half, cold.reach_a), block.normal)),
+                of_b = dot(b.delta_rotation, cross(cold.moved_b + within<W>(half, cold.reach_b), block.normal));
   return keep(Mask<W>::of_bits(block.carried_a), of_a) - keep(Mask<W>::of_bits(block.carried_b), of_b);
 }
 

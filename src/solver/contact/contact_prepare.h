@@ -413,22 +413,6 @@ GYRE_INLINE Mask<W> choose_arm_origin(ContactBlock<W>& block, const PointArms<W>
   return nearer_a;
 }
 
-// Finds the lanes in which the body whose centre is farther turns, and carries the other along an arc.
-template <int W>
-__attribute__((noinline)) void find_carried(ContactBlock<W>& block, Mask<W> nearer_a,
-                                            const PointArms<W>& arms, Wide<W> size, float step) {
-  const Wide<W> zero(0.0f), half_step_squared(0.5f * step * step);
-  const PairMotion<W> pair = load_pair<W>(block);
-  const Wide<W> radius = length(arms.from_a - arms.from_b);
-  const auto bends = [&](Vec3W<W> spin) {
-    return half_step_squared * length_squared(spin) * radius > Wide<W>(kMinBend) * size;
-  };
-  const auto pairs = Mask<W>::of_bits(std::uint32_t(block.has_a & block.has_b));
-  block.carried_a = lane_bits<W>(pairs & ~nearer_a & bends(pair.angular_a));
-  block.carried_b = lane_bits<W>(pairs & nearer_a & bends(pair.angular_b));
-  block.cold->moved_a = block.cold->moved_b = {zero, zero, zero};
-}
-
 template <int W>
 void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
                    ContactBodies bodies, const ContactSettings& settings) {
@@ -477,7 +461,7 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const Mask<W> rigid = (kinds & WideInt<W>(0xff)) != none;
   block.jointed = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
   block.carried_a = block.carried_b = 0;
-  if ((block.has_a & block.has_b) != 0) find_carried<W>(block, nearer_a, arms[0], size, settings.step);
+  if ((block.has_a & block.has_b) != 0) find_carried<W>(block, nearer_a, arms[0].from_a, arms[0].from_b, size, settings.step);
   block.speculative = lane_bits<W>((kinds & WideInt<W>(0xff0000)) != none);
   block.pushing = 0;
   Wide<W> age;
