@@ -283,7 +283,9 @@ TEST(SceneRunner, CouplingsPairsAndDisabledBodiesGoOnInTheFinalScene) {
     "force_fields": [{"type": "grid", "bounds": [[8, -1, -1], [10, 1, 1]], "points": [2, 2, 2],
                       "vectors": [[0,2,0],[0,2,0],[0,2,0],[0,2,0],[0,2,0],[0,2,0],[0,2,0],[0,2,0]]}]})";
   SceneRunner runner = run(text, 30);
-  const auto place = [](const SceneRunner& of, std::size_t body) { return of.world().pose(of.bodies()[body]).position; };
+  const auto place = [](const SceneRunner& of, std::size_t body) {
+    return of.world().pose(of.bodies()[body]).position;
+  };
   EXPECT_NEAR(place(runner, 2).x, -place(runner, 1).x, 1e-3);
   EXPECT_GT(place(runner, 1).x, -0.6);
   EXPECT_EQ(place(runner, 3).x, 0);
@@ -293,7 +295,8 @@ TEST(SceneRunner, CouplingsPairsAndDisabledBodiesGoOnInTheFinalScene) {
   EXPECT_GT(place(rest, 1).x, 0.2) << "they passed through each other";
   EXPECT_NEAR(place(rest, 2).x, -place(rest, 1).x, 1e-3);
   EXPECT_FALSE(rest.world().enabled(rest.bodies()[3]));
-  const SceneResult<Scene> wrong = read_scene(R"({"gyre_scene": 1, "couplings": [{"terms": [{"joint": "a"}, {"joint": "b"}]}]})");
+  const SceneResult<Scene> wrong =
+      read_scene(R"({"gyre_scene": 1, "couplings": [{"terms": [{"joint": "a"}, {"joint": "b"}]}]})");
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().pointer, "/couplings/0/terms/0/joint");
 }

@@ -242,7 +242,8 @@ constexpr float kMaxResponseGrowth = 0.25f;
 // How far the arm on a body may move: the response of the body's rotation grows with the square of its arm.
 template <int W>
 GYRE_INLINE Wide<W> find_reach(const ContactBlock<W>& block, const Sym3W<W>& inverse_inertia, Vec3W<W> arm) {
-  const Wide<W> rotation = max(inverse_inertia.xx + inverse_inertia.yy + inverse_inertia.zz, Wide<W>(1.0e-30f));
+  const Wide<W> rotation =
+      max(inverse_inertia.xx + inverse_inertia.yy + inverse_inertia.zz, Wide<W>(1.0e-30f));
   const Wide<W> growth =
       (Wide<W>(kMaxResponseGrowth) * (block.inverse_mass_a + block.inverse_mass_b)) / rotation;
   const Wide<W> square = length_squared(arm);
@@ -290,8 +291,10 @@ __attribute__((noinline)) void move_arms(ContactBlock<W>& block, const PairMotio
     arm_shift = select<W>(carried, arm_shift + cross(change, block.normal), arm_shift);
     before = select<W>(carried, now, before);
   };
-  move(block.carried_a, within<W>(moved, block.cold->reach_a), block.cold->moved_a, block.friction_from_a, block.arm_shift_a);
-  move(block.carried_b, within<W>(-moved, block.cold->reach_b), block.cold->moved_b, block.friction_from_b, block.arm_shift_b);
+  move(block.carried_a, within<W>(moved, block.cold->reach_a), block.cold->moved_a, block.friction_from_a,
+       block.arm_shift_a);
+  move(block.carried_b, within<W>(-moved, block.cold->reach_b), block.cold->moved_b, block.friction_from_b,
+       block.arm_shift_b);
 }
 // The difference that the mean arm makes to the displacement along the normal.
 template <int W>
@@ -299,8 +302,10 @@ __attribute__((noinline)) Wide<W> mean_arm_excess(const ContactBlock<W>& block, 
                                                   const BodyDisplacement<W>& b) {
   const Vec3W<W> half = Wide<W>(0.5f) * (b.delta_position - a.delta_position);
   const ContactBlockCold<W>& cold = *block.cold;
-  const Wide<W> of_a = dot(a.delta_rotation, cross(cold.moved_a - within<W>(half, cold.reach_a), block.normal)),
-                of_b = dot(b.delta_rotation, cross(cold.moved_b + within<W>(half, cold.reach_b), block.normal));
+  const Wide<W> of_a =
+                    dot(a.delta_rotation, cross(cold.moved_a - within<W>(half, cold.reach_a), block.normal)),
+                of_b =
+                    dot(b.delta_rotation, cross(cold.moved_b + within<W>(half, cold.reach_b), block.normal));
   return keep(Mask<W>::of_bits(block.carried_a), of_a) - keep(Mask<W>::of_bits(block.carried_b), of_b);
 }
 

@@ -461,7 +461,8 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const Mask<W> rigid = (kinds & WideInt<W>(0xff)) != none;
   block.jointed = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
   block.carried_a = block.carried_b = 0;
-  if ((block.has_a & block.has_b) != 0) find_carried<W>(block, nearer_a, arms[0].from_a, arms[0].from_b, size, settings.step);
+  if ((block.has_a & block.has_b) != 0)
+    find_carried<W>(block, nearer_a, arms[0].from_a, arms[0].from_b, size, settings.step);
   block.speculative = lane_bits<W>((kinds & WideInt<W>(0xff0000)) != none);
   block.pushing = 0;
   Wide<W> age;
