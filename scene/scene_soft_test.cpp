@@ -393,7 +393,7 @@ TEST(SceneSoft, ExplicitSchemesGoOnExactly) {
     const SoftVertices a = whole.world().vertices(whole.cloths()[0]),
                        b = rest.world().vertices(rest.cloths()[0]);
     ASSERT_EQ(a.size(), b.size());
-    EXPECT_LT(a.y[14], -0.1) << kind;
+    EXPECT_GT(std::abs(a.y[14]), 0.1) << kind << ": it has moved (explicit Euler has exploded, upward or downward)";
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(a.position(i), b.position(i)) << kind << " " << i;
       EXPECT_EQ(a.velocity(i), b.velocity(i)) << kind << " " << i;

@@ -107,24 +107,25 @@ TEST(RagdollHeap, HangsOnWhatMovesByItselfAlike) { expect_the_same(on_a_swing); 
 
 // Limbs pass each other by several of their sizes in a step, and turn by radians.
 TEST(RagdollHeap, ThrownAtAFloorFastGainsNoEnergy) {
+  constexpr int kFalls = 40, kCount = 8, kSteps = 40;
   std::mt19937 random(1);
   std::uniform_real_distribution<float> draw(-1, 1);
   const RagdollDef def = *stabilized(make_humanoid());
-  for (int fall = 0; fall < 6; ++fall) {
+  for (int fall = 0; fall < kFalls; ++fall) {
     World world = make_world({});
     world.add_body({.type = BodyType::fixed, .pose = {.position = {0, -0.5, 0}}},
                    {.geometry = Box{{5, 0.5f, 5}}});
-    for (int i = 0; i < 20; ++i) {
-      const Pose pose{{0.5 * double(draw(random)), 1.2 + 0.9 * i, 0.5 * double(draw(random))},
-                      random_turn(random)};
+    for (int i = 0; i < kCount; ++i) {
+      const Quat turn = normalized(Quat{draw(random), draw(random), draw(random), draw(random)});
+      const Pose pose{{0.5 * double(draw(random)), 1.2 + 0.9 * i, 0.5 * double(draw(random))}, turn};
       for (const RagdollBone& bone : add(world, def, middle_pose(def, pose)).bones)
-        world.set_velocity(bone.body, {0, -40, 0}, {});
+        world.set_velocity(bone.body, {0, -60, 0}, {});
     }
     const double begin = world.energy().kinetic;
-    for (int step = 0; step < 40; ++step) {
+    for (int step = 0; step < kSteps; ++step) {
       const double before = world.energy().kinetic;
       ASSERT_TRUE(world.step(kStep));
-      ASSERT_LT(world.energy().kinetic, before + 1e-4 * begin) << "fall " << fall << ", step " << step;
+      ASSERT_LT(world.energy().kinetic, before + 1e-3 * begin) << "fall " << fall << ", step " << step;
     }
   }
 }
