@@ -2,8 +2,9 @@
 //
 // A manifold is found once a step. Bodies that pass an edge, or strike off their centres, have other nearest features by the time that they
 // meet, and the plane of the first ones would stop bodies that never touch. Two convex shapes stay apart as long as they keep any plane
-// between them. So nothing is done until the solver would push along the first plane. Then the shapes are swept over the half-step. If they
-// do not meet, they are not pushed. If they do, the manifold is found anew at the time of impact.
+// between them. So nothing is done until the solver would push along the first plane. Then the shapes are swept over the half-step; slow
+// pairs that do not bounce are found at its end instead. If they do not meet, they are not pushed. If they do, the manifold is found anew
+// at the time of impact.
 //
 // In: contacts without load, poses and velocities in the step. Out: manifolds at the time of impact, as if they had been found as the step
 // began: separations are the present ones, less the motion since then.
