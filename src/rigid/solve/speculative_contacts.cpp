@@ -69,11 +69,14 @@ Vec3 displacement_of(const ContactSolve& s, std::int32_t body, Vec3 from_center,
          seconds * point_velocity(motion, from_center);
 }
 
+SweptShape swept(const ColliderShape& shape, const Sweep& sweep) {
+  return make_swept_shape(shape.shape, shape.body_from_shape, sweep);
+}
+
 // The time at which the two shapes meet, as a share of the sweeps.
 Impact meeting_time(const ContactSolve& s, const Contact& contact, const Sweep (&sweeps)[2]) {
   const ColliderShape &a = s.w.shapes.colliders[contact.shape_a], &b = s.w.shapes.colliders[contact.shape_b];
-  const SweptShape swept_a = make_swept_shape(a.shape, a.body_from_shape, sweeps[0]),
-                   swept_b = make_swept_shape(b.shape, b.body_from_shape, sweeps[1]);
+  const SweptShape swept_a = swept(a, sweeps[0]), swept_b = swept(b, sweeps[1]);
   const double target = double(kImpactGap * contact.size);
   if (contact.manifold_room == 1) {
     if (stays_clear(swept_a, swept_b, 0.0, 1.0, 2.0 * target)) return {};
@@ -138,9 +141,13 @@ bool is_slow(const ContactSolve& s, const Contact& contact, const Sweep (&sweeps
          kUnsweptMove * contact.size;
 }
 
-// The meeting of a slow convex pair without a sweep. The features of the end of the half-step tell if the two meet, and when; those of that
-// time are the manifold. Returns the share of the half-step; none if they do not meet, and the manifold is as it was.
+// The meeting of a slow convex pair without a sweep. The distance at the end of the half-step tells if the two meet, and the manifold there
+// when; that of this time is the result. Returns the share of the half-step; none if they do not meet, and the manifold is as it was.
 std::optional<double> find_slow_meeting(const ContactSolve& s, Contact& contact, const Sweep (&sweeps)[2]) {
+  const SweptShape a = swept(s.w.shapes.colliders[contact.shape_a], sweeps[0]),
+                   b = swept(s.w.shapes.colliders[contact.shape_b], sweeps[1]);
+  const float target = kImpactGap * contact.size;
+  if (find_gap(a, b, 1.0, double(target)).distance > double(target)) return std::nullopt;
   Manifold& manifold = s.w.contacts.manifolds[contact.first_manifold];
   const Manifold former = manifold;
   const std::uint16_t count = contact.manifold_count;
@@ -148,7 +155,6 @@ std::optional<double> find_slow_meeting(const ContactSolve& s, Contact& contact,
   const ContactPointState* deepest = manifold.points;
   for (int k = 1; k < manifold.count; ++k)
     if (manifold.points[k].separation < deepest->separation) deepest = &manifold.points[k];
-  const float target = kImpactGap * contact.size;
   if (found == 0 || manifold.count == 0 || deepest->separation > target) {
     manifold = former;
     contact.manifold_count = count;
