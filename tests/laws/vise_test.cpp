@@ -178,7 +178,7 @@ void expect_held(const Held& held, double depth) {
   EXPECT_LT(std::fabs(lifted.slip), 5e-4) << name;
 }
 
-// What robot hands hold: half a millimetre at most, whatever the shape.
+// Robot hands enter what they hold by half a millimetre at most, whatever the shape.
 TEST(Vise, HoldsLightThingsHard) {
   for (int shape = 0; shape < kShapes; ++shape) {
     for (const float jaw : {1.0f, 4.0f}) {

@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// What is known of a body, as bits.
+// Facts about a body, as bits.
 enum Mark : std::uint8_t {
   kJointed = 1,
   kMachine = 2,  // of the lowest body of a set: one of its joints does work

@@ -285,7 +285,7 @@ void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContac
     contacts.owed[v] += change;
     contacts.totals[v] += change;
   }
-  // What untangles does not act again in the next sub-step: other edges cross then.
+  // Impulses that untangle do not act again in the next sub-step: other edges cross then.
   for (const TangleRow& row : tangled) {
     for (int k = 0; k < 5; ++k) {
       const std::uint32_t v = row.edge->vertex[k];
