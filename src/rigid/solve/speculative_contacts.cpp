@@ -141,9 +141,20 @@ bool is_slow(const ContactSolve& s, const Contact& contact, const Sweep (&sweeps
          kUnsweptMove * contact.size;
 }
 
+struct Meeting {
+  double share = 0.0;  // of the half-step
+  int manifolds = 0;   // found there
+};
+
+std::optional<Meeting> find_swept_meeting(const ContactSolve& s, Contact& contact, const Sweep (&sweeps)[2]) {
+  const Impact impact = meeting_time(s, contact, sweeps);
+  if (!impact.hit) return std::nullopt;
+  return Meeting{impact.time, update_manifolds(s, contact, sweeps, impact.time)};
+}
+
 // The meeting of a slow convex pair without a sweep. The distance at the end of the half-step tells if the two meet, and the manifold there
-// when; that of this time is the result. Returns the share of the half-step; none if they do not meet, and the manifold is as it was.
-std::optional<double> find_slow_meeting(const ContactSolve& s, Contact& contact, const Sweep (&sweeps)[2]) {
+// when; that of this time is the result. Where they do not meet, the manifold is as it was.
+std::optional<Meeting> find_slow_meeting(const ContactSolve& s, Contact& contact, const Sweep (&sweeps)[2]) {
   const SweptShape a = swept(s.w.shapes.colliders[contact.shape_a], sweeps[0]),
                    b = swept(s.w.shapes.colliders[contact.shape_b], sweeps[1]);
   const float target = kImpactGap * contact.size;
@@ -151,15 +162,16 @@ std::optional<double> find_slow_meeting(const ContactSolve& s, Contact& contact,
   Manifold& manifold = s.w.contacts.manifolds[contact.first_manifold];
   const Manifold former = manifold;
   const std::uint16_t count = contact.manifold_count;
-  const int found = update_manifolds(s, contact, sweeps, 1.0);
-  const ContactPointState* deepest = manifold.points;
-  for (int k = 1; k < manifold.count; ++k)
-    if (manifold.points[k].separation < deepest->separation) deepest = &manifold.points[k];
-  if (found == 0 || manifold.count == 0 || deepest->separation > target) {
+  const auto stay_apart = [&]() -> std::optional<Meeting> {
     manifold = former;
     contact.manifold_count = count;
     return std::nullopt;
-  }
+  };
+  if (update_manifolds(s, contact, sweeps, 1.0) == 0) return stay_apart();
+  const ContactPointState* deepest = manifold.points;
+  for (int k = 1; k < manifold.count; ++k)
+    if (manifold.points[k].separation < deepest->separation) deepest = &manifold.points[k];
+  if (manifold.count == 0 || deepest->separation > target) return stay_apart();
   const auto move = [&](const Sweep& sweep, Vec3 from_center) {
     return sweep.translation + cross(sweep.rotation, from_center);
   };
@@ -167,8 +179,9 @@ std::optional<double> find_slow_meeting(const ContactSolve& s, Contact& contact,
                   dot(move(sweeps[0], deepest->from_a) - move(sweeps[1], deepest->from_b), manifold.normal),
               beyond = target - deepest->separation;
   const double share = closing > beyond ? 1.0 - double(beyond / closing) : 0.0;
-  update_manifolds(s, contact, sweeps, share);
-  return share;
+  const int manifolds = update_manifolds(s, contact, sweeps, share);
+  if (manifolds == 0) return stay_apart();
+  return Meeting{share, manifolds};
 }
 
 bool is_apart(const RigidWorld& w, const Contact& contact) {
@@ -233,26 +246,19 @@ bool find_meeting(const ContactSolve& s, std::uint32_t index) {
   const float substep = s.settings.substep;
   const Sweep sweeps[2] = {present_sweep(w.bodies, contact.body_a, substep),
                            present_sweep(w.bodies, contact.body_b, substep)};
-  double share = 0.0;
-  int found = 1;
   // A bounce needs the moment of the impact to more digits.
-  if (contact.manifold_room == 1 && !(constraints[index].restitution > 0.0f) && is_slow(s, contact, sweeps)) {
-    const std::optional<double> meeting = find_slow_meeting(s, contact, sweeps);
-    if (!meeting) return false;
-    share = *meeting;
-  } else {
-    const Impact impact = meeting_time(s, contact, sweeps);
-    if (!impact.hit) return false;
-    share = impact.time;
-    found = update_manifolds(s, contact, sweeps, share);
-  }
+  const bool is_swept =
+      contact.manifold_room > 1 || constraints[index].restitution > 0.0f || !is_slow(s, contact, sweeps);
+  const std::optional<Meeting> meeting =
+      is_swept ? find_swept_meeting(s, contact, sweeps) : find_slow_meeting(s, contact, sweeps);
+  if (!meeting) return false;
   const Manifold* const manifolds = &w.contacts.manifolds[contact.first_manifold];
   bool is_found = false;
   for (std::size_t i = first; i < end; ++i) {
     ContactConstraint& constraint = constraints[i];
     Manifold& manifold = *constraint.manifold;
-    if (&manifold - manifolds >= found) continue;
-    date_back(s, constraint, float(share) * substep);
+    if (&manifold - manifolds >= meeting->manifolds) continue;
+    date_back(s, constraint, float(meeting->share) * substep);
     constraint.point_count = std::int8_t(manifold.count);
     constraint.fast = record_hit_approach(w, contact, manifold) || constraint.fast;
     if (!w.surface_rules.empty() && !apply_surface_rules(w, contact, manifold, constraint)) continue;

@@ -12,9 +12,26 @@
 namespace gyre::contact_kernel_test {
 namespace {
 
+// The first lane of a block, with memory of its own.
+struct OneContact {
+  const SolverKernels& kernels;
+  Arena arena;
+  std::vector<std::uint32_t> order;
+  void* block = arena.make<std::byte>(kernels.contacts.block_bytes).data();
+  void* cold = arena.make<std::byte>(kernels.contacts.cold_bytes).data();
+  ContactSettings settings{.substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
+
+  explicit OneContact(int width)
+      : kernels(select_kernels(width)), order(std::size_t(kernels.width), 0xffffffffu) {
+    order[0] = 0;
+  }
+  void prepare(const ContactConstraint& constraint, BodyMotion& motion, const BodyInertia& inertia) {
+    kernels.contacts.prepare(block, cold, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+  }
+};
+
 // A ball on static ground, with a load from the last step; solved for a sub-step of a 240th of a second.
 BodyMotion touch(int width, float load) {
-  const SolverKernels& kernels = select_kernels(width);
   Manifold manifold;
   manifold.count = 1;
   manifold.points[0].from_b = {0, -0.15f, 0};
@@ -33,16 +50,10 @@ BodyMotion touch(int width, float load) {
   BodyInertia inertia;
   inertia.inverse = {.xx = 100.0f, .yy = 100.0f, .zz = 100.0f};
   inertia.inverse_mass = 1.0f;
-  std::vector<std::uint32_t> order(std::size_t(kernels.width), 0xffffffffu);
-  order[0] = 0;
-  Arena arena;
-  void* const block = arena.make<std::byte>(kernels.contacts.block_bytes).data();
-  void* const cold = arena.make<std::byte>(kernels.contacts.cold_bytes).data();
-  const ContactSettings settings{
-      .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
-  kernels.contacts.prepare(block, cold, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
-  kernels.contacts.warm_start(block, 0, 1);
-  kernels.contacts.solve(block, 0, 1, settings.substep);
+  OneContact contact(width);
+  contact.prepare(constraint, motion, inertia);
+  contact.kernels.contacts.warm_start(contact.block, 0, 1);
+  contact.kernels.contacts.solve(contact.block, 0, 1, contact.settings.substep);
   return motion;
 }
 
@@ -142,7 +153,6 @@ TEST(ContactKernel, FrictionGoesWhereTheLoadGoes) {
 // replaced, unless another lane had as many: the state depended on the width.
 TEST(ContactKernel, PointsFoundAtAnImpactEndTheStepWithoutLoad) {
   for (const int width : {0, 1, 4, 8, 16}) {
-    const SolverKernels& kernels = select_kernels(width);
     Manifold manifold;
     manifold.count = 1;
     ContactConstraint constraint;
@@ -152,18 +162,12 @@ TEST(ContactKernel, PointsFoundAtAnImpactEndTheStepWithoutLoad) {
     BodyMotion motion;
     motion.inverse_mass = 1.0f;
     BodyInertia inertia{.inverse = {.xx = 100.0f, .yy = 100.0f, .zz = 100.0f}, .inverse_mass = 1.0f};
-    std::vector<std::uint32_t> order(std::size_t(kernels.width), 0xffffffffu);
-    order[0] = 0;
-    Arena arena;
-    void* const block = arena.make<std::byte>(kernels.contacts.block_bytes).data();
-    void* const cold = arena.make<std::byte>(kernels.contacts.cold_bytes).data();
-    const ContactSettings settings{
-        .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
-    kernels.contacts.prepare(block, cold, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+    OneContact contact(width);
+    contact.prepare(constraint, motion, inertia);
     manifold.count = kMaxManifoldPoints;
     for (ContactPointState& point : manifold.points) point.mean_impulse = 1.0f;
     manifold.points[3].total_impulse = 2.0f;  // of the bounce
-    kernels.contacts.finish(block, 0, 1, &constraint, order.data(), settings);
+    contact.kernels.contacts.finish(contact.block, 0, 1, &constraint, contact.order.data(), contact.settings);
     for (const ContactPointState& point : manifold.points) {
       EXPECT_EQ(point.mean_impulse, 0.0f) << width;
       EXPECT_EQ(point.normal_impulse, 0.0f) << width;
