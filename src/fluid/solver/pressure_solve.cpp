@@ -4,6 +4,8 @@
 #include "fluid/solver/pressure_pockets.h"
 #include "task/parallel.h"
 
+#include <utility>
+
 namespace gyre {
 
 namespace {
@@ -26,6 +28,10 @@ constexpr float kSmoothLow = 0.35f;    // what a coarser level sees of the eigen
 constexpr float kCoarsestLow = 0.25f;  // of at most two cells an axis
 constexpr int kCoarsestSteps = 8;
 
+// Numbers of a field that a stage works on before the next follows: a quarter of a megabyte, so that the four fields of a stage fit into a cache of the second
+// level. Of any size the bits are the same.
+constexpr int kStaggered = 1 << 16;
+
 struct Cycle {
   PressureMatrix& matrix;
   const GasKernels& kernels;
@@ -34,8 +40,44 @@ struct Cycle {
 
   template <class Fn>
   void rows(const GridShape& shape, Fn&& fn) {
-    for_blocks(tasks, shape.rows(), kGridRows, [&](int begin, int end, int) { fn(begin, end); });
+    rows_between(0, shape.rows(), fn);
   }
+  template <class Fn>
+  void rows_between(int first, int last, Fn&& fn) {
+    for_blocks(tasks, last - first, kGridRows,
+               [&](int begin, int end, int) { fn(first + begin, first + end); });
+  }
+  // Adds fn(begin, end) of blocks of rows to a sum, in the order of rows.
+  template <class Fn>
+  double add_rows_between(int first, int last, double sum, Fn&& fn) {
+    return reduce_blocks(
+        tasks, last - first, kGridRows, sum,
+        [&](int begin, int end, int) { return fn(first + begin, first + end); },
+        [](double all, double more) { return all + more; });
+  }
+
+  // Calls stages, fn(first row, last row), on some rows after the other: each a layer of cells behind the one before, so that what that one has written
+  // is still in the cache. A stage reads its row and the neighbours, and no stage writes what one before has yet to read. If the level is
+  // periodic, each stage waits for all rows of the one before, and begins with its ghosts.
+  template <class... Stages>
+  void run_staggered(int index, Stages&&... stages) {
+    const PressureGrid& grid = matrix.levels[index];
+    const bool wraps = grid.periodic[0] || grid.periodic[1] || grid.periodic[2];
+    const int rows = grid.shape.rows();
+    const int lag = wraps ? 0 : round_up(grid.shape.cells[1]);
+    const int chunk = wraps ? round_up(rows) : round_up(kStaggered / grid.shape.pitch);
+    const int count = int(sizeof...(stages));
+    for (int begin = 0; begin < rows + (count - 1) * lag; begin += chunk) {
+      int first = begin;
+      const auto run_stage = [&](auto& stage) {
+        const int from = first > 0 ? first : 0, to = first + chunk < rows ? first + chunk : rows;
+        if (from < to) stage(from, to);
+        first -= lag;
+      };
+      (run_stage(stages), ...);
+    }
+  }
+  static int round_up(int rows) { return (rows + kGridRows - 1) / kGridRows * kGridRows; }
   void wrap(int index, float* field) {
     wrap_ghosts(matrix.levels[index].shape, matrix.levels[index].periodic, field);
   }
@@ -75,12 +117,31 @@ struct Cycle {
       return;
     }
     Chebyshev down(kSmoothLow);
-    scale(index, b, down.first_gain(), other);
+    const float first_gain = down.first_gain();
     down.next(inertia, gain);
-    smooth(index, b, other, nullptr, inertia, gain, x);
     const PressureLevel level = matrix.level(index);
-    wrap(index, x);
-    rows(level.shape, [&](int begin, int end) { kernels.residual(level, b, x, other, begin, end); });
+    // One step of the iteration on some rows.
+    const auto smooth_rows = [&](const float* from, const float* before, float keeps, float gains, float* to,
+                                 int first, int last) {
+      return add_rows_between(first, last, product, [&](int begin, int end) {
+        return kernels.smooth(level, b, from, before, keeps, gains, to, begin, end);
+      });
+    };
+    run_staggered(
+        index,
+        [&](int first, int last) {
+          rows_between(first, last,
+                       [&](int begin, int end) { kernels.scale(level, b, first_gain, other, begin, end); });
+        },
+        [&](int first, int last) {
+          if (first == 0) wrap(index, other);
+          smooth_rows(other, nullptr, inertia, gain, x, first, last);
+        },
+        [&](int first, int last) {
+          if (first == 0) wrap(index, x);
+          rows_between(first, last,
+                       [&](int begin, int end) { kernels.residual(level, b, x, other, begin, end); });
+        });
     wrap(index, other);
     PressureGrid& coarse = matrix.levels[index + 1];
     rows(coarse.shape, [&](int begin, int end) {
@@ -88,12 +149,25 @@ struct Cycle {
     });
     run(index + 1, coarse.b.data(), coarse.x.data(), coarse.other.data());
     wrap(index + 1, coarse.x.data());
-    rows(level.shape,
-         [&](int begin, int end) { kernels.prolong(level, coarse.shape, coarse.x.data(), x, begin, end); });
     Chebyshev up(kSmoothLow);
-    smooth(index, b, x, x, 0.0f, up.first_gain(), other);
+    const float up_gain = up.first_gain();
     up.next(inertia, gain);
-    product = smooth(index, b, other, x, inertia, gain, x);
+    product = 0.0;
+    run_staggered(
+        index,
+        [&](int first, int last) {
+          rows_between(first, last, [&](int begin, int end) {
+            kernels.prolong(level, coarse.shape, coarse.x.data(), x, begin, end);
+          });
+        },
+        [&](int first, int last) {
+          if (first == 0) wrap(index, x);
+          smooth_rows(x, x, 0.0f, up_gain, other, first, last);
+        },
+        [&](int first, int last) {
+          if (first == 0) wrap(index, other);
+          product = smooth_rows(other, x, inertia, gain, x, first, last);
+        });
   }
 };
 
@@ -124,9 +198,10 @@ void remove_mean(const PressureMatrix& matrix, float* r, TaskSystem& tasks) {
 
 }  // namespace
 
-PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& v, float target,
+PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& vectors, float target,
                               int max_iterations, const GasKernels& kernels, TaskSystem& tasks,
                               const BodyCoupling* coupling) {
+  PressureVectors v = vectors;
   const PressureLevel level = matrix.level(0);
   const GridShape& shape = level.shape;
   const auto rows = [&](auto&& fn) {
@@ -154,15 +229,25 @@ PressureReport solve_pressure(PressureMatrix& matrix, const PressureVectors& v, 
     if (!(now > 0.0)) break;
     const float beta = report.iterations == 0 ? 0.0f : float(now / before);
     before = now;
+    double curvature = 0.0;
+    const auto update = [&](int first, int last) {
+      cycle.rows_between(first, last, [&](int begin, int end) {
+        kernels.update_direction(level, beta, v.z, v.p, begin, end);
+      });
+    };
+    const auto apply = [&](int first, int last) {
+      if (first == 0) cycle.wrap(0, v.p);
+      curvature = cycle.add_rows_between(first, last, curvature, [&](int begin, int end) {
+        return kernels.apply(level, v.p, v.q, begin, end);
+      });
+    };
     if (report.iterations == 0) {
-      rows([&](int begin, int end) { kernels.scale(level, v.r, 0.0f, v.p, begin, end); });
+      // The first direction is the preconditioned residual itself.
+      std::swap(v.p, v.z);
+      cycle.run_staggered(0, apply);
+    } else {
+      cycle.run_staggered(0, update, apply);
     }
-    rows([&](int begin, int end) { kernels.update_direction(level, beta, v.z, v.p, begin, end); });
-    wrap_ghosts(shape, matrix.levels[0].periodic, v.p);
-    double curvature = reduce_blocks(
-        tasks, shape.rows(), kGridRows, 0.0,
-        [&](int begin, int end, int) { return kernels.apply(level, v.p, v.q, begin, end); },
-        [](double sum, double more) { return sum + more; });
     if (coupling != nullptr && coupling->any_moves) curvature += coupling->add_product(v.p, v.q);
     if (!(curvature > 0.0)) break;
     const float alpha = float(now / curvature);
