@@ -159,6 +159,28 @@ TEST(GasVortices, a_lid_drives_a_cavity_as_published) {
   }
 }
 
+// The same at Re 1000, after a minute.
+TEST(LongGasVortices, a_lid_drives_a_cavity_at_a_higher_speed_as_published) {
+  GasBox box = box_of(128, 128, 1, 1.0f / 128.0f, GasBoundary::no_slip);
+  box.wall_velocity[3] = {1.0f, 0.0f, 0.0f};
+  GasGrid grid = make_gas_grid(box, 293.15f);
+  Bench bench;
+  bench.settings.density = 1.0f;
+  bench.settings.viscosity = 0.001f;
+  bench.settings.gravity = {};
+  for (int i = 0; i < 3600; ++i) bench.step(grid, 1.0f / 60.0f);
+  const double table[15][2] = {{0.9766, 0.65928},  {0.9688, 0.57492},  {0.9609, 0.51117},  {0.9531, 0.46604},
+                               {0.8516, 0.33304},  {0.7344, 0.18719},  {0.6172, 0.05702},  {0.5000, -0.06080},
+                               {0.4531, -0.10648}, {0.2813, -0.27805}, {0.1719, -0.38289}, {0.1016, -0.29730},
+                               {0.0703, -0.22220}, {0.0625, -0.20196}, {0.0547, -0.18109}};
+  double sum = 0.0;
+  for (const auto& row : table) {
+    const double error = double(probe_gas(grid, {0.5, row[0], 0.004}, 1.0f, {}).velocity.x) - row[1];
+    sum += error * error / 15.0;
+  }
+  EXPECT_LT(std::sqrt(sum), 0.004);
+}
+
 TEST(GasEnergy, energy_without_viscosity_does_not_grow) {
   for (GasBoundary boundary : {GasBoundary::periodic, GasBoundary::closed}) {
     GasGrid grid = make_gas_grid(box_of(16, 16, 16, 0.1f, boundary), 293.15f);
