@@ -272,6 +272,15 @@ Combustion read_combustion(const Field& field) {
   return out;
 }
 
+AdaptiveDomain read_adaptive_domain(const Field& field) {
+  Members members(field, "an adaptive domain");
+  AdaptiveDomain out;
+  if (const auto margin = members.find("margin")) out.margin = int(margin->integer(1, kMostCells));
+  members.read("threshold", out.threshold, Range::above_to(0, 1));
+  members.finish();
+  return out;
+}
+
 // ----------------------------------------------------------------------------------------------------------- liquids
 
 // Bounds that are no whole cells are widened, but rounding does not cost a cell.
@@ -339,6 +348,8 @@ void read_gas(SceneReading& reading, const Field& field) {
         {{"maccormack", Advection::maccormack}, {"semi_lagrangian", Advection::semi_lagrangian}});
   if (const auto combustion = members.find_value("combustion"))
     gas.def.combustion = read_combustion(*combustion);
+  if (const auto domain = members.find_value("adaptive_domain"))
+    gas.def.adaptive_domain = read_adaptive_domain(*domain);
   if (const auto state = members.find_value("state")) gas.def.fields = read_gas_state(*state, gas.def);
   members.finish();
   reading.scene.gases.push_back(std::move(gas));

@@ -42,6 +42,8 @@ constexpr std::pair<std::string_view, const char*> kPlaces[] = {
     {"combustion/heat_release", "/combustion/heat_release"},
     {"combustion/heat_capacity", "/combustion/heat_capacity"},
     {"combustion/smoke_yield", "/combustion/smoke_yield"},
+    {"adaptive_domain/margin", "/adaptive_domain/margin"},
+    {"adaptive_domain/threshold", "/adaptive_domain/threshold"},
     {"particles", "/state"},
 };
 

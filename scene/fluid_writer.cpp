@@ -144,6 +144,13 @@ void write_combustion(JsonWriter& json, const Combustion& combustion) {
   json.end_object();
 }
 
+void write_adaptive_domain(JsonWriter& json, const AdaptiveDomain& domain) {
+  json.key("adaptive_domain").begin_object(kLine);
+  json.field("margin", domain.margin);
+  json.field("threshold", domain.threshold);
+  json.end_object();
+}
+
 void write_gas(JsonWriter& json, const SceneGas& gas) {
   const GasDef standard;
   const GasDef& def = gas.def;
@@ -159,6 +166,7 @@ void write_gas(JsonWriter& json, const SceneGas& gas) {
   unless_default(json, "ambient_temperature", def.ambient_temperature, standard.ambient_temperature);
   if (def.advection != standard.advection) json.field("advection", to_string(def.advection));
   if (def.combustion) write_combustion(json, *def.combustion);
+  if (def.adaptive_domain) write_adaptive_domain(json, *def.adaptive_domain);
   if (def.fields) write_gas_state(json, *def.fields);
   json.end_object();
 }

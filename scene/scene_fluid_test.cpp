@@ -95,6 +95,9 @@ TEST(SceneFluid, RefusesBadGases) {
        "above 0"},
       {gas_with(R"("combustion": {"smoke_yeild": 1})"), at + "/combustion/smoke_yeild", "unknown field",
        "smoke_yield"},
+      {gas_with(R"("adaptive_domain": {"margin": 0})"), at + "/adaptive_domain/margin", "found 0", "1"},
+      {gas_with(R"("adaptive_domain": {"threshold": 0})"), at + "/adaptive_domain/threshold", "found 0",
+       "above 0"},
       {gas_with(R"("emitters": [{"position": [0, 0, 0], "fuel": -1}])"), at + "/emitters/0/fuel", "found -1",
        "from 0"},
       {gas_with(R"("bouyancy": 1)"), at + "/bouyancy", "unknown field", "\"buoyancy\""},
@@ -203,6 +206,7 @@ std::string counted_numbers(int count) {
 const std::string kAllGases = kStart + R"("name": "all", "gases": [
       {"name": "a", "bounds": [[-1, 0, 0.1], [2, 1, 1]], "cells": [4, 3, 2], "density": 1.5, "viscosity": 0.25, "buoyancy": -0.5,
        "vorticity": 0.3, "combustion": {"ignition_temperature": 400.5, "burn_rate": 2, "heat_release": 1e6, "heat_capacity": 900, "smoke_yield": 0.5},
+       "adaptive_domain": {"margin": 5, "threshold": 0.25},
        "ambient_temperature": 300.5, "advection": "semi_lagrangian", "color": "#102030",
        "boundary": {"x": "periodic", "y": ["closed", "no_slip"], "z": null}, "walls": {"+y": {"velocity": [1, 0, 0.5]}, "-y": null},
        "initial_velocity": [0.1, 0.2, 0.3],
@@ -211,7 +215,7 @@ const std::string kAllGases = kStart + R"("name": "all", "gases": [
        "probes": [{"name": "p1", "position": [-1, 0, 0.1]}, {"name": "p, 2", "position": [0.123456789012345, 0.5, 0.5]}]},
       {"name": "b", "bounds": [[0, 0, 0], [1, 1, 1]], "cells": [8, 8, 1], "boundary": "no_slip",
        "initial_velocity": {"type": "taylor_green", "amplitude": 0.5, "wave_number": [6.25, 3.125, 0]}},
-      {"name": "c", "bounds": [[5, 0, 0], [6, 1, 1]], "cells": [2, 2, 2], "combustion": {}, "state": {"velocity": {"x": )" +
+      {"name": "c", "bounds": [[5, 0, 0], [6, 1, 1]], "cells": [2, 2, 2], "combustion": {}, "adaptive_domain": {}, "state": {"velocity": {"x": )" +
                               counted_numbers(12) + R"(}, "density": )" + counted_numbers(8) +
                               R"(, "pressure": null, "fuel": )" + counted_numbers(8) + "}}]}";
 
@@ -261,6 +265,10 @@ TEST(SceneFluid, WritesTheGasesThatItRead) {
   EXPECT_EQ(a.def.emitters[0].fuel, 0.25f);
   EXPECT_EQ(a.def.combustion->ignition_temperature, 400.5f);
   EXPECT_EQ(a.def.combustion->smoke_yield, 0.5f);
+  EXPECT_EQ(a.def.adaptive_domain->margin, 5);
+  EXPECT_EQ(a.def.adaptive_domain->threshold, 0.25f);
+  EXPECT_FALSE(second->gases[1].def.adaptive_domain);
+  EXPECT_EQ(second->gases[2].def.adaptive_domain->margin, AdaptiveDomain{}.margin);
   EXPECT_EQ(second->gases[2].def.combustion->heat_release, Combustion{}.heat_release);
 }
 

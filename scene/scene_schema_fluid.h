@@ -93,6 +93,16 @@ inline constexpr char kSchemaOfGases[] = R"json(    "side": {
             "smoke_yield": { "$ref": "#/$defs/stiffness", "default": 0, "description": "kg of smoke from a kg of fuel" }
           }
         },
+        "adaptive_domain": {
+          "type": ["object", "null"],
+          "additionalProperties": false,
+          "default": null,
+          "description": "compute only the cells around what moves; null: all cells",
+          "properties": {
+            "margin": { "type": "integer", "minimum": 1, "maximum": 16777216, "default": 8, "description": "cells, around all that moves" },
+            "threshold": { "type": "number", "exclusiveMinimum": 0, "maximum": 1, "default": 0.05, "description": "share of the fastest speed, above which gas counts as moving" }
+          }
+        },
         "advection": { "enum": ["maccormack", "semi_lagrangian"], "default": "maccormack", "description": "of second order, or of first order, which blurs" },
         "boundary": { "$ref": "#/$defs/boundary", "default": "open" },
         "walls": { "$ref": "#/$defs/walls" },

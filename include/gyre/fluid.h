@@ -76,6 +76,14 @@ struct GasFields {
   std::vector<float> fuel{};                     // kg/m^3, of a gas with combustion; empty: none
 };
 
+// A gas that is computed only where something moves: in a box of whole tiles of 8^3 cells around all cells with smoke, heat or fuel, around those with a speed
+// above `threshold` times the fastest, around emitters, soft matter and bodies that are awake. Beyond it the air is at rest. The air passes freely
+// through the sides of that box, against the pressure of the air at rest. docs/fluids.md tells the error.
+struct AdaptiveDomain {
+  int margin = 8;           // cells, around all of these
+  float threshold = 0.05f;  // of the fastest speed
+};
+
 struct GasDef {
   DVec3 lower{-1, 0, -1}, upper{1, 2, 1};  // m, corners of the box
   std::array<int, 3> cells{32, 32, 32};
@@ -97,6 +105,7 @@ struct GasDef {
   std::optional<Combustion> combustion{};  // without: nothing burns
   Pose pose{};  // world from the axes of the box
   Vec3 linear_velocity{}, angular_velocity{};  // of these axes at their origin, m/s and rad/s, in the world
+  std::optional<AdaptiveDomain> adaptive_domain{};  // without: all cells are computed
 };
 
 struct FluidRegion {
@@ -160,6 +169,8 @@ struct FluidInfo {
   double heat_rate = 0.0;       // W, of its combustion in the last step
   Pose pose{};                  // world from the axes of the box
   Vec3 linear_velocity{}, angular_velocity{};  // of these axes at their origin, m/s and rad/s
+  // Of a gas: the first of the cells that are computed, and how many there are along each axis. All cells but for an adaptive domain.
+  std::array<int, 3> active_first{}, active_cells{};
 };
 
 // The load of all fluids on a body: the force and torque of their pressure, lift included, that act through the present step.

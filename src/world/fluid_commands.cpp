@@ -56,7 +56,7 @@ CommandResult execute(WorldState& s, const AddFluid& c) {
   if (slot.index < s.fluid_scratch.size()) s.fluid_scratch[slot.index] = {};
   if (entry.is_liquid()) {
     FluidSolids solids;
-    const auto cut = [&](const LiquidWindow& window) {
+    const auto cut = [&](const FluidWindow& window) {
       cut_fluid_cells(s.rigid, entry, window, *s.tasks, solids);
     };
     find_near_shapes(s.rigid, entry, solids);
@@ -94,6 +94,8 @@ CommandResult execute(WorldState& s, const SetFluidVelocity& c) {
   FluidEntry& entry = s.fluids.entries[c.fluid.index];
   FluidFrame frame = entry.frame() != nullptr ? *entry.frame() : FluidFrame{};
   change_frame_velocity(entry, c.linear - frame.velocity, c.angular - frame.angular_velocity);
+  // The solids are those of the window before.
+  if (entry.is_adaptive() && c.fluid.index < s.fluid_scratch.size()) s.fluid_scratch[c.fluid.index] = {};
   return {true, {}, {}, {}};
 }
 

@@ -210,12 +210,17 @@ FluidInfo World::fluid_info(FluidId fluid) const {
     const LiquidTotals totals = totals_of(*state_, entry);
     info.particles = entry.liquid.particles();
     info.kinetic_energy = totals.kinetic_energy;
-    const LiquidWindow* const window =
+    const FluidWindow* const window =
         scratch != nullptr && solids.present() ? &scratch->solids.window : nullptr;
     info.volume = liquid_volume(entry.liquid, solids, window);
   } else {
     info.kinetic_energy = gas_kinetic_energy(entry.gas, solids, entry.gas_def().density, reading.tasks);
     info.smoke_mass = smoke_mass(entry.gas, solids, reading.tasks);
+    const CellBox cells = entry.gas.cells();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      info.active_first[axis] = cells.low[axis];
+      info.active_cells[axis] = cells.high[axis] - cells.low[axis];
+    }
     if (entry.burns()) info.fuel_mass = field_mass(entry.gas, entry.gas.fuel, solids, reading.tasks);
   }
   if (scratch == nullptr) return info;
@@ -267,14 +272,24 @@ std::size_t World::fluid_field(FluidId fluid, FluidField field, std::span<float>
   const FloatMode mode;
   const FluidEntry& entry = state_->fluids.entries[fluid.index];
   const GridShape& shape = entry.shape();
+  const GasBox& box = entry.box();
+  CellBox cells = whole_window(box).cells();
+  if (!entry.is_liquid()) cells = entry.gas.cells();
+  // Beyond the window of a gas the air is at rest.
+  const float rest =
+      field == FluidField::temperature && !entry.is_liquid() ? entry.gas.ambient_temperature : 0.0f;
   std::size_t n = 0;
-  for (int k = 0; k < shape.cells[2]; ++k) {
-    for (int j = 0; j < shape.cells[1]; ++j) {
-      for (int i = 0; i < shape.cells[0] && n < out.size(); ++i)
-        out[n++] = value_of(entry, field, shape.at(i, j, k));
+  for (int k = 0; k < box.cells[2]; ++k) {
+    for (int j = 0; j < box.cells[1]; ++j) {
+      const bool has_row = k >= cells.low[2] && k < cells.high[2] && j >= cells.low[1] && j < cells.high[1];
+      const int row = shape.row(j - cells.low[1], k - cells.low[2]) - cells.low[0];
+      for (int i = 0; i < box.cells[0] && n < out.size(); ++i) {
+        const bool has_cell = has_row && i >= cells.low[0] && i < cells.high[0];
+        out[n++] = has_cell ? value_of(entry, field, row + i) : rest;
+      }
     }
   }
-  return std::size_t(shape.count());
+  return std::size_t(box.cells[0]) * std::size_t(box.cells[1]) * std::size_t(box.cells[2]);
 }
 
 GasDef World::gas_def(FluidId fluid) const {

@@ -253,6 +253,11 @@ template <Is<FluidVisitor> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.index), f(r.generation), f(r.is_soft);
 }
+template <Is<CellBox> T, class F>
+void for_each_field(T& r, F&& f) {
+  for (auto& one : r.low) f(one);
+  for (auto& one : r.high) f(one);
+}
 template <Is<FluidFrame> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.pose.position, f), for_each_field(r.pose.orientation, f);

@@ -187,7 +187,7 @@ void detect_collisions(WorldState& s, float seconds, float flow) {
   run_stage(s, StageName::find_pairs, [&] { count(s, CounterName::new_pairs, find_pairs(w, *s.tasks)); });
   run_stage(s, StageName::flow, [&] {
     if (s.fluids.empty() || flow == 0.0f) return;
-    step_fluids(w, s.fluids, s.fluid_scratch, *s.gas_kernels, *s.tasks, s.time, flow);
+    step_fluids(w, s.soft, s.fluids, s.fluid_scratch, *s.gas_kernels, *s.tasks, s.time, flow);
     clear_fluid_impulses(s.soft);
   });
   run_stage(s, StageName::touch_soft, [&] {

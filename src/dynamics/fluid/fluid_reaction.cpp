@@ -41,8 +41,10 @@ void for_points_around(const GasBox& box, const GridShape& shape, int faces, Vec
   }
 }
 
-void kick_gas(FluidEntry& entry, const GasMemory& memory, const Array<FluidKick>& kicks) {
+void kick_gas(FluidEntry& entry, const GasMemory& memory, Array<FluidKick>& kicks) {
   GasGrid& gas = entry.gas;
+  const Vec3 origin = difference(gas.box.corner, gas.whole.corner);
+  for (FluidKick& kick : kicks) kick.place -= origin;
   const PressureGrid& finest = memory.matrix.levels[0];
   if (memory.matrix.count == 0) return;
   const Vec3 h = gas.box.cell;
@@ -82,7 +84,7 @@ CellBox cells_around(const GasBox& box, const Array<FluidKick>& kicks) {
 void kick_liquid(FluidEntry& entry, const Array<FluidKick>& kicks) {
   LiquidGrid& liquid = entry.liquid;
   const CellBox cells = cells_around(liquid.box, kicks);
-  const LiquidWindow window = window_around(liquid.box, with_margin(liquid.box, cells));
+  const FluidWindow window = window_around(liquid.box, with_margin(liquid.box, cells));
   const std::size_t size = std::size_t(window.shape.size);
   // As if the window were all of the box, with places counted from the box's first cell.
   GridShape shape = window.shape;

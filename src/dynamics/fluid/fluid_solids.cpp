@@ -33,7 +33,7 @@ struct PointGrid {
   static PointGrid of_corners(const GasBox& box) { return PointGrid(box, 1, 0.0, 2.0f); }
   static PointGrid of_centers(const GasBox& box) { return PointGrid(box, 0, 0.5, 4.0f); }
   // The part of the grid within a window.
-  PointGrid part(const GasBox& whole, const LiquidWindow& window) const {
+  PointGrid part(const GasBox& whole, const FluidWindow& window) const {
     PointGrid result = *this;
     for (int axis = 0; axis < 3; ++axis) {
       result.first[axis] = window.first[axis];
@@ -383,7 +383,7 @@ void find_near_shapes(const RigidWorld& w, const FluidEntry& entry, FluidSolids&
   if (!out.fixed.empty() || !out.moving.empty()) number_bodies(w, out);
 }
 
-void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, const LiquidWindow& window,
+void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, const FluidWindow& window,
                      TaskSystem& tasks, FluidSolids& out) {
   const GridShape& shape = window.shape;
   const bool is_liquid = entry.is_liquid();

@@ -35,7 +35,7 @@ struct NearShape {
 // Belongs to one fluid from step to step; with another box it must be new.
 struct FluidSolids {
   GasSolids solids;
-  LiquidWindow window;                       // the cells of `solids`: all of a gas
+  FluidWindow window;                        // the cells of `solids`
   Array<NearShape> fixed, moving;            // of the present step
   std::uint64_t fixed_key = 1, all_key = 1;  // of these shapes and where they are
   Array<std::uint32_t> bodies;               // by label, ascending
@@ -47,7 +47,7 @@ struct FluidSolids {
 // Lists the shapes that meet the box of a fluid and numbers their bodies.
 void find_near_shapes(const RigidWorld& w, const FluidEntry& entry, FluidSolids& out);
 // Then: makes the solids those of a window; for a liquid with the distances of centres.
-void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, const LiquidWindow& window,
+void cut_fluid_cells(const RigidWorld& w, const FluidEntry& entry, const FluidWindow& window,
                      TaskSystem& tasks, FluidSolids& out);
 
 }  // namespace gyre

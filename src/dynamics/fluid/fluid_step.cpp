@@ -1,5 +1,6 @@
 #include "dynamics/fluid/fluid_step.h"
 
+#include "dynamics/fluid/adaptive_domain.h"
 #include "fluid/gas/gas_reading.h"
 #include "fluid/liquid/liquid_reading.h"
 #include "fluid/store/fluid_builder.h"
@@ -63,6 +64,11 @@ const FluidPush* find_push(const Array<FluidPush>& pushes, std::uint32_t body) {
   return nullptr;
 }
 
+// The point about which the moments of impulses are: the lower corner of the box of a liquid, or of the window of a gas.
+DVec3 impulse_corner(const FluidEntry& entry) {
+  return entry.is_liquid() ? entry.liquid.box.corner : entry.gas.box.corner;
+}
+
 // Gives the impulses of the step to the bodies as forces. A sleeping body stays as it is as long as its force does.
 void push_bodies(RigidWorld& w, FluidEntry& entry, const FluidScratch& scratch, float seconds) {
   Array<FluidPush> pushes;
@@ -74,7 +80,7 @@ void push_bodies(RigidWorld& w, FluidEntry& entry, const FluidScratch& scratch, 
     FluidPush push;
     push.body = body;
     push.force = to_float((1.0 / double(seconds)) * vector_to_world(frame, impulse.linear));
-    const DVec3 arm = entry.box().corner - point_to_frame(frame, w.bodies.poses[body].center);
+    const DVec3 arm = impulse_corner(entry) - point_to_frame(frame, w.bodies.poses[body].center);
     push.torque = to_float((1.0 / double(seconds)) *
                            vector_to_world(frame, impulse.angular + cross(arm, impulse.linear)));
     if (!is_finite(push.force) || !is_finite(push.torque)) continue;
@@ -82,7 +88,9 @@ void push_bodies(RigidWorld& w, FluidEntry& entry, const FluidScratch& scratch, 
       const FluidPush* const before = find_push(entry.pushes, body);
       const float weight = w.bodies.masses[body].mass * length(w.settings.gravity);
       const Vec3 old = before != nullptr ? before->force : Vec3{};
-      if (!(length(push.force - old) > kWakeShare * weight)) {
+      // The window of a gas leaves out bodies that sleep, which the gas bears as before.
+      const bool is_known = entry.is_liquid() || is_within_window(entry.gas, scratch.solids, body);
+      if (!is_known || !(length(push.force - old) > kWakeShare * weight)) {
         push.force = old, push.torque = before != nullptr ? before->torque : Vec3{};
         pushes.push_back(push);
         continue;
@@ -128,7 +136,8 @@ bool is_finite_fluid(const FluidEntry& entry, TaskSystem& tasks) {
 // A fluid that is no longer finite goes on at rest: a gas as air, a liquid with those particles whose places are finite.
 void still(FluidEntry& entry) {
   if (!entry.is_liquid()) {
-    entry.gas = make_gas_grid(entry.gas.box, entry.gas.ambient_temperature);
+    entry.gas = entry.is_adaptive() ? make_gas_grid(entry.gas.whole, CellBox{}, entry.gas.ambient_temperature)
+                                    : make_gas_grid(entry.gas.whole, entry.gas.ambient_temperature);
     if (entry.burns()) entry.gas.fuel.resize(std::size_t(entry.gas.shape.size), 0.0f);
     return;
   }
@@ -241,7 +250,7 @@ void add_lift_to_bodies(const RigidWorld& w, const FluidEntry& entry, const GasS
       continue;
     }
     const double rate = 1.0 / double(seconds);
-    const DVec3 arm = entry.box().corner - body.center;
+    const DVec3 arm = impulse_corner(entry) - body.center;
     body.acceleration += body.inverse_mass * to_float(rate * lift[label].linear);
     body.angular_acceleration +=
         body.inverse_inertia * to_float(rate * (lift[label].angular + cross(arm, lift[label].linear)));
@@ -287,7 +296,7 @@ void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, cons
           {one.position, one.radius, one.has_velocity ? one.velocity : Vec3{}, one.start, one.end});
   }
   list_bodies(w, entry.frame(), 0.0f, own);
-  const auto cut = [&](const LiquidWindow& window) { cut_fluid_cells(w, entry, window, tasks, own.solids); };
+  const auto cut = [&](const FluidWindow& window) { cut_fluid_cells(w, entry, window, tasks, own.solids); };
   const LiquidReport report =
       step_liquid(entry.liquid, own.solids.solids, cut, own.bodies.view(), own.sources.view(), settings, time,
                   seconds, own.liquid, kernels, tasks, own.impulses.view());
@@ -309,7 +318,7 @@ bool is_within(const GasBox& box, DVec3 point) {
 
 }  // namespace
 
-void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& scratch,
+void step_fluids(RigidWorld& w, const SoftStore& soft, FluidStore& fluids, std::vector<FluidScratch>& scratch,
                  const GasKernels& kernels, TaskSystem& tasks, double time, float seconds) {
   if (scratch.size() < fluids.entries.size()) scratch.resize(fluids.entries.size());
   for (std::size_t slot = 0; slot < fluids.entries.size(); ++slot) {
@@ -317,7 +326,11 @@ void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& s
     if (entry.def == nullptr) continue;
     FluidScratch& own = scratch[slot];
     find_near_shapes(w, entry, own.solids);
-    if (!entry.is_liquid()) cut_fluid_cells(w, entry, whole_window(entry.box()), tasks, own.solids);
+    if (!entry.is_liquid()) {
+      const Vec3 gravity = gravity_in_box(w, entry.frame(), seconds);
+      adapt_domain(w, soft, own.solids, gravity, time, seconds, tasks, entry);
+      cut_fluid_cells(w, entry, gas_window(entry.gas), tasks, own.solids);
+    }
     own.impulses.clear();
     own.impulses.resize(own.solids.bodies.size(), GasImpulse{});
     own.report = {};

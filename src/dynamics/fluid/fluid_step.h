@@ -8,6 +8,7 @@
 #include "dynamics/fluid/fluid_solids.h"
 #include "fluid/store/fluid_store.h"
 #include "rigid/store/rigid_world.h"
+#include "soft/store/soft_store.h"
 
 #include <vector>
 
@@ -35,7 +36,7 @@ struct FluidScratch {
 };
 
 // `scratch`: by slot. Cleared by whoever replaces the state.
-void step_fluids(RigidWorld& w, FluidStore& fluids, std::vector<FluidScratch>& scratch,
+void step_fluids(RigidWorld& w, const SoftStore& soft, FluidStore& fluids, std::vector<FluidScratch>& scratch,
                  const GasKernels& kernels, TaskSystem& tasks, double time, float seconds);
 
 // The fluid at a point: false if there is none. A liquid counts within its surface, and before gases; else the one that was added first.

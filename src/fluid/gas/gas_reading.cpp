@@ -47,26 +47,48 @@ double field_mass(const GasGrid& grid, const Array<float>& field, const GasSolid
   return cell_volume(grid.box) * sum;
 }
 
+namespace {
+
+// False beyond a side of the window that lies within the box of the gas. `local`: from the lower corner of the window.
+bool is_computed(const GasGrid& grid, Vec3 local) {
+  const float place[3] = {local.x / grid.box.cell.x, local.y / grid.box.cell.y, local.z / grid.box.cell.z};
+  const CellBox cells = grid.cells();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cells.low[axis] > 0 && place[axis] < 0.0f) return false;
+    if (cells.high[axis] < grid.whole.cells[axis] && place[axis] > float(grid.box.cells[axis])) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 Vec3 gas_velocity(const GasGrid& grid, DVec3 point) {
   const Vec3 local = difference(point, grid.box.corner);
+  if (!is_computed(grid, local)) return {};
   return {sample_field(grid.box, grid.shape, grid.velocity[0].data(), 0, local),
           sample_field(grid.box, grid.shape, grid.velocity[1].data(), 1, local),
           sample_field(grid.box, grid.shape, grid.velocity[2].data(), 2, local)};
 }
 
 GasProbe probe_gas(const GasGrid& grid, DVec3 point, float density, Vec3 gravity) {
-  const GasBox& box = grid.box;
-  const Vec3 local = difference(point, box.corner);
+  const Vec3 local = difference(point, grid.box.corner);
   GasProbe probe;
-  probe.velocity = gas_velocity(grid, point);
-  probe.density = sample_field(box, grid.shape, grid.density.data(), -1, local);
-  probe.temperature = sample_field(box, grid.shape, grid.temperature.data(), -1, local);
-  probe.pressure = density * sample_field(box, grid.shape, grid.pressure.data(), -1, local);
-  if (!grid.fuel.empty()) probe.fuel = sample_field(box, grid.shape, grid.fuel.data(), -1, local);
+  probe.temperature = grid.ambient_temperature;
+  if (is_computed(grid, local)) {
+    const auto sample = [&](const Array<float>& field) {
+      return sample_field(grid.box, grid.shape, field.data(), -1, local);
+    };
+    probe.velocity = gas_velocity(grid, point);
+    probe.density = sample(grid.density), probe.temperature = sample(grid.temperature);
+    probe.pressure = density * sample(grid.pressure);
+    if (!grid.fuel.empty()) probe.fuel = sample(grid.fuel);
+  }
+  const GasBox& box = grid.whole;
   if (!box.any_open()) {
-    const float from_middle[3] = {local.x - 0.5f * float(box.cells[0]) * box.cell.x,
-                                  local.y - 0.5f * float(box.cells[1]) * box.cell.y,
-                                  local.z - 0.5f * float(box.cells[2]) * box.cell.z};
+    const Vec3 place = difference(point, box.corner);
+    const float from_middle[3] = {place.x - 0.5f * float(box.cells[0]) * box.cell.x,
+                                  place.y - 0.5f * float(box.cells[1]) * box.cell.y,
+                                  place.z - 0.5f * float(box.cells[2]) * box.cell.z};
     const float g[3] = {gravity.x, gravity.y, gravity.z};
     for (int axis = 0; axis < 3; ++axis) {
       if (!box.periodic(axis)) probe.pressure += density * g[axis] * from_middle[axis];

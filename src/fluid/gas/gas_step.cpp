@@ -15,8 +15,12 @@ void prepare_memory(const GasGrid& grid, const GasSolids& solids, GasMemory& mem
                     const GasKernels& kernels, TaskSystem& tasks) {
   const std::size_t size = std::size_t(grid.shape.size);
   const PressureMatrix& matrix = memory.matrix;
-  const bool same_size = matrix.count > 0 && memory.field[0].size() == size;
+  // Two windows of the same size differ in the sides of the box that they reach.
+  const bool same_size = matrix.count > 0 && memory.field[0].size() == size && memory.cells == grid.cells();
   if (!same_size) {
+    memory.cells = grid.cells();
+    memory.matrix.near.clear();
+    memory.matrix.has_pockets = false;
     for (Array<float>& field : memory.field) field.clear(), field.resize(size, 0.0f);
     for (Array<float>& field : memory.before) field.clear();
   }
@@ -102,7 +106,7 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
                  double time, GasReport& report) {
   GasGrid& grid = pass.grid;
   apply_emitters(pass, emitters, settings.emitter_fuel, time);
-  const bool conserves = !pass.box().any_open() && !pass.solids.present();
+  const bool conserves = !grid.whole.any_open() && !pass.solids.present();
   const bool burns = settings.combustion.has_value();
   const double smoke = conserves ? smoke_mass(grid, pass.solids, pass.tasks) : 0.0;
   const double fuel = conserves && burns ? field_mass(grid, grid.fuel, pass.solids, pass.tasks) : 0.0;

@@ -7,7 +7,7 @@ namespace gyre {
 
 GasGrid make_gas_grid(const GasBox& box, float ambient_temperature) {
   GasGrid grid;
-  grid.box = box;
+  grid.whole = grid.box = box;
   grid.shape = make_grid_shape(box.cells[0], box.cells[1], box.cells[2]);
   grid.ambient_temperature = ambient_temperature;
   const std::size_t size = std::size_t(grid.shape.size);

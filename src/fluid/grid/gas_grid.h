@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/container/array.h"
+#include "fluid/grid/cell_box.h"
 #include "fluid/grid/grid_shape.h"
 
 #include <gyre/fluid.h>
@@ -37,14 +38,27 @@ struct GasBox {
 };
 
 struct GasGrid {
-  GasBox box;
-  GridShape shape;
+  GasBox whole;  // the box of the gas
+  Array<CellBox>
+      window;  // of an adaptive domain: the cells of `whole` that the arrays hold, one element; empty: all
+  GasBox box;  // of the cells that the arrays hold
+  GridShape shape;           // of these
   Array<float> velocity[3];  // m/s, of u on faces across x, of v across y, of w across z
   Array<float> density;      // kg/m^3, of smoke
   Array<float> temperature;  // K
   Array<float> pressure;     // m^2/s^2: over the density of the gas, without what rests on gravity
   Array<float> fuel;         // kg/m^3; empty: nothing burns
   float ambient_temperature = 293.15f;
+
+  // The cell of `whole` that is the first of the arrays.
+  int first(int axis) const { return window.empty() ? 0 : window[0].low[axis]; }
+  // The cells of `whole` that the arrays hold.
+  CellBox cells() const {
+    CellBox range;
+    for (int axis = 0; axis < 3; ++axis)
+      range.low[axis] = first(axis), range.high[axis] = first(axis) + box.cells[axis];
+    return range;
+  }
 };
 
 // A gas at rest, without smoke, at the ambient temperature.

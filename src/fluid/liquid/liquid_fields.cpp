@@ -25,7 +25,7 @@ struct ParticleBounds {
 // Calls fn(place in the state, place in the window, count) for rows of points of a window, in the state with the ghosts at the sides of the box that
 // the window reaches.
 template <class Fn>
-void each_stored_row(const LiquidGrid& grid, const LiquidWindow& window, Fn&& fn) {
+void each_stored_row(const LiquidGrid& grid, const FluidWindow& window, Fn&& fn) {
   int low[3], high[3];
   for (int axis = 0; axis < 3; ++axis) {
     const int n = window.box.cells[axis];
@@ -67,8 +67,8 @@ CellBox cells_of_particles(const LiquidGrid& grid, float ahead, TaskSystem& task
   return cells_of(grid.box, low, high);
 }
 
-LiquidWindow find_window(const LiquidGrid& grid, CellBox cells, std::span<const FluidBody> bodies,
-                         std::span<const LiquidEmitter> emitters, double time) {
+FluidWindow find_window(const LiquidGrid& grid, CellBox cells, std::span<const FluidBody> bodies,
+                        std::span<const LiquidEmitter> emitters, double time) {
   const GasBox& box = grid.box;
   bool any = grid.particles() > 0;
   for (const LiquidEmitter& emitter : emitters) {
@@ -131,7 +131,7 @@ void begin_fields(const LiquidPass& pass) {
 void store_fields(const LiquidPass& pass) {
   LiquidGrid& grid = pass.grid;
   LiquidMemory& memory = pass.memory;
-  const LiquidWindow whole = whole_window(grid.box);
+  const FluidWindow whole = whole_window(grid.box);
   each_stored_row(grid, memory.has_stored ? memory.stored : whole, [&](int to, int, int count) {
     for (Array<float>& faces : grid.velocity)
       std::memset(faces.data() + to, 0, std::size_t(count) * sizeof(float));

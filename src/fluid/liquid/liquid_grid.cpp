@@ -87,7 +87,7 @@ int fill(LiquidGrid& grid, const double (&lower)[3], const double (&upper)[3], V
     occupied
         .taken[occupied.index(grid.box, {grid.position[0][p], grid.position[1][p], grid.position[2][p]})] = 1;
   const bool empty = grid.particles() == 0;
-  const LiquidWindow whole = whole_window(grid.box);
+  const FluidWindow whole = whole_window(grid.box);
   const int before = grid.particles();
   for_lattice(grid.box, lower, upper, [&](Vec3 at, double volume) {
     if (!inside(at) || !has_room(grid.box, whole, solids, at)) return;
@@ -99,7 +99,7 @@ int fill(LiquidGrid& grid, const double (&lower)[3], const double (&upper)[3], V
 
 }  // namespace
 
-bool has_room(const GasBox& box, const LiquidWindow& window, const GasSolids& solids, Vec3 point) {
+bool has_room(const GasBox& box, const FluidWindow& window, const GasSolids& solids, Vec3 point) {
   int index[3];
   for (int axis = 0; axis < 3; ++axis) {
     const float at = part_along(point, axis), edge = part_along(box.cell, axis);

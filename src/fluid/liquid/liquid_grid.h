@@ -15,7 +15,7 @@
 
 namespace gyre {
 
-struct LiquidWindow;
+struct FluidWindow;
 
 struct LiquidGrid {
   GasBox box;
@@ -45,10 +45,9 @@ float particle_volume(const GasBox& box);
 int fill_liquid_box(LiquidGrid& grid, DVec3 lower, DVec3 upper, Vec3 velocity, const GasSolids& solids);
 int fill_liquid_ball(LiquidGrid& grid, DVec3 center, float radius, Vec3 velocity, const GasSolids& solids);
 // True if a point of the box, from its lower corner, lies in it and outside the solids of a window.
-bool has_room(const GasBox& box, const LiquidWindow& window, const GasSolids& solids, Vec3 point);
+bool has_room(const GasBox& box, const FluidWindow& window, const GasSolids& solids, Vec3 point);
 void add_particle(LiquidGrid& grid, Vec3 position, Vec3 velocity, float volume);
 // Fields from the particles as they are, for probes before the first step. Solids count: `cut` makes them those of a window.
-void find_liquid_fields(LiquidGrid& grid, const GasSolids& solids,
-                        FunctionRef<void(const LiquidWindow&)> cut);
+void find_liquid_fields(LiquidGrid& grid, const GasSolids& solids, FunctionRef<void(const FluidWindow&)> cut);
 
 }  // namespace gyre

@@ -13,9 +13,9 @@ enum class LiquidCell : std::uint8_t { air, liquid, solid };
 
 struct LiquidMemory {
   // The cells that the arrays hold, and those of the fields that were given to the state last; nothing else in the state differs from air at rest.
-  LiquidWindow window;
+  FluidWindow window;
   bool has_stored = false;
-  LiquidWindow stored;
+  FluidWindow stored;
   Array<float> velocity[3];  // m/s, on faces
   Array<float> surface;      // m, at centres: as in LiquidGrid
   Array<float> pressure;     // m^2/s^2, at centres

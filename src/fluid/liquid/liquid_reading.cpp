@@ -5,8 +5,8 @@
 
 namespace gyre {
 
-double liquid_volume(const LiquidGrid& grid, const GasSolids& solids, const LiquidWindow* given) {
-  const LiquidWindow window = given != nullptr ? *given : whole_window(grid.box);
+double liquid_volume(const LiquidGrid& grid, const GasSolids& solids, const FluidWindow* given) {
+  const FluidWindow window = given != nullptr ? *given : whole_window(grid.box);
   const GridShape &shape = grid.shape, &own = window.shape;
   const double cell = double(grid.box.cell.x) * double(grid.box.cell.y) * double(grid.box.cell.z);
   const float inverse = 1.0f / grid.box.cell.x;

@@ -9,7 +9,7 @@ namespace gyre {
 // m^3: cells within the surface are full, however many particles they have; those at it, and those of drops and films too thin to be
 // liquid cells, count as full as the distance from the surface says.
 // `solids` are those of the window, null: of all of the box; outside it there is no liquid.
-double liquid_volume(const LiquidGrid& grid, const GasSolids& solids, const LiquidWindow* window = nullptr);
+double liquid_volume(const LiquidGrid& grid, const GasSolids& solids, const FluidWindow* window = nullptr);
 
 struct LiquidTotals {
   double mass = 0.0;              // kg

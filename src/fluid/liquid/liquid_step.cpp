@@ -253,7 +253,7 @@ void run_substep(const LiquidPass& pass, const LiquidSettings& settings,
 
 // The window of the present particles instead of one that some of them are about to leave.
 void move_window(const LiquidPass& pass, std::span<const LiquidEmitter> emitters, double time,
-                 FunctionRef<void(const LiquidWindow&)> cut, float ahead) {
+                 FunctionRef<void(const FluidWindow&)> cut, float ahead) {
   store_fields(pass);
   const CellBox cells = cells_of_particles(pass.grid, ahead, pass.tasks);
   pass.memory.window = find_window(pass.grid, cells, pass.bodies, emitters, time);
@@ -264,11 +264,10 @@ void move_window(const LiquidPass& pass, std::span<const LiquidEmitter> emitters
 
 }  // namespace
 
-LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids,
-                         FunctionRef<void(const LiquidWindow&)> cut, std::span<const FluidBody> bodies,
-                         std::span<const LiquidEmitter> emitters, const LiquidSettings& settings, double time,
-                         float step, LiquidMemory& memory, const GasKernels& kernels, TaskSystem& tasks,
-                         std::span<GasImpulse> impulses) {
+LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, FunctionRef<void(const FluidWindow&)> cut,
+                         std::span<const FluidBody> bodies, std::span<const LiquidEmitter> emitters,
+                         const LiquidSettings& settings, double time, float step, LiquidMemory& memory,
+                         const GasKernels& kernels, TaskSystem& tasks, std::span<GasImpulse> impulses) {
   const TaskSystem::Busy busy(tasks);
   memory.window = find_window(grid, cells_of_particles(grid, step, tasks), bodies, emitters, time);
   cut(memory.window);
@@ -300,7 +299,7 @@ LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids,
 }
 
 void find_liquid_fields(LiquidGrid& grid, const GasSolids& solids,
-                        FunctionRef<void(const LiquidWindow&)> cut) {
+                        FunctionRef<void(const FluidWindow&)> cut) {
   TaskSystem tasks(1);
   LiquidMemory memory;
   memory.window = find_window(grid, cells_of_particles(grid, 0.0f, tasks), {}, {}, 0.0);

@@ -34,10 +34,9 @@ struct LiquidReport {
 
 // `cut` makes `solids` those of a window of the grid, with the same labels in each; it is called once a step, and again where particles are about to
 // leave the window. `bodies` and `impulses`: one for each label of the solids, or none. Impulses are added to. Without bodies, solids move as told.
-LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids,
-                         FunctionRef<void(const LiquidWindow&)> cut, std::span<const FluidBody> bodies,
-                         std::span<const LiquidEmitter> emitters, const LiquidSettings& settings, double time,
-                         float step, LiquidMemory& memory, const GasKernels& kernels, TaskSystem& tasks,
-                         std::span<GasImpulse> impulses);
+LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, FunctionRef<void(const FluidWindow&)> cut,
+                         std::span<const FluidBody> bodies, std::span<const LiquidEmitter> emitters,
+                         const LiquidSettings& settings, double time, float step, LiquidMemory& memory,
+                         const GasKernels& kernels, TaskSystem& tasks, std::span<GasImpulse> impulses);
 
 }  // namespace gyre

@@ -18,7 +18,7 @@ TEST(LiquidSurface, the_mesh_is_closed_and_holds_the_volume) {
     const GasSolids none;
     fill_liquid_box(grid, {0, 0, 0}, {1.6, 0.53, 1.6}, {}, none);
     fill_liquid_ball(grid, {0.8, 1.1, flat ? 0.05 : 0.8}, 0.3f, {}, none);
-    find_liquid_fields(grid, none, [](const LiquidWindow&) {});
+    find_liquid_fields(grid, none, [](const FluidWindow&) {});
     Array<Vec3> vertices;
     Array<std::uint32_t> indices;
     find_surface_mesh(grid, vertices, indices);

@@ -16,7 +16,7 @@ struct WindowSolids {
   const GasSolids& whole;
   GasSolids part;
 
-  void cut(const LiquidWindow& window) {
+  void cut(const FluidWindow& window) {
     part = whole;
     if (!whole.present()) return;
     const auto copy = [&](const auto& from, auto& to) {
@@ -44,7 +44,7 @@ inline LiquidReport step_in_windows(LiquidGrid& grid, const GasSolids& solids,
                                     TaskSystem& tasks, std::span<GasImpulse> impulses) {
   WindowSolids own{grid, solids, {}};
   return step_liquid(
-      grid, own.part, [&](const LiquidWindow& window) { own.cut(window); }, bodies, emitters, settings, time,
+      grid, own.part, [&](const FluidWindow& window) { own.cut(window); }, bodies, emitters, settings, time,
       step, memory, kernels, tasks, impulses);
 }
 

@@ -32,7 +32,7 @@ LiquidGrid ball(int cells, Vec3 velocity) {
 TEST(LiquidWindow, has_the_tiles_around_the_particles) {
   const GasBox box = box_of(64, 32, 5, 0.1f, GasBoundary::closed);
   CellBox cells{{20, 3, 1}, {22, 10, 2}};
-  const LiquidWindow window = window_around(box, with_margin(box, cells));
+  const FluidWindow window = window_around(box, with_margin(box, cells));
   const int first[3] = {8, 0, 0}, count[3] = {24, 24, 5};
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_EQ(window.first[axis], first[axis]);

@@ -76,7 +76,7 @@ void fold_ghosts(const LiquidPass& pass, int faces, int numbers, float* field) {
 ParticlePass particle_pass(const LiquidPass& pass) {
   ParticlePass result;
   LiquidGrid& grid = pass.grid;
-  const LiquidWindow& window = pass.memory.window;
+  const FluidWindow& window = pass.memory.window;
   result.shape = window.shape;
   for (int axis = 0; axis < 3; ++axis) {
     result.axes[axis] = particle_axis(grid.box, axis, window.first[axis], window.box.cells[axis]);

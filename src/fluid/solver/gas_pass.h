@@ -15,6 +15,7 @@ struct GasMemory {
   static constexpr int kFields = 9;
   Array<float> field[kFields];
   Array<float> before[3];  // the velocity at the beginning of the step, with viscosity
+  CellBox cells;           // of the gas, that the fields and the matrix belong to
   PressureMatrix matrix;
   BodyCoupling coupling;
   // If bodies move by the pressure: the velocity of solids on faces, as it is now, and the open fraction of faces.

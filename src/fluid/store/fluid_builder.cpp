@@ -185,14 +185,28 @@ GasBox box_of(const Def& def, std::array<int, 3> cells, const double (&edges)[3]
   return box;
 }
 
-void build(const GasDef& def, FluidEntry& entry) {
+// A gas at rest; of one with an adaptive domain the window that holds nothing.
+void build_at_rest(const GasDef& def, FluidEntry& entry) {
   const DVec3 size = def.upper - def.lower;
   const double edges[3] = {size.x / double(def.cells[0]), size.y / double(def.cells[1]),
                            size.z / double(def.cells[2])};
   const GasBox box = box_of(def, def.cells, edges);
-  entry.gas = make_gas_grid(box, def.ambient_temperature);
+  entry.gas = def.adaptive_domain ? make_gas_grid(box, CellBox{}, def.ambient_temperature)
+                                  : make_gas_grid(box, def.ambient_temperature);
+  if (def.combustion) entry.gas.fuel.resize(std::size_t(entry.gas.shape.size), 0.0f);
+}
+void build_at_rest(const LiquidDef& def, FluidEntry& entry) {
+  const double size = double(def.cell_size);
+  entry.liquid = make_liquid_grid(box_of(def, liquid_cells(def), {size, size, size}));
+}
+
+void build(const GasDef& def, FluidEntry& entry) {
+  build_at_rest(def, entry);
+  if (!def.fields && !def.vortices && def.initial_velocity == Vec3{}) return;
+  // The first step shrinks the window of an adaptive domain.
+  if (def.adaptive_domain) set_gas_window(entry.gas, whole_window(entry.gas.whole));
+  const GasBox& box = entry.gas.box;
   const GridShape& shape = entry.gas.shape;
-  if (def.combustion) entry.gas.fuel.resize(std::size_t(shape.size), 0.0f);
   if (def.fields) {
     paste(shape, 0, def.fields->velocity_x, entry.gas.velocity[0]);
     paste(shape, 1, def.fields->velocity_y, entry.gas.velocity[1]);
@@ -219,10 +233,7 @@ void build(const GasDef& def, FluidEntry& entry) {
   for (Array<float>& field : entry.gas.velocity) wrap_ghosts(shape, periodic, field.data());
 }
 
-void build(const LiquidDef& def, FluidEntry& entry) {
-  const double size = double(def.cell_size);
-  entry.liquid = make_liquid_grid(box_of(def, liquid_cells(def), {size, size, size}));
-}
+void build(const LiquidDef& def, FluidEntry& entry) { build_at_rest(def, entry); }
 
 // Within the box and finite.
 bool is_good_column(const GasBox& box, int axis, const Array<float>& column) {
@@ -315,6 +326,15 @@ Error check_fluid(const GasDef& def) {
         v.wave_number[1] == 0.0f)
       return refuse("%s", "vortices: amplitude and wave_number must be finite, and wave_number[1] not 0");
   }
+  if (def.adaptive_domain) {
+    const AdaptiveDomain& domain = *def.adaptive_domain;
+    if (domain.margin < 1 || domain.margin > kMaxFluidCells)
+      return refuse("adaptive_domain.margin is %d; it must be from 1 to %d", domain.margin,
+                    int(kMaxFluidCells));
+    if (!(domain.threshold > 0.0f && domain.threshold <= 1.0f))
+      return refuse("adaptive_domain.threshold is %g; it must be above 0 and at most 1",
+                    double(domain.threshold));
+  }
   if (const Error e = check_sides(def.sides, def.wall_velocities)) return e;
   if (const Error e = check_emitters(def.emitters, def.lower, def.upper)) return e;
   if (def.combustion)
@@ -376,12 +396,12 @@ std::vector<FluidEmitter> emitter_defs(const FluidEntry& entry) {
   return out;
 }
 
-FluidEntry build_fluid(std::shared_ptr<const FluidDef> def) {
+FluidEntry build_fluid(std::shared_ptr<const FluidDef> def, FluidStart start) {
   FluidEntry entry;
   entry.def = std::move(def);
   std::visit(
       [&](const auto& one) {
-        build(one, entry);
+        start == FluidStart::rest ? build_at_rest(one, entry) : build(one, entry);
         set_emitters(entry, one.emitters);
         set_frame(entry, {{one.pose.position, normalized(one.pose.orientation)},
                           one.linear_velocity,
@@ -391,7 +411,7 @@ FluidEntry build_fluid(std::shared_ptr<const FluidDef> def) {
   return entry;
 }
 
-bool fill_liquid(FluidEntry& entry, const GasSolids& solids, FunctionRef<void(const LiquidWindow&)> cut) {
+bool fill_liquid(FluidEntry& entry, const GasSolids& solids, FunctionRef<void(const FluidWindow&)> cut) {
   const LiquidDef& def = entry.liquid_def();
   LiquidGrid& grid = entry.liquid;
   if (def.particles) {
@@ -410,6 +430,22 @@ bool fill_liquid(FluidEntry& entry, const GasSolids& solids, FunctionRef<void(co
   }
   find_liquid_fields(grid, solids, cut);
   return grid.particles() <= kMaxLiquidParticles;
+}
+
+bool restore_window(FluidEntry& entry) {
+  if (!entry.is_adaptive()) return true;
+  GasGrid& gas = entry.gas;
+  if (gas.window.size() != 1) return false;
+  const CellBox cells = gas.window[0];
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cells.low[axis] < 0 || cells.high[axis] <= cells.low[axis] ||
+        cells.high[axis] > gas.whole.cells[axis])
+      return false;
+  }
+  const FluidWindow window = window_around(gas.whole, cells);
+  if (!(window.cells() == cells)) return false;
+  gas.box = window.box, gas.shape = window.shape;
+  return true;
 }
 
 bool fits_definition(const FluidEntry& entry) {
@@ -447,7 +483,11 @@ LiquidParticles copy_particles(const LiquidGrid& grid) {
   return out;
 }
 
-GasFields copy_fields(const GasGrid& grid) {
+GasFields copy_fields(const GasGrid& part) {
+  // A definition holds all cells.
+  GasGrid whole;
+  if (!part.window.empty()) whole = part, set_gas_window(whole, whole_window(part.whole));
+  const GasGrid& grid = part.window.empty() ? part : whole;
   GasFields out;
   out.velocity_x = cut_out(grid.shape, 0, grid.velocity[0]);
   out.velocity_y = cut_out(grid.shape, 1, grid.velocity[1]);

@@ -1,6 +1,7 @@
 // Makes the entry of a gas or liquid from its definition, which is checked first. A pure function: the same definition gives the same bits.
 #pragma once
 
+#include "fluid/gas/gas_window.h"
 #include "fluid/store/fluid_store.h"
 
 #include <gyre/result.h>
@@ -21,11 +22,15 @@ Error check_emitters(std::span<const FluidEmitter> emitters, DVec3 lower, DVec3 
 // Cells of its box. The definition must have passed its check.
 std::int64_t count_cells(const FluidDef& def);
 
+// rest: without the fields of the definition, for whoever replaces them.
+enum class FluidStart : std::uint8_t { definition, rest };
 // The definition must have passed its check. A liquid has no particles yet: see fill_liquid.
-FluidEntry build_fluid(std::shared_ptr<const FluidDef> def);
+FluidEntry build_fluid(std::shared_ptr<const FluidDef> def, FluidStart start = FluidStart::definition);
 // The particles of the definition of a liquid, but for places within solids. Returns false, and leaves some out, if there are too many.
 // `solids` are those of the whole box; `cut` makes them those of a window.
-bool fill_liquid(FluidEntry& entry, const GasSolids& solids, FunctionRef<void(const LiquidWindow&)> cut);
+bool fill_liquid(FluidEntry& entry, const GasSolids& solids, FunctionRef<void(const FluidWindow&)> cut);
+// Makes the box of the arrays that of the window that was read from a file. False if it is no window of the gas.
+bool restore_window(FluidEntry& entry);
 // True if the arrays of an entry that was read from a file can be those of its definition.
 bool fits_definition(const FluidEntry& entry);
 void set_emitters(FluidEntry& entry, std::span<const FluidEmitter> emitters);

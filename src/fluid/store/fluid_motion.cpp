@@ -1,5 +1,7 @@
 #include "fluid/store/fluid_motion.h"
 
+#include "fluid/gas/gas_window.h"
+
 namespace gyre {
 
 namespace {
@@ -89,6 +91,8 @@ void change_frame_velocity(FluidEntry& entry, Vec3 linear, Vec3 angular) {
     subtract_motion(entry.liquid, shift, turn);
     subtract_motion(entry.liquid.box, entry.liquid.shape, shift, turn, &entry.liquid, entry.liquid.velocity);
   } else {
+    // All of the air moves relative to the box.
+    if (entry.is_adaptive()) set_gas_window(entry.gas, whole_window(entry.gas.whole));
     subtract_motion(entry.gas.box, entry.gas.shape, shift, turn, nullptr, entry.gas.velocity);
   }
   set_frame(entry, frame);

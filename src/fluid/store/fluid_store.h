@@ -47,7 +47,8 @@ struct FluidEntry {
   bool burns() const { return !is_liquid() && gas_def().combustion.has_value(); }
   const GasDef& gas_def() const { return std::get<GasDef>(*def); }
   const LiquidDef& liquid_def() const { return std::get<LiquidDef>(*def); }
-  const GasBox& box() const { return is_liquid() ? liquid.box : gas.box; }
+  bool is_adaptive() const { return !is_liquid() && gas_def().adaptive_domain.has_value(); }
+  const GasBox& box() const { return is_liquid() ? liquid.box : gas.whole; }
   const GridShape& shape() const { return is_liquid() ? liquid.shape : gas.shape; }
 };
 
@@ -83,6 +84,7 @@ void for_each_fluid_array(Entry& entry, Visitor&& visit) {
   visit(entry.emitters);
   visit(entry.pushes);
   if (entry.burns()) visit(entry.gas.fuel), visit(entry.emitter_fuel);
+  if (entry.is_adaptive()) visit(entry.gas.window);
 }
 
 // State that files of older versions lack, and which then is as in a new fluid.

@@ -358,6 +358,11 @@ void fields(C& c, T& v) {
   auto& [ignition_temperature, burn_rate, heat_release, heat_capacity, smoke_yield] = v;
   all(c, ignition_temperature, burn_rate, heat_release, heat_capacity, smoke_yield);
 }
+template <class C, Is<AdaptiveDomain> T>
+void fields(C& c, T& v) {
+  auto& [margin, threshold] = v;
+  all(c, margin, threshold);
+}
 template <class C, Is<TaylorGreen> T>
 void fields(C& c, T& v) {
   auto& [amplitude, wave_number] = v;
@@ -371,7 +376,7 @@ void fields(C& c, T& v) {
 template <class C, Is<GasDef> T>
 void fields(C& c, T& v) {
   auto& [lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
-         initial, vortices, emitters, state, user_data, combustion, pose, linear, angular] = v;
+         initial, vortices, emitters, state, user_data, combustion, pose, linear, angular, adaptive] = v;
   all(c, lower, upper, cells, density, viscosity, buoyancy, vorticity, ambient, advection, sides, walls,
       initial, vortices, emitters, state, user_data);
 }
@@ -379,6 +384,8 @@ void fields(C& c, T& v) {
 constexpr std::uint8_t kBurns = 0x80;
 // Nor has one that stands in the axes of the world the bytes of a pose.
 constexpr std::uint8_t kHasFrame = 0x40;
+// Nor has one of which all cells are computed.
+constexpr std::uint8_t kAdapts = 0x20;
 bool has_frame(const FluidDef& def) {
   return std::visit(
       [](const auto& one) {
@@ -397,6 +404,10 @@ void frame_fields(C& c, T& def) {
 bool burns(const FluidDef& def) {
   const auto* const gas = std::get_if<GasDef>(&def);
   return gas != nullptr && gas->combustion.has_value();
+}
+bool adapts(const FluidDef& def) {
+  const auto* const gas = std::get_if<GasDef>(&def);
+  return gas != nullptr && gas->adaptive_domain.has_value();
 }
 template <class C, class T>
 void combustion_fields(C& c, T& gas) {
@@ -420,18 +431,22 @@ void fields(C& c, T& v) {
 }
 // The kind, then the definition.
 void fields(FieldWriter& c, const std::shared_ptr<const FluidDef>& def) {
-  c.number(std::uint8_t(def->index() | (burns(*def) ? kBurns : 0) | (has_frame(*def) ? kHasFrame : 0)));
+  c.number(std::uint8_t(def->index() | (burns(*def) ? kBurns : 0) | (has_frame(*def) ? kHasFrame : 0) |
+                        (adapts(*def) ? kAdapts : 0)));
   std::visit([&](const auto& one) { fields(c, one); }, *def);
   if (burns(*def)) combustion_fields(c, std::get<GasDef>(*def));
   if (has_frame(*def)) frame_fields(c, *def);
+  if (adapts(*def)) all(c, *std::get<GasDef>(*def).adaptive_domain);
 }
 void fields(FieldReader& c, std::shared_ptr<const FluidDef>& def) {
   std::uint8_t kind = 0;
   c.number(kind);
   const bool is_placed = (kind & kHasFrame) != 0;
-  kind = std::uint8_t(kind & ~kHasFrame);
+  const bool is_adaptive = (kind & kAdapts) != 0;
+  kind = std::uint8_t(kind & ~(kHasFrame | kAdapts));
   const bool has_combustion = kind == kBurns;
   if (has_combustion) kind = 0;
+  if (is_adaptive && kind != 0) c.fail(), kind = 0;
   FluidDef read;
   if (kind == 1) read.emplace<LiquidDef>();
   if (kind >= std::variant_size_v<FluidDef>) c.fail();
@@ -442,6 +457,11 @@ void fields(FieldReader& c, std::shared_ptr<const FluidDef>& def) {
     combustion_fields(c, gas);
   }
   if (is_placed) frame_fields(c, read);
+  if (is_adaptive) {
+    std::optional<AdaptiveDomain>& domain = std::get<GasDef>(read).adaptive_domain;
+    domain.emplace();
+    all(c, *domain);
+  }
   def = std::make_shared<const FluidDef>(std::move(read));
 }
 

@@ -176,6 +176,12 @@ TEST(CommandCodec, AFluidInAxesOfItsOwnComesBack) {
   const Pose pose{{1, 2, 3}, {0.6f, 0, 0.8f, 0}};
   for (const FluidDef& def :
        {FluidDef(GasDef{.combustion = Combustion{}, .pose = pose, .angular_velocity = {1, 2, 3}}),
+        FluidDef(
+            GasDef{.pose = pose, .angular_velocity = {1, 2, 3}, .adaptive_domain = AdaptiveDomain{5, 0.5f}}),
+        FluidDef(GasDef{.combustion = Combustion{},
+        .pose = pose,
+        .angular_velocity = {1, 2, 3},
+        .adaptive_domain = AdaptiveDomain{}}),
         FluidDef(LiquidDef{.pose = pose, .angular_velocity = {1, 2, 3}})}) {
     const std::vector<std::byte> bytes = bytes_of(AddFluid{std::make_shared<const FluidDef>(def)});
     ByteReader in(bytes);

@@ -33,11 +33,13 @@ bool read_fluids(ByteReader& in, FluidStore& fluids) {
     std::shared_ptr<const FluidDef> def = read_fluid_def(in);
     if (in.failed() || std::visit([](const auto& one) { return check_fluid(one); }, *def)) return false;
     // Each cell has several numbers of four bytes: what claims more cells than there are bytes takes no memory.
-    if (std::size_t(count_cells(*def)) > in.left()) return false;
-    FluidEntry& entry = fluids.entries[slot] = build_fluid(std::move(def));
+    const auto* const gas = std::get_if<GasDef>(def.get());
+    const bool is_adaptive = gas != nullptr && gas->adaptive_domain.has_value();
+    if (!is_adaptive && std::size_t(count_cells(*def)) > in.left()) return false;
+    FluidEntry& entry = fluids.entries[slot] = build_fluid(std::move(def), FluidStart::rest);
     bool good = true;
     for_each_fluid_array(entry, [&](auto& array) { good = good && read_array(in, array); });
-    if (!good || !fits_definition(entry)) return false;
+    if (!good || !restore_window(entry) || !fits_definition(entry)) return false;
   }
   if (in.left() == 0) return true;
   for (FluidEntry& entry : fluids.entries) {

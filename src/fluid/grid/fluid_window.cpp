@@ -1,5 +1,4 @@
-// Windows of a liquid.
-#include "fluid/liquid/liquid_window.h"
+#include "fluid/grid/fluid_window.h"
 
 namespace gyre {
 
@@ -24,22 +23,22 @@ void CellBox::include(const CellBox& other) {
   }
 }
 
-CellBox LiquidWindow::cells() const {
+CellBox FluidWindow::cells() const {
   CellBox range;
   for (int axis = 0; axis < 3; ++axis)
     range.low[axis] = first[axis], range.high[axis] = first[axis] + box.cells[axis];
   return range;
 }
 
-LiquidWindow whole_window(const GasBox& box) {
-  LiquidWindow window;
+FluidWindow whole_window(const GasBox& box) {
+  FluidWindow window;
   window.box = box;
   window.shape = make_grid_shape(box.cells[0], box.cells[1], box.cells[2]);
   return window;
 }
 
-LiquidWindow window_around(const GasBox& box, const CellBox& range) {
-  LiquidWindow window;
+FluidWindow window_around(const GasBox& box, const CellBox& range) {
+  FluidWindow window;
   window.box = box;
   const float edges[3] = {box.cell.x, box.cell.y, box.cell.z};
   double shift[3] = {};
@@ -78,9 +77,9 @@ CellBox cells_of(const GasBox& box, Vec3 lower, Vec3 upper) {
   return range;
 }
 
-CellBox with_margin(const GasBox& box, CellBox range) {
+CellBox grow(const GasBox& box, CellBox range, int cells) {
   for (int axis = 0; axis < 3; ++axis) {
-    const int low = range.low[axis] - kWindowMargin, high = range.high[axis] + kWindowMargin;
+    const int low = range.low[axis] - cells, high = range.high[axis] + cells;
     range.low[axis] = low > 0 ? low : 0;
     range.high[axis] = high < box.cells[axis] ? high : box.cells[axis];
   }
