@@ -356,6 +356,7 @@ void add_soft(BatchContext& batch, SoftStore& soft, const FluidStore& fluids, So
                 .h = float(plan.parts) * plan.h,
                 .parts = plan.parts,
                 .warm_scale = plan.warm_scale,
+                .tasks = &scratch.serial,
                 .time = batch.w.now};
   make_soft_rows(batch.soft);
 }

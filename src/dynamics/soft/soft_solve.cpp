@@ -361,7 +361,7 @@ void begin_soft_members(SoftSolve& s, int begin, int end) {
       add_rows(s, m);
       add_forces_of_surfaces(s, m);
       work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels,
-                                  work.arena, work.tasks);
+                                  work.arena, work.serial);
       find_carried_steps(s, m);
       if (!implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
       work.arena.release(work.mark);
@@ -393,7 +393,7 @@ void finish_soft_members(SoftSolve& s, int begin, int end) {
   for (std::uint32_t m = std::uint32_t(begin); m < std::uint32_t(end); ++m) {
     SoftEntry& entry = entry_of(s, m);
     SoftWork& work = work_of(s, m);
-    finish_soft_step(entry, work.step, *s.kernels, work.tasks);
+    finish_soft_step(entry, work.step, *s.kernels, work.serial);
     if (!entry.limits.empty()) keep_limits(entry);
     work.arena.release(work.mark);
   }

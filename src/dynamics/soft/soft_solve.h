@@ -64,7 +64,7 @@ struct SoftRow {
 // Memory of one body of soft matter, which lasts; its arena is used within a half-step.
 struct SoftWork {
   Arena arena;
-  TaskSystem tasks;  // serial
+  TaskSystem serial;  // of one worker
   Arena::Mark mark{};
   SoftStep step;
   SoftBody before;                            // what a sub-step that is solved anew begins with
@@ -90,6 +90,7 @@ struct SoftScratch {
   // Of touched bodies: the change by the impulses that are tried; what the other half-steps of the sub-step are to bring.
   Array<VelocityChange> changes, pending;
   SoftSurfaces surfaces;
+  TaskSystem serial;  // of one worker, for the stages of one block
 };
 
 // The context of the stages below.
@@ -103,6 +104,8 @@ struct SoftSolve {
   float h = 0.0f;                            // s, of a sub-step of soft matter
   int parts = 1;                             // half-steps of bodies in it
   float warm_scale = 0.0f;                   // of the impulses of the last step
+  // Loops of the stages of one block run on these: all workers of the world where soft matter is large, else one. The bits are the same.
+  TaskSystem* tasks = nullptr;
   double time = 0.0;                         // s, when the step began
 };
 
