@@ -382,8 +382,9 @@ void begin_member(SoftSolve& s, std::uint32_t m, TaskSystem& tasks) {
     set_forces(s, entry, work, pass > 0);
     add_rows(s, m);
     add_forces_of_surfaces(s, m);
-    work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels, work.arena,
-                                tasks);
+    work.step =
+        begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m), work.first_row != work.last_row},
+                        *s.kernels, work.arena, tasks);
     find_carried_steps(s, m);
     if (!implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
     work.arena.release(work.mark);
