@@ -346,8 +346,8 @@ void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
     w.bodies.last_moves.resize(w.bodies.motion.size());
 }
 
-void add_soft(BatchContext& batch, SoftStore& soft, const FluidStore& fluids, SoftScratch& scratch, const HalfStepping& plan,
-              TaskSystem& tasks) {
+void add_soft(BatchContext& batch, SoftStore& soft, const FluidStore& fluids, SoftScratch& scratch,
+              const HalfStepping& plan, TaskSystem& tasks) {
   batch.soft = {.w = &batch.w,
                 .store = &soft,
                 .fluids = &fluids,
@@ -450,8 +450,8 @@ void sum_up(SolveScratch& scratch) {
 
 }  // namespace
 
-void solve_step(RigidWorld& w, SoftStore& soft, const FluidStore& fluids, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
-                const SolverKernels& kernels, float seconds) {
+void solve_step(RigidWorld& w, SoftStore& soft, const FluidStore& fluids, SolveScratch& scratch, Arena& arena,
+                TaskSystem& tasks, const SolverKernels& kernels, float seconds) {
   const SolverSettings* const row_solver = row_solver_of(w);
   const HalfStepping plan = plan_half_steps(w, seconds, row_solver != nullptr);
   begin_bodies(w, tasks);

@@ -136,7 +136,8 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     const float most = kSoftPushShare * std::sqrt(reference_gravity(w.settings) * entry.size);
     // A vertex that is free may come as near as it likes; one that is held goes to the surface from either side.
     const bool is_free = row.grip == SoftGrip::open && gap > 0.0f;
-    const float wanted = is_free ? gap / s.h : clamp((row.is_face ? kFaceRate : 1.0f) * error_rate(s) * gap, -most, most);
+    const float wanted =
+        is_free ? gap / s.h : clamp((row.is_face ? kFaceRate : 1.0f) * error_rate(s) * gap, -most, most);
     row.bias = wanted * row.normal - contact.surface_velocity;
   }
   row.body_compliance = body_compliance(w, row);
@@ -382,9 +383,9 @@ void begin_member(SoftSolve& s, std::uint32_t m, TaskSystem& tasks) {
     set_forces(s, entry, work, pass > 0);
     add_rows(s, m);
     add_forces_of_surfaces(s, m);
-    work.step =
-        begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m), work.first_row != work.last_row},
-                        *s.kernels, work.arena, tasks);
+    work.step = begin_soft_step(
+        entry, {s.h, s.w->settings.gravity, carried_by(s, m), work.first_row != work.last_row}, *s.kernels,
+        work.arena, tasks);
     find_carried_steps(s, m);
     if (!implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
     work.arena.release(work.mark);

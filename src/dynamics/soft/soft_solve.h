@@ -105,7 +105,7 @@ struct SoftSolve {
   float warm_scale = 0.0f;                   // of the impulses of the last step
   // The workers of the world. Only the calling thread is in a stage, so the stage may start loops on them.
   TaskSystem* tasks = nullptr;
-  double time = 0.0;                         // s, when the step began
+  double time = 0.0;  // s, when the step began
 };
 
 // Before batches are found: lists slots and touched bodies, and marks these as constrained.

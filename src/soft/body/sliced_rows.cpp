@@ -90,7 +90,8 @@ int find_place(const SlicedRows& rows, std::uint32_t row, std::uint32_t column) 
   const int slice = int(row) / kSliceRows, lane = int(row) % kSliceRows;
   for (int slot = rows.slot_begin[slice]; slot < rows.slot_begin[slice + 1]; ++slot) {
     const RowSlot& one = rows.slots[slot];
-    const std::int32_t read = one.columns < 0 ? std::int32_t(row) + one.offset : rows.columns[one.columns + lane];
+    const std::int32_t read =
+        one.columns < 0 ? std::int32_t(row) + one.offset : rows.columns[one.columns + lane];
     if (read == std::int32_t(column)) return slot * kSliceRows + lane;
   }
   return -1;

@@ -76,7 +76,8 @@ GYRE_INLINE void add_lane(float* corner_force, float* edge_blocks, const Block& 
     for (int e = 0; e < Edges; ++e) {
       float* const to = edge_blocks + kEdgeFloats * std::int64_t(block.edge[e][lane]);
       GYRE_UNROLL
-      for (int k = 0; k < kEdgeFloats; k += 4) (Four::load(to + k) + Four::load(sums.block[e][lane] + k)).store(to + k);
+      for (int k = 0; k < kEdgeFloats; k += 4)
+        (Four::load(to + k) + Four::load(sums.block[e][lane] + k)).store(to + k);
     }
   }
 }

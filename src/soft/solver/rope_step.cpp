@@ -356,7 +356,8 @@ RopeStep begin_rope(SoftBody& body, const RopeSettings& settings, Arena& arena) 
   step.h = step.move = double(settings.step);
   step.has_bending = body.chain.bend_stiffness > 0.0;
   const int size = kUnknowns * body.particles.count;
-  step.band = arena.make<double>(step.has_bending ? Band<kBentWidth>::room(size) : Band<kPlainWidth>::room(size));
+  step.band =
+      arena.make<double>(step.has_bending ? Band<kBentWidth>::room(size) : Band<kPlainWidth>::room(size));
   step.right = arena.make<double>(std::size_t(size + kBentWidth));
   step.place = arena.make<DVec3>(count);
   step.velocity = arena.make<DVec3>(count);
