@@ -106,10 +106,13 @@ double membrane_energy(const Particles& particles, const Continuum& continuum) {
 double elastic_energy(const SoftBody& body) {
   double twice = 0.0;  // each pair stands in two rows
   const bool keeps_length = !body.chain.rest_length.empty() && body.chain.stretch_stiffness == 0.0;
-  if (!keeps_length) each_pair(body.particles, body.springs.rows, [&](int place, double span) {
-    twice +=
-        0.5 * double(body.springs.stiffness[place]) * square(span - double(body.springs.rest_length[place]));
-  });
+  if (!keeps_length)
+    each_pair(body.particles, body.springs.rows, [&](int place, double span) {
+      twice += 0.5 * double(body.springs.stiffness[place]) *
+               square(span - double(body.springs.rest_length[place]));
+    });
+  each_pair(body.particles, body.springs.rows,
+            [&](int place, double span) { twice += 0.5 * double(body.springs.bend[place]) * square(span); });
   each_pair(body.particles, body.bend.rows, [&](int place, double span) {
     twice += 0.5 * double(body.bend.stiffness[place]) * square(span);
   });

@@ -49,7 +49,7 @@ Mesh make_mesh(int cells, bool shifted, double scatter) {
 double cylinder_energy(SoftBody sheet, double angle, double stiffness) {
   const double c = std::cos(angle), s = std::sin(angle), k = 0.1;
   sheet.continuum = {};
-  sheet.springs = {};
+  for (float& spring : sheet.springs.stiffness) spring = 0.0f;
   for (int i = 0; i < sheet.particles.count; ++i) {
     const double along = c * sheet.particles.x[i] + s * sheet.particles.z[i];
     sheet.particles.y[i] = 0.5 * k * along * along;

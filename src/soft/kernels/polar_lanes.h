@@ -27,10 +27,14 @@ GYRE_INLINE Mat3W<W> orthogonal_start(const Mat3W<W>& f) {
   return r;
 }
 
-// A step of Newton's towards the largest tr(R^T F): with S = R^T F near its symmetric part, the turn w has (tr(S) 1 - S) w = axial part of S.
-// Where that matrix is not positive definite the axial part alone, over the size of S.
+// The turn of the last step of Newton's, rad, of which the square is lost in rounding: the error after the step is of the order of that square.
+constexpr float kLastTurn = 2.0e-4f;
+
+// A step of Newton's towards the largest tr(R^T F), for lanes that are `moving`: with S = R^T F near its symmetric part, the turn w has
+// (tr(S) 1 - S) w = axial part of S. Where that matrix is not positive definite the axial part alone, over the size of S. Lanes stop after a
+// small turn of Newton's, each for itself, so that a lane has the same bits whatever the others do.
 template <int W>
-GYRE_INLINE Mat3W<W> improve_rotation(const Mat3W<W>& r, const Mat3W<W>& f) {
+GYRE_INLINE void improve_rotation(Mat3W<W>& r, const Mat3W<W>& f, Mask<W>& moving) {
   const Mat3W<W> s = transpose(r) * f;
   const Vec3W<W> axial{s.y.z - s.z.y, s.z.x - s.x.z, s.x.y - s.y.x};
   const Wide<W> trace = s.x.x + s.y.y + s.z.z;
@@ -47,15 +51,21 @@ GYRE_INLINE Mat3W<W> improve_rotation(const Mat3W<W>& r, const Mat3W<W>& f) {
   const Wide<W> angle = length(turn);
   turn = (1.0f / max(angle, Wide<W>(1.0f))) * turn;  // at most about a radian
   const QuatW<W> q = normalized(QuatW<W>{0.5f * turn.x, 0.5f * turn.y, 0.5f * turn.z, 1.0f});
-  return r * to_matrix(q);
+  const Mat3W<W> improved = r * to_matrix(q);
+  r = {select(moving, improved.x, r.x), select(moving, improved.y, r.y), select(moving, improved.z, r.z)};
+  moving = and_not(moving, definite & (angle < kLastTurn));
 }
 
 // The rotation nearest to f, also where f turns volume inside out: then the direction of least stretch is the one turned over.
 template <int W>
 GYRE_INLINE Mat3W<W> polar_rotation(const Mat3W<W>& f) {
   Mat3W<W> r = orthogonal_start(f);
+  Mask<W> moving = Mask<W>::splat(true);
   GYRE_ROLLED
-  for (int i = 0; i < 5; ++i) r = improve_rotation(r, f);
+  for (int i = 0; i < 5; ++i) {
+    improve_rotation(r, f, moving);
+    if (none(moving)) break;
+  }
   return r;
 }
 

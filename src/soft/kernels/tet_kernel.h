@@ -7,6 +7,7 @@
 // stiffness at rest turned along with the element (M. Mueller, M. Gross, "Interactive Virtual Materials", 2004).
 #pragma once
 
+#include "soft/kernels/element_sums.h"
 #include "soft/kernels/polar_lanes.h"
 #include "soft/kernels/row_lanes.h"
 
@@ -112,11 +113,7 @@ GYRE_INLINE Mat3W<W> corner_stiffness(const ElementResponse<W>& element, Vec3W<W
   return element.turn * inner * transpose(element.turn);
 }
 
-// The sums of kTetLanes tetrahedra, before they are added lane by lane.
-struct TetOutput {
-  alignas(64) float force[3][3][kTetLanes];  // on corners 1 to 3
-  alignas(64) float blocks[kTetEdges][9][kTetLanes];
-};
+using TetSums = ElementSums<3, kTetEdges>;
 
 template <int W>
 GYRE_INLINE Vec3W<W> corner_edge(const SoftPass& pass, const TetBlock& block, int corner, int lane) {
@@ -131,7 +128,7 @@ GYRE_INLINE Vec3W<W> corner_edge(const SoftPass& pass, const TetBlock& block, in
 }
 
 template <int W, bool WithBlocks>
-GYRE_INLINE void respond(const SoftPass& pass, const TetBlock& block, int lane, TetOutput& out) {
+GYRE_INLINE void respond(const SoftPass& pass, const TetBlock& block, int lane, TetSums& out) {
   const auto rest = [&](int k) { return Wide<W>::load(block.inverse[k] + lane); };
   const Mat3W<W> inverse{
       {rest(0), rest(1), rest(2)}, {rest(3), rest(4), rest(5)}, {rest(6), rest(7), rest(8)}};
@@ -150,10 +147,7 @@ GYRE_INLINE void respond(const SoftPass& pass, const TetBlock& block, int lane, 
                                 gradients.z};
   GYRE_UNROLL
   for (int a = 1; a < 4; ++a) {
-    const Vec3W<W> force = -volume * (element.stress * gradient[a]);
-    force.x.store(out.force[a - 1][0] + lane);
-    force.y.store(out.force[a - 1][1] + lane);
-    force.z.store(out.force[a - 1][2] + lane);
+    put_columns<W>(out.force[a - 1], lane, 0, -volume * (element.stress * gradient[a]));
   }
   if constexpr (WithBlocks) {
     constexpr int kPair[kTetEdges][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
@@ -161,34 +155,9 @@ GYRE_INLINE void respond(const SoftPass& pass, const TetBlock& block, int lane, 
     Vec3W<W> turned[4];
     GYRE_UNROLL
     for (int a = 0; a < 4; ++a) turned[a] = transpose_times(element.rest, gradient[a]);
-    for (int e = 0; e < kTetEdges; ++e) {
-      const Mat3W<W> k = corner_stiffness(element, turned[kPair[e][0]], turned[kPair[e][1]], scaled);
-      const Wide<W> parts[9] = {k.x.x, k.x.y, k.x.z, k.y.x, k.y.y, k.y.z, k.z.x, k.z.y, k.z.z};
-      GYRE_UNROLL
-      for (int part = 0; part < 9; ++part) parts[part].store(out.blocks[e][part] + lane);
-    }
-  }
-}
-
-// Adds the lanes' forces and blocks to their particles and edges, one lane after the other.
-template <bool WithBlocks>
-GYRE_INLINE void add_up(const SoftPass& pass, const TetBlock& block, const TetOutput& out) {
-  for (int lane = 0; lane < kTetLanes; ++lane) {
-    if (block.volume[lane] == 0.0f) continue;
-    float* const first = pass.corner_force + 4 * std::int64_t(block.corner[0][lane]);
-    for (int a = 0; a < 3; ++a) {
-      float* const force = pass.corner_force + 4 * std::int64_t(block.corner[a + 1][lane]);
-      for (int c = 0; c < 3; ++c) {
-        force[c] += out.force[a][c][lane];
-        first[c] -= out.force[a][c][lane];
-      }
-    }
-    if constexpr (WithBlocks) {
-      for (int e = 0; e < kTetEdges; ++e) {
-        float* const edge = pass.edge_blocks + kEdgeFloats * std::int64_t(block.edge[e][lane]);
-        for (int part = 0; part < 9; ++part) edge[part + part / 3] += out.blocks[e][part][lane];
-      }
-    }
+    for (int e = 0; e < kTetEdges; ++e)
+      put_block<W>(out.block[e], lane,
+                   corner_stiffness(element, turned[kPair[e][0]], turned[kPair[e][1]], scaled));
   }
 }
 
@@ -196,10 +165,13 @@ template <int W, bool WithBlocks>
 void add_tetrahedra(const SoftPass& pass, int block_begin, int block_end) {
   for (int b = block_begin; b < block_end; ++b) {
     const TetBlock& block = pass.tetrahedra[b];
-    TetOutput out;
+    TetSums sums;
     GYRE_ROLLED
-    for (int lane = 0; lane < kTetLanes; lane += W) respond<W, WithBlocks>(pass, block, lane, out);
-    add_up<WithBlocks>(pass, block, out);
+    for (int lane = 0; lane < kTetLanes; lane += W) respond<W, WithBlocks>(pass, block, lane, sums);
+    for (int lane = 0; lane < kTetLanes; ++lane) {
+      if (block.volume[lane] == 0.0f) continue;
+      add_lane<W, WithBlocks>(pass.corner_force, pass.edge_blocks, block, sums, lane);
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 // (g_a . S g_b) 1 from the stress that is there. Of S its negative part is left out, as with springs.
 #pragma once
 
+#include "soft/kernels/element_sums.h"
 #include "soft/kernels/row_lanes.h"
 
 namespace gyre {
@@ -26,10 +27,7 @@ GYRE_INLINE Sym2W<W> without_negative_part(Sym2W<W> s) {
           select(whole, s.xy, share * s.xy)};
 }
 
-struct TriangleOutput {
-  alignas(64) float force[2][3][kTetLanes];  // on corners 1 and 2
-  alignas(64) float blocks[3][9][kTetLanes];
-};
+using TriangleSums = ElementSums<2, 3>;
 
 template <int W>
 GYRE_INLINE Vec3W<W> triangle_edge(const SoftPass& pass, const TriangleBlock& block, int corner, int lane) {
@@ -44,7 +42,7 @@ GYRE_INLINE Vec3W<W> triangle_edge(const SoftPass& pass, const TriangleBlock& bl
 }
 
 template <int W, bool WithBlocks>
-GYRE_INLINE void respond(const SoftPass& pass, const TriangleBlock& block, int lane, TriangleOutput& out) {
+GYRE_INLINE void respond(const SoftPass& pass, const TriangleBlock& block, int lane, TriangleSums& out) {
   const ElementMaterial& material = pass.material;
   const Wide<W> c(material.stretch), contraction(material.contraction), shear(material.shear);
   const auto rest = [&](int k) { return Wide<W>::load(block.inverse[k] + lane); };
@@ -60,10 +58,7 @@ GYRE_INLINE void respond(const SoftPass& pass, const TriangleBlock& block, int l
   const Vec3W<W> p1 = stress.xx * f1 + stress.xy * f2, p2 = stress.xy * f1 + stress.yy * f2;
   GYRE_UNROLL
   for (int a = 1; a < 3; ++a) {
-    const Vec3W<W> force = -area * (g1[a] * p1 + g2[a] * p2);
-    force.x.store(out.force[a - 1][0] + lane);
-    force.y.store(out.force[a - 1][1] + lane);
-    force.z.store(out.force[a - 1][2] + lane);
+    put_columns<W>(out.force[a - 1], lane, 0, -area * (g1[a] * p1 + g2[a] * p2));
   }
   if constexpr (WithBlocks) {
     constexpr int kPair[3][2] = {{0, 1}, {0, 2}, {1, 2}};
@@ -82,32 +77,10 @@ GYRE_INLINE void respond(const SoftPass& pass, const TriangleBlock& block, int l
       const Vec3W<W> columns[3] = {b1.x * left1 + b2.x * left2 + b12.x * left12,
                                    b1.y * left1 + b2.y * left2 + b12.y * left12,
                                    b1.z * left1 + b2.z * left2 + b12.z * left12};
-      const Wide<W> parts[9] = {columns[0].x + turning, columns[0].y,           columns[0].z,
-                                columns[1].x,           columns[1].y + turning, columns[1].z,
-                                columns[2].x,           columns[2].y,           columns[2].z + turning};
-      GYRE_UNROLL
-      for (int part = 0; part < 9; ++part) parts[part].store(out.blocks[e][part] + lane);
-    }
-  }
-}
-
-template <bool WithBlocks>
-GYRE_INLINE void add_up(const SoftPass& pass, const TriangleBlock& block, const TriangleOutput& out) {
-  for (int lane = 0; lane < kTetLanes; ++lane) {
-    if (block.area[lane] == 0.0f) continue;
-    float* const first = pass.corner_force + 4 * std::int64_t(block.corner[0][lane]);
-    for (int a = 0; a < 2; ++a) {
-      float* const force = pass.corner_force + 4 * std::int64_t(block.corner[a + 1][lane]);
-      for (int c = 0; c < 3; ++c) {
-        force[c] += out.force[a][c][lane];
-        first[c] -= out.force[a][c][lane];
-      }
-    }
-    if constexpr (WithBlocks) {
-      for (int e = 0; e < 3; ++e) {
-        float* const edge = pass.edge_blocks + kEdgeFloats * std::int64_t(block.edge[e][lane]);
-        for (int part = 0; part < 9; ++part) edge[part + part / 3] += out.blocks[e][part][lane];
-      }
+      put_block<W>(out.block[e], lane,
+                   {{columns[0].x + turning, columns[0].y, columns[0].z},
+                    {columns[1].x, columns[1].y + turning, columns[1].z},
+                    {columns[2].x, columns[2].y, columns[2].z + turning}});
     }
   }
 }
@@ -116,10 +89,13 @@ template <int W, bool WithBlocks>
 void add_triangles(const SoftPass& pass, int block_begin, int block_end) {
   for (int b = block_begin; b < block_end; ++b) {
     const TriangleBlock& block = pass.triangles[b];
-    TriangleOutput out;
+    TriangleSums sums;
     GYRE_ROLLED
-    for (int lane = 0; lane < kTetLanes; lane += W) respond<W, WithBlocks>(pass, block, lane, out);
-    add_up<WithBlocks>(pass, block, out);
+    for (int lane = 0; lane < kTetLanes; lane += W) respond<W, WithBlocks>(pass, block, lane, sums);
+    for (int lane = 0; lane < kTetLanes; ++lane) {
+      if (block.area[lane] == 0.0f) continue;
+      add_lane<W, WithBlocks>(pass.corner_force, pass.edge_blocks, block, sums, lane);
+    }
   }
 }
 
