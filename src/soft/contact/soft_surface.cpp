@@ -92,9 +92,9 @@ Aabb vertex_box(DVec3 p, double pad) {
   return {{low(p.x), low(p.y), low(p.z)}, {high(p.x), high(p.y), high(p.z)}};
 }
 
-// Fits the boxes of the tree to those of the triangles; returns the box of all.
-Aabb fit_nodes(const SoftSurface& surface, std::span<const Aabb> triangles, std::span<StaticNode> nodes,
-               Arena& arena) {
+// Fits the boxes of the tree to those of the triangles, at the ends of the moves if told so; returns the box of all.
+Aabb fit_nodes(const SoftSurface& surface, std::span<const SweptBox> triangles, bool ends,
+               std::span<StaticNode> nodes, Arena& arena) {
   // The children of a node have higher numbers.
   const Aabb none{{kNoFloat, kNoFloat, kNoFloat}, {kNoFloat, kNoFloat, kNoFloat}};
   const std::span<Aabb> whole = arena.make<Aabb>(nodes.size());
@@ -107,8 +107,9 @@ Aabb fit_nodes(const SoftSurface& surface, std::span<const Aabb> triangles, std:
       Aabb box = none;
       if (child != StaticNode::kNoChild && is_leaf(child)) {
         const std::uint32_t first = leaf_first(child);
-        box = triangles[first];
-        for (std::uint32_t i = first + 1; i < first + leaf_count(child); ++i) box = merge(box, triangles[i]);
+        SweptBox swept = triangles[first];
+        for (std::uint32_t i = first + 1; i < first + leaf_count(child); ++i) swept = merge(swept, triangles[i]);
+        box = ends ? end_box(swept) : start_box(swept);
       } else if (child != StaticNode::kNoChild) {
         box = whole[child];
       }
@@ -162,26 +163,30 @@ SurfaceBoxes fit_boxes(const PlacedSurface& placed, std::span<const DVec3> posit
   SurfaceBoxes out;
   out.surface = &surface;
   out.first = placed.first;
-  const auto fit = [&](bool ends, std::span<Aabb>& vertices, std::span<Aabb>& triangles,
-                       std::span<StaticNode>& nodes, Aabb& box) {
-    vertices = arena.make<Aabb>(std::size_t(surface.vertices));
-    triangles = arena.make<Aabb>(surface.triangles.size());
-    nodes = arena.make<StaticNode>(surface.tree.nodes.size());
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-      const std::size_t place = placed.first + v;
-      const DVec3 at = ends ? positions[place] + moves[place] : positions[place];
-      vertices[v] = vertex_box(at - origin, pads.empty() ? 0.0 : double(pads[place]));
+  out.vertices = arena.make<SweptBox>(std::size_t(surface.vertices));
+  out.triangles = arena.make<SweptBox>(surface.triangles.size());
+  for (std::size_t v = 0; v < out.vertices.size(); ++v) {
+    const std::size_t place = placed.first + v;
+    const DVec3 at = positions[place] - origin;
+    const double pad = pads.empty() ? 0.0 : double(pads[place]);
+    const Aabb start = vertex_box(at, pad), end = moves.empty() ? start : vertex_box(at + moves[place], pad);
+    SweptBox& box = out.vertices[v];
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = start.low[axis], box.high[axis] = start.high[axis];
+      box.end_low[axis] = end.low[axis], box.end_high[axis] = end.high[axis];
     }
-    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-      const std::uint32_t* const corner = surface.triangles[i].corner;
-      triangles[i] = merge(merge(vertices[corner[0]], vertices[corner[1]]), vertices[corner[2]]);
-    }
-    box = fit_nodes(surface, triangles, nodes, arena);
-  };
-  fit(false, out.vertices, out.triangles, out.nodes, out.box);
-  out.end_vertices = out.vertices, out.end_triangles = out.triangles, out.end_nodes = out.nodes;
-  out.end_box = out.box;
-  if (!moves.empty()) fit(true, out.end_vertices, out.end_triangles, out.end_nodes, out.end_box);
+    box.low[3] = box.high[3] = box.end_low[3] = box.end_high[3] = 0.0f;
+  }
+  for (std::size_t i = 0; i < out.triangles.size(); ++i) {
+    const std::uint32_t* const corner = surface.triangles[i].corner;
+    out.triangles[i] = merge(merge(out.vertices[corner[0]], out.vertices[corner[1]]), out.vertices[corner[2]]);
+  }
+  out.nodes = arena.make<StaticNode>(surface.tree.nodes.size());
+  out.box = fit_nodes(surface, out.triangles, false, out.nodes, arena);
+  out.end_nodes = out.nodes, out.end_box = out.box;
+  if (moves.empty()) return out;
+  out.end_nodes = arena.make<StaticNode>(surface.tree.nodes.size());
+  out.end_box = fit_nodes(surface, out.triangles, true, out.end_nodes, arena);
   return out;
 }
 

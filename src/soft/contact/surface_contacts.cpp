@@ -351,6 +351,7 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     leave_out(contacts.tangle, found);
     pairs = found;
   }
+  contacts.candidates.advance();
   for (std::size_t v = 0; v < count; ++v) {
     // The mean is given back.
     const bool there = held[v] != 0 || moves[v] == whole[v];
