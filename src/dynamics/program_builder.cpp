@@ -28,7 +28,6 @@ ProgramBuilder::ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena
       joint_islands_(int(batch.joints.islands.size())),
       stiffened_(batch.joints.stiffened.empty() ? 0 : 1),
       row_islands_(batch.rows == nullptr ? 0 : int(batch.rows->islands.islands.size())),
-      soft_members_(int(batch.soft.members.size())),
       is_fused_(batch.is_fused()) {
   for (const ContactGroup& group : batch.contact_groups) contact_blocks_ += int(group.count);
   std::size_t held = 0;

@@ -135,14 +135,12 @@ class ProgramBuilder {
     add(run_stage<stage, JointSolve>, &batch_.joints, stiffened_);
   }
 
-  // Add lines for soft matter: for each member, and for all their rows.
+  // Adds a line for all soft matter. Its stage divides the work among the workers by itself.
   template <auto stage>
-  void soft_members() {
-    add(run_stage<stage, SoftSolve>, &batch_.soft, soft_members_);
-  }
-  template <auto stage>
-  void soft_rows() {
-    add(run_stage<stage, SoftSolve>, &batch_.soft, soft_members_ > 0 ? 1 : 0);
+  void soft() {
+    if (!batch_.has_soft()) return;
+    add(run_stage<stage, SoftSolve>, &batch_.soft, 1);
+    room_[used_ - 1].starts_work = true;
   }
 
   // Adds a line for all couplings.
@@ -200,7 +198,7 @@ class ProgramBuilder {
   int bodies_, fast_spinning_, orientations_, free_bodies_, fields_;
   int contact_blocks_ = 0, impacts_, trees_, structures_;
   int joint_slices_, articulations_, simd_articulations_, joint_islands_, stiffened_;
-  int row_islands_, soft_members_;
+  int row_islands_;
   bool is_fused_;
   std::span<Stage> room_;
   std::size_t used_ = 0;

@@ -346,7 +346,8 @@ void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
     w.bodies.last_moves.resize(w.bodies.motion.size());
 }
 
-void add_soft(BatchContext& batch, SoftStore& soft, const FluidStore& fluids, SoftScratch& scratch, const HalfStepping& plan) {
+void add_soft(BatchContext& batch, SoftStore& soft, const FluidStore& fluids, SoftScratch& scratch, const HalfStepping& plan,
+              TaskSystem& tasks) {
   batch.soft = {.w = &batch.w,
                 .store = &soft,
                 .fluids = &fluids,
@@ -356,6 +357,7 @@ void add_soft(BatchContext& batch, SoftStore& soft, const FluidStore& fluids, So
                 .h = float(plan.parts) * plan.h,
                 .parts = plan.parts,
                 .warm_scale = plan.warm_scale,
+                .tasks = &tasks,
                 .time = batch.w.now};
   make_soft_rows(batch.soft);
 }
@@ -467,7 +469,7 @@ void solve_step(RigidWorld& w, SoftStore& soft, const FluidStore& fluids, SolveS
   const auto solve_together = [&](const IslandBatch& members, bool is_united) {
     BatchContext batch = describe(members, scratch.together);
     const bool has_soft = is_united && !scratch.soft.slots.empty();
-    if (has_soft) add_soft(batch, soft, fluids, scratch.soft, plan);
+    if (has_soft) add_soft(batch, soft, fluids, scratch.soft, plan, tasks);
     if (is_united) add_couplings(batch, scratch.couplings, plan);
     if (row_solver != nullptr) {
       solve_batch_as_rows(batch, *row_solver, arena, tasks);

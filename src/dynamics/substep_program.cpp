@@ -86,7 +86,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
     if (!first && !warm_start_with_forces) p.measured_bodies<warm_start_bodies>();
     if (first) p.measured_bodies<start_contact_change>();
     if (first) p.contacts<warm_start_contacts>();
-    if (first || p.is_solved_as_rows()) p.soft_rows<warm_start_soft_rows>();
+    if (first || p.is_solved_as_rows()) p.soft<warm_start_soft_rows>();
     if (first) p.measured_bodies<add_contact_change>();
     // Fields come after the warm start, because a stream acts on the true velocity.
     p.field_bodies<apply_field_forces>();
@@ -106,10 +106,10 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   if (!first) p.row_islands<solve_row_islands>();
   add_contacts(p);
   // Soft matter, with bodies as joints and contacts leave them.
-  if (p.begins_soft(half_step)) p.soft_rows<turn_soft_rows>();
-  if (p.begins_soft(half_step)) p.soft_members<begin_soft_members>();
-  if (p.begins_soft(half_step)) p.soft_rows<solve_soft_surfaces>();
-  if (p.begins_soft(half_step)) p.soft_rows<solve_soft_rows>();
+  if (p.begins_soft(half_step)) p.soft<turn_soft_rows>();
+  if (p.begins_soft(half_step)) p.soft<begin_soft_members>();
+  if (p.begins_soft(half_step)) p.soft<solve_soft_surfaces>();
+  if (p.begins_soft(half_step)) p.soft<solve_soft_rows>();
   if (first || last) p.resting_trees<solve_resting_trees>();
   if (first) p.resting_structures<solve_resting_structures_first>();
   if (last) p.resting_structures<solve_resting_structures_last>();
@@ -125,8 +125,8 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   if (has_joints) p.bodies<integrate_positions>();
   if (!has_joints) p.bodies<add_contact_change_and_integrate>();
   p.spinning_bodies<integrate_fast_spinning>();
-  if (p.begins_soft(half_step + 1)) p.soft_members<finish_soft_members>();
-  if (p.begins_soft(half_step + 1)) p.soft_rows<bound_soft_surfaces>();
+  if (p.begins_soft(half_step + 1)) p.soft<finish_soft_members>();
+  if (p.begins_soft(half_step + 1)) p.soft<bound_soft_surfaces>();
   // Joints are relaxed at the present poses, so that no velocity stays from the bias.
   p.stiffened_bodies<stiffen_bodies>();
   p.all_joints<prepare_other_joints>();
@@ -181,6 +181,7 @@ void run_substeps(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   add_preparation(program);
   for (int i = 0; i < half_steps; ++i) add_half_step(program, i, half_steps);
   add_completion(program);
+  if (batch.has_soft()) return run_program_in_parts(tasks, program.stages());
   run_program(tasks, program.stages());
 }
 

@@ -148,4 +148,16 @@ void run_program(TaskSystem& tasks, std::span<const Stage> stages) {
   for (std::size_t i = last; i < stages.size(); ++i) run_alone(stages[i], 0);
 }
 
+void run_program_in_parts(TaskSystem& tasks, std::span<const Stage> stages) {
+  const FloatMode mode;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    if (!stages[i].starts_work) continue;
+    run_program(tasks, stages.subspan(begin, i - begin));
+    run_alone(stages[i], 0);
+    begin = i + 1;
+  }
+  run_program(tasks, stages.subspan(begin));
+}
+
 }  // namespace gyre

@@ -23,10 +23,16 @@ struct Stage {
   // worker that handles the same data in each stage finds it in its cache, so shares cut where few data are shared are
   // faster than equal ones.
   const int* bounds = nullptr;
+  // True if the kernel starts work on the task system itself, for example loops of parallel.h. Only run_program_in_parts runs such stages.
+  bool starts_work = false;
 };
 
 // Each worker starts with its own share of a stage's blocks and then takes from the others' shares. With one worker
 // this is a plain loop, with one kernel call a stage. Nothing is allocated, and no late worker is waited for.
 void run_program(TaskSystem& tasks, std::span<const Stage> stages);
+
+// The same for a list with stages that start work. The calling thread runs each of these while no other worker is in the list, and the stages
+// between two of them are a program.
+void run_program_in_parts(TaskSystem& tasks, std::span<const Stage> stages);
 
 }  // namespace gyre

@@ -3,6 +3,7 @@
 #include "task/program.h"
 
 #include "base/memory/memory.h"
+#include "task/parallel.h"
 
 #include <gtest/gtest.h>
 
@@ -258,6 +259,49 @@ TEST(Program, ComputesInFloatMode) {
   }
   std::fesetround(FE_TONEAREST);
   EXPECT_EQ(wrong.load(), 0);
+}
+
+// Stages that start loops, between stages that all workers run.
+struct Mixed {
+  TaskSystem& tasks;
+  std::vector<int> counts;
+  std::atomic<int> inside{0};
+};
+void run_loop(void* context, int, int, int) {
+  Mixed& mixed = *static_cast<Mixed*>(context);
+  EXPECT_EQ(mixed.inside.load(), 0) << "no worker is in the list";
+  for_blocks(mixed.tasks, 100, 1, [&](int begin, int, int) { ++mixed.counts[std::size_t(begin)]; });
+}
+void run_shared(void* context, int begin, int end, int) {
+  Mixed& mixed = *static_cast<Mixed*>(context);
+  ++mixed.inside;
+  for (int i = begin; i < end; ++i) mixed.counts[std::size_t(i)] *= 3;
+  --mixed.inside;
+}
+
+TEST(Program, StagesMayStartWorkInAProgramInParts) {
+  const HostTasks host{.run =
+                           [](void*, int count, void (*task)(void*, int), void* context) {
+                             for (int i = count - 1; i >= 0; --i) task(context, i);
+                           },
+                       .worker_count = 8};
+  TaskSystem one(1), three(3), sixteen(16), hosted(host);
+  for (TaskSystem* tasks : {&one, &three, &sixteen, &hosted}) {
+    Mixed mixed{*tasks, std::vector<int>(100)};
+    std::vector<Stage> stages;
+    Stage loop{run_loop, &mixed, 1};
+    loop.starts_work = true;
+    for (int round = 0; round < 6; ++round) {
+      stages.push_back({run_shared, &mixed, 100, 2});
+      stages.push_back(loop);
+      stages.push_back(loop);
+      stages.push_back({run_shared, &mixed, 100});
+    }
+    run_program_in_parts(*tasks, stages);
+    int expected = 0;
+    for (int round = 0; round < 6; ++round) expected = 3 * (3 * expected + 2);
+    for (const int count : mixed.counts) ASSERT_EQ(count, expected) << tasks->worker_count() << " workers";
+  }
 }
 
 TEST(Program, DoesNotAllocate) {

@@ -87,7 +87,7 @@ void respond_to_steps(SoftSolve& s) {
       try_on_body(s, row, row.step);
     }
     respond(entry_of(s, m), work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena,
-            work.tasks);
+            *s.tasks);
     for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
       SoftRow& row = s.scratch->rows[k];
       if (row.carried < 0) continue;

@@ -4,7 +4,9 @@
 #include "dynamics/soft/soft_rounds.h"
 #include "math/rotation.h"
 #include "rigid/batch/solve_batch.h"
+#include "soft/solver/soft_pass.h"
 #include "soft/solver/vertex_limits.h"
+#include "task/parallel.h"
 
 #include <cmath>
 
@@ -346,28 +348,62 @@ void set_forces(SoftSolve& s, SoftEntry& entry, SoftWork& work, bool again) {
   for (int i = 0; i < p.count; ++i) kept.push_back({p.fx[i], p.fy[i], p.fz[i]});
 }
 
+// True if the loops over the vertices of a member are worth sharing: it has several blocks of vertices, and more than a worker's share of all
+// vertices. Ropes and visual members have no such loops.
+bool has_shared_loops(SoftSolve& s, std::uint32_t member, long all_vertices) {
+  const SoftEntry& entry = entry_of(s, member);
+  const long vertices = entry.body.particles.count;
+  return entry.kind != SoftKind::rope && entry.settings().integrator != SoftIntegrator::visual &&
+         vertices > kBlockSlices * kSliceRows && vertices * s.tasks->worker_count() > all_vertices;
+}
+
+// Calls step(member, tasks) for each member: first for the small ones, each of which one worker steps, and then for the large ones, each of which
+// all workers step.
+template <class Step>
+void step_members(SoftSolve& s, Step&& step) {
+  long vertices = 0;
+  for (std::uint32_t m = 0; m < s.members.size(); ++m) vertices += entry_of(s, m).body.particles.count;
+  for_blocks(*s.tasks, int(s.members.size()), 1, [&](int m, int, int) {
+    const std::uint32_t member = std::uint32_t(m);
+    if (!has_shared_loops(s, member, vertices)) step(member, work_of(s, member).serial);
+  });
+  for (std::uint32_t m = 0; m < s.members.size(); ++m)
+    if (has_shared_loops(s, m, vertices)) step(m, *s.tasks);
+}
+
+void begin_member(SoftSolve& s, std::uint32_t m, TaskSystem& tasks) {
+  SoftEntry& entry = entry_of(s, m);
+  SoftWork& work = work_of(s, m);
+  work.mark = work.arena.mark();
+  move_held(s, entry);
+  const bool implicit = is_implicit(entry.settings().integrator);
+  if (implicit && work.first_row != work.last_row) copy_motion(entry.body, work.before);
+  for (int pass = 0; pass < kGripPasses; ++pass) {
+    set_forces(s, entry, work, pass > 0);
+    add_rows(s, m);
+    add_forces_of_surfaces(s, m);
+    work.step =
+        begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m), work.first_row != work.last_row},
+                        *s.kernels, work.arena, tasks);
+    find_carried_steps(s, m);
+    if (!implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
+    work.arena.release(work.mark);
+    copy_motion(work.before, entry.body);
+  }
+}
+
+void finish_member(SoftSolve& s, std::uint32_t m, TaskSystem& tasks) {
+  SoftEntry& entry = entry_of(s, m);
+  SoftWork& work = work_of(s, m);
+  finish_soft_step(entry, work.step, *s.kernels, tasks);
+  if (!entry.limits.empty()) keep_limits(entry);
+  work.arena.release(work.mark);
+}
+
 }  // namespace
 
-void begin_soft_members(SoftSolve& s, int begin, int end) {
-  for (std::uint32_t m = std::uint32_t(begin); m < std::uint32_t(end); ++m) {
-    SoftEntry& entry = entry_of(s, m);
-    SoftWork& work = work_of(s, m);
-    work.mark = work.arena.mark();
-    move_held(s, entry);
-    const bool implicit = is_implicit(entry.settings().integrator);
-    if (implicit && work.first_row != work.last_row) copy_motion(entry.body, work.before);
-    for (int pass = 0; pass < kGripPasses; ++pass) {
-      set_forces(s, entry, work, pass > 0);
-      add_rows(s, m);
-      add_forces_of_surfaces(s, m);
-      work.step = begin_soft_step(entry, {s.h, s.w->settings.gravity, carried_by(s, m)}, *s.kernels,
-                                  work.arena, work.tasks);
-      find_carried_steps(s, m);
-      if (!implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
-      work.arena.release(work.mark);
-      copy_motion(work.before, entry.body);
-    }
-  }
+void begin_soft_members(SoftSolve& s, int, int) {
+  step_members(s, [&](std::uint32_t m, TaskSystem& tasks) { begin_member(s, m, tasks); });
 }
 
 void warm_start_soft_rows(SoftSolve& s, int, int) {
@@ -389,14 +425,8 @@ void solve_soft_rows(SoftSolve& s, int, int) {
   for (VelocityChange& pending : s.scratch->pending) pending = {};
 }
 
-void finish_soft_members(SoftSolve& s, int begin, int end) {
-  for (std::uint32_t m = std::uint32_t(begin); m < std::uint32_t(end); ++m) {
-    SoftEntry& entry = entry_of(s, m);
-    SoftWork& work = work_of(s, m);
-    finish_soft_step(entry, work.step, *s.kernels, work.tasks);
-    if (!entry.limits.empty()) keep_limits(entry);
-    work.arena.release(work.mark);
-  }
+void finish_soft_members(SoftSolve& s, int, int) {
+  step_members(s, [&](std::uint32_t m, TaskSystem& tasks) { finish_member(s, m, tasks); });
 }
 
 void keep_soft_rows(SoftSolve& s) {

@@ -64,7 +64,7 @@ struct SoftRow {
 // Memory of one body of soft matter, which lasts; its arena is used within a half-step.
 struct SoftWork {
   Arena arena;
-  TaskSystem tasks;  // serial
+  TaskSystem serial;  // of one worker, for a member that one worker steps
   Arena::Mark mark{};
   SoftStep step;
   SoftBody before;                            // what a sub-step that is solved anew begins with
@@ -103,6 +103,8 @@ struct SoftSolve {
   float h = 0.0f;                            // s, of a sub-step of soft matter
   int parts = 1;                             // half-steps of bodies in it
   float warm_scale = 0.0f;                   // of the impulses of the last step
+  // The workers of the world. Only the calling thread is in a stage, so the stage may start loops on them.
+  TaskSystem* tasks = nullptr;
   double time = 0.0;                         // s, when the step began
 };
 
@@ -114,7 +116,7 @@ void make_soft_rows(SoftSolve& s);
 // The momentum that vertices get by what they carry, at their present velocities. To be found again by whoever changes these.
 void find_carried_steps(SoftSolve& s, std::uint32_t member);
 
-// Stages. Members are independent of each other; the others have one block.
+// Stages of all soft matter. Each has one block and shares its loops among the workers.
 // Bodies have turned since they were given the impulses of the last half-step, which they get again: their moments follow. Without this a heavy body on a rope gains energy
 // from its swing about the end of the rope.
 void turn_soft_rows(SoftSolve& s, int begin, int end);

@@ -53,7 +53,7 @@ void give_owed(SoftSolve& s) {
     }
     const SoftIntegrator scheme = entry_at(s, member).settings().integrator;
   if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
-    respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, work.tasks);
+    respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, *s.tasks);
     add_change(entry, work.step, work.change.view(), 1.0f);
     find_carried_steps(s, member);
   });

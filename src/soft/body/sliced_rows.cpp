@@ -85,6 +85,17 @@ SlicedRows slice_rows(const NeighbourLists& lists, Array<std::int32_t>& place) {
   return rows;
 }
 
+int find_place(const SlicedRows& rows, std::uint32_t row, std::uint32_t column) {
+  if (rows.slots.empty()) return -1;
+  const int slice = int(row) / kSliceRows, lane = int(row) % kSliceRows;
+  for (int slot = rows.slot_begin[slice]; slot < rows.slot_begin[slice + 1]; ++slot) {
+    const RowSlot& one = rows.slots[slot];
+    const std::int32_t read = one.columns < 0 ? std::int32_t(row) + one.offset : rows.columns[one.columns + lane];
+    if (read == std::int32_t(column)) return slot * kSliceRows + lane;
+  }
+  return -1;
+}
+
 void merge_entries(Array<MatrixEntry>& entries) {
   Array<MatrixEntry> scratch;
   scratch.resize(entries.size());

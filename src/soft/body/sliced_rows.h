@@ -40,6 +40,9 @@ struct NeighbourLists {
 // The pattern; `place` becomes the place of each neighbour in the order of the lists.
 SlicedRows slice_rows(const NeighbourLists& lists, Array<std::int32_t>& place);
 
+// The place in a row where a product reads this column; -1 if there is none. The column is another than the row.
+int find_place(const SlicedRows& rows, std::uint32_t row, std::uint32_t column);
+
 // One number of a matrix.
 struct MatrixEntry {
   std::uint32_t row = 0;

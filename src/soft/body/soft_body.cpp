@@ -36,6 +36,7 @@ void set_springs(SoftBody& body, std::span<const Spring> springs) {
   rows.rows = slice_rows(list_neighbours(stiffness, body.particles.count), place);
   rows.rest_length.assign(rows.rows.places(), 0.0f);
   rows.stiffness.assign(rows.rows.places(), 0.0f);
+  rows.bend.assign(rows.rows.places(), 0.0f);
   for (std::size_t k = 0; k < place.size(); ++k) {
     rows.stiffness[place[k]] = float(stiffness[k].value);
     rows.rest_length[place[k]] =
@@ -45,6 +46,14 @@ void set_springs(SoftBody& body, std::span<const Spring> springs) {
 
 void set_bending(SoftBody& body, Array<MatrixEntry>& entries) {
   merge_entries(entries);
+  // A product with the matrix reads each neighbour once where springs and bending share a place.
+  std::size_t kept = 0;
+  for (const MatrixEntry& entry : entries) {
+    const int place = find_place(body.springs.rows, entry.row, entry.column);
+    if (place >= 0) body.springs.bend[place] = float(-entry.value);
+    if (place < 0) entries[kept++] = entry;
+  }
+  entries.resize(kept);
   Array<std::int32_t> place;
   BendRows& rows = body.bend;
   rows.rows = slice_rows(list_neighbours(entries, body.particles.count), place);

@@ -61,9 +61,10 @@ struct SpringRows {
   SlicedRows rows;
   Array<float> rest_length;  // by place
   Array<float> stiffness;
+  Array<float> bend;  // N/m: B_ij of the bending energy where there is a place for a spring
 };
 
-// B_ij of the bending energy, N/m.
+// B_ij of the bending energy, N/m, of all other pairs.
 struct BendRows {
   SlicedRows rows;
   Array<float> stiffness;  // by place
@@ -108,7 +109,7 @@ void add_quadratic(Array<MatrixEntry>& entries, std::span<const std::uint32_t> p
                    std::span<const double> signs, double weight);
 
 void set_springs(SoftBody& body, std::span<const Spring> springs);
-// `entries` is the matrix of the energy, with its diagonal or without.
+// `entries` is the matrix of the energy, with its diagonal or without. Springs are set before.
 void set_bending(SoftBody& body, Array<MatrixEntry>& entries);
 void hold(SoftBody& body, int particle, DVec3 place);
 void let_go(SoftBody& body, int particle);

@@ -110,6 +110,9 @@ double elastic_energy(const SoftBody& body) {
     twice +=
         0.5 * double(body.springs.stiffness[place]) * square(span - double(body.springs.rest_length[place]));
   });
+  each_pair(body.particles, body.springs.rows, [&](int place, double span) {
+    twice += 0.5 * double(body.springs.bend[place]) * square(span);
+  });
   each_pair(body.particles, body.bend.rows, [&](int place, double span) {
     twice += 0.5 * double(body.bend.stiffness[place]) * square(span);
   });

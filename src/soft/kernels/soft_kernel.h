@@ -41,11 +41,14 @@ GYRE_INLINE void add_springs(const SoftPass& pass, int slice, int row, const Nei
     const Wide<W> span = length(edge);
     const Wide<W> inverse_span = keep(span > 0.0f, 1.0f / span);
     const Vec3W<W> direction = inverse_span * edge;
+    const Wide<W> bend = Wide<W>::load(pass.spring_bend + slot * kSliceRows + lane);
     Wide<W> tension = stiffness * (span - rest);
+    sum.force += bend * edge;
     if constexpr (!WithBlocks) {
       if (pass.damping > 0.0f) {
         const Vec3W<W> apart = lanes.load(pass.velocity) - load_rows<W>(pass.velocity, row);
         tension += Wide<W>(pass.damping) * stiffness * dot(direction, apart);
+        sum.force += Wide<W>(pass.damping) * bend * apart;
       }
     }
     sum.force += tension * direction;
@@ -53,13 +56,14 @@ GYRE_INLINE void add_springs(const SoftPass& pass, int slice, int row, const Nei
       const Wide<W> across = Wide<W>(pass.geometric_scale) * max(tension, Wide<W>(0.0f)) * inverse_span;
       const Wide<W> along = max(pass.material_scale * stiffness - across, Wide<W>(0.0f));
       const Vec3W<W> n = sqrt(along) * direction;
+      const Wide<W> even = across + Wide<W>(pass.material_scale) * bend;
       float* const block = pass.spring_blocks + slot * 4 * kSliceRows + lane;
       n.x.store(block);
       n.y.store(block + kSliceRows);
       n.z.store(block + 2 * kSliceRows);
-      across.store(block + 3 * kSliceRows);
-      sum.diagonal = sum.diagonal + Sym3W<W>{across + n.x * n.x, across + n.y * n.y, across + n.z * n.z,
-                                             n.x * n.y,          n.x * n.z,          n.y * n.z};
+      even.store(block + 3 * kSliceRows);
+      sum.diagonal = sum.diagonal + Sym3W<W>{even + n.x * n.x, even + n.y * n.y, even + n.z * n.z,
+                                             n.x * n.y,        n.x * n.z,        n.y * n.z};
     }
   }
 }

@@ -29,12 +29,14 @@ struct RowPattern {
 // The kernels of one sub-step of one body read and write these arrays.
 struct SoftPass {
   int slices = 0;
-  // Springs: B = a 1 + n n^T, four numbers a place, those of 16 places one after the other (n.x of all, n.y, n.z, a).
+  // Springs, and bending where it has the same places: B = a 1 + n n^T, four numbers a place, those of 16 places one after the other (n.x of
+  // all, n.y, n.z, a).
   RowPattern springs;
   const float* rest_length = nullptr;
   const float* stiffness = nullptr;
+  const float* spring_bend = nullptr;
   float* spring_blocks = nullptr;
-  // Bending: B = c 1.
+  // Bending of other pairs: B = c 1.
   RowPattern bend;
   const float* bend_stiffness = nullptr;
   // Continua: B of nine numbers a place, column after column. Their elements add to `corner_force`, four numbers a particle, and

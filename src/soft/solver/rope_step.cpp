@@ -1,5 +1,6 @@
 #include "soft/solver/rope_step.h"
 
+#include "math/wide_double.h"
 #include "soft/solver/soft_pass.h"
 
 #include <cmath>
@@ -8,13 +9,21 @@ namespace gyre {
 
 namespace {
 
+using Pair = WideDouble<2>;
+
 constexpr int kUnknowns = 4;  // of a particle: its velocity, and t of the segment before it
 
-// A symmetric band matrix by columns, the diagonal first.
+// Half widths of the matrix. Bending couples a velocity with the same component two particles away, and elimination adds nothing beyond that.
+constexpr int kBentWidth = 2 * kUnknowns, kPlainWidth = 2 * kUnknowns - 1;
+
+// A symmetric band matrix by columns, the diagonal first. After the last column there is room for `Width` more, which are zero, so that all
+// loops over a column have the same length.
 template <int Width>
 struct Band {
   std::span<double> entries;
   int size;
+
+  static std::size_t room(int size) { return std::size_t(size + Width) * (Width + 1); }
 
   double* column(int k) { return entries.data() + std::size_t(k) * (Width + 1); }
   void add(int row, int col, double value) {
@@ -32,26 +41,44 @@ struct Band {
     for (int k = 0; k < size; ++k) {
       double* const own = column(k);
       const double inverse = own[0] != 0.0 ? 1.0 / own[0] : 0.0;
-      const int reach = size - 1 - k < Width ? size - 1 - k : Width;
-      for (int r = 1; r <= reach; ++r) {
-        const double share = own[r] * inverse;
-        if (share == 0.0) continue;
-        double* const other = column(k + r);
-        for (int t = r; t <= Width; ++t) other[t - r] -= share * own[t];
-      }
-      for (int r = 1; r <= Width; ++r) own[r] *= inverse;
+      double entry[Width + 2];
+      GYRE_UNROLL
+      for (int r = 1; r <= Width; ++r) entry[r] = own[r];
+      entry[Width + 1] = 0.0;
+      Pair pair[Width + 1];
+      GYRE_UNROLL
+      for (int r = 1; r <= Width; ++r) pair[r] = Pair::of(Pair::Double{entry[r], entry[r + 1]});
       own[0] = inverse;
+      GYRE_UNROLL
+      for (int r = 1; r <= Width; ++r) {
+        const double share = entry[r] * inverse;
+        own[r] = share;
+        double* const other = own + r * (Width + 1);
+        const Pair both(share);
+        // Two at a time; the last one may be the entry that is zero.
+        GYRE_UNROLL
+        for (int t = r; t <= Width; t += 2)
+          (Pair::load_loose(other + t - r) - both * pair[t]).store_loose(other + t - r);
+      }
     }
   }
+  // `x` has room for `Width` more numbers.
   void solve(double* x) {
     for (int k = 0; k < size; ++k) {
-      const int reach = size - 1 - k < Width ? size - 1 - k : Width;
-      for (int r = 1; r <= reach; ++r) x[k + r] -= column(k)[r] * x[k];
-      x[k] *= column(k)[0];
+      const double* const own = column(k);
+      const double pivot = x[k];
+      GYRE_UNROLL
+      for (int r = 1; r <= Width; ++r) x[k + r] -= own[r] * pivot;
+      x[k] = pivot * own[0];
     }
-    for (int k = size - 2; k >= 0; --k) {
-      const int reach = size - 1 - k < Width ? size - 1 - k : Width;
-      for (int r = 1; r <= reach; ++r) x[k] -= column(k)[r] * x[k + r];
+    for (int r = 0; r < Width; ++r) x[size + r] = 0.0;
+    // From the far end, so that only the last term waits for the unknown before.
+    for (int k = size - 1; k >= 0; --k) {
+      const double* const own = column(k);
+      double sum = x[k];
+      GYRE_UNROLL
+      for (int r = Width; r >= 1; --r) sum -= own[r] * x[k + r];
+      x[k] = sum;
     }
   }
 };
@@ -79,7 +106,7 @@ class RopeSolver {
   }
 
   RopeReport run() {
-    for (int i = 0; i < particles_.count; ++i) at(speed_, i) = {};
+    for (int i = 0; i < particles_.count; ++i) at(speed_, i) = DVec3(particles_.velocity(i));
     for (const HeldParticle& one : body_.held) {
       at(speed_, one.particle) = (one.place - particles_.place(one.particle)) / h_;
     }
@@ -296,23 +323,27 @@ class RopeSolver {
 // Calls fn with the band of a step.
 template <class Fn>
 void with_band(const RopeStep& step, Fn&& fn) {
-  if (step.has_bending) fn(Band<10>{step.band, int(step.right.size())});
-  if (!step.has_bending) fn(Band<7>{step.band, int(step.right.size())});
+  const int size = kUnknowns * int(step.place.size());
+  if (step.has_bending) fn(Band<kBentWidth>{step.band, size});
+  if (!step.has_bending) fn(Band<kPlainWidth>{step.band, size});
 }
 
 // The entries of the inverse that lie in the band, in its form: column by column from the last, each from those behind it.
 template <int Width>
 void invert_in_band(Band<Width> factor, Band<Width> inverse) {
-  const auto entry = [&](int row, int col) {
-    return row < col ? inverse.column(row)[col - row] : inverse.column(col)[row - col];
-  };
+  for (double& entry : inverse.entries) entry = 0.0;
   for (int k = factor.size - 1; k >= 0; --k) {
     const double* const own = factor.column(k);
-    const int reach = factor.size - 1 - k < Width ? factor.size - 1 - k : Width;
-    for (int r = reach; r >= 0; --r) {
+    double* const to = inverse.column(k);
+    GYRE_UNROLL
+    for (int r = Width; r >= 0; --r) {
       double sum = r == 0 ? own[0] : 0.0;
-      for (int t = 1; t <= reach; ++t) sum -= own[t] * entry(k + t, k + r);
-      inverse.column(k)[r] = sum;
+      GYRE_UNROLL
+      for (int t = Width; t >= 1; --t) {
+        const int low = t < r ? t : r, high = t < r ? r : t;
+        sum -= own[t] * to[low * (Width + 1) + high - low];
+      }
+      to[r] = sum;
     }
   }
 }
@@ -324,12 +355,13 @@ RopeStep begin_rope(SoftBody& body, const RopeSettings& settings, Arena& arena) 
   const std::size_t count = std::size_t(body.particles.count);
   step.h = step.move = double(settings.step);
   step.has_bending = body.chain.bend_stiffness > 0.0;
-  step.band = arena.make<double>(kUnknowns * count * (step.has_bending ? 11 : 8));
-  step.right = arena.make<double>(kUnknowns * count);
+  const int size = kUnknowns * body.particles.count;
+  step.band = arena.make<double>(step.has_bending ? Band<kBentWidth>::room(size) : Band<kPlainWidth>::room(size));
+  step.right = arena.make<double>(std::size_t(size + kBentWidth));
   step.place = arena.make<DVec3>(count);
   step.velocity = arena.make<DVec3>(count);
-  step.report = step.has_bending ? RopeSolver<10>(body, settings, step).run()
-                                 : RopeSolver<7>(body, settings, step).run();
+  step.report = step.has_bending ? RopeSolver<kBentWidth>(body, settings, step).run()
+                                 : RopeSolver<kPlainWidth>(body, settings, step).run();
   return step;
 }
 
@@ -379,9 +411,9 @@ void keep_lengths(SoftBody& body, const RopeSettings& settings, RopeStep& step, 
   if (body.chain.stretch_stiffness > 0.0) return;
   const ArenaScope scope(arena);
   RopeStep own = step;
-  own.band = arena.make<double>(kUnknowns * step.place.size() * 8);
+  own.band = arena.make<double>(Band<kPlainWidth>::room(kUnknowns * body.particles.count));
   own.right = arena.make<double>(step.right.size());
-  RopeSolver<7>(body, settings, own).keep_lengths();
+  RopeSolver<kPlainWidth>(body, settings, own).keep_lengths();
 }
 
 void finish_rope(SoftBody& body, const RopeStep& step) {

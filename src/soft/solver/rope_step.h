@@ -7,7 +7,7 @@
 //   J d - t / (k h (h + beta))                         = (-C(y) - beta J u) / (h + beta),    J d = n (d_b - d_a),  C = l - l0
 //
 // (1 / k = 0 for segments that keep their length.) The unknowns of a particle and of the segment before it stand together, so the matrix is
-// a band of half width 10, 7 without bending, and is factored as L D L^T: it is quasi-definite, so every pivot in this order exists.
+// a band of half width 8, 7 without bending, and is factored as L D L^T: it is quasi-definite, so every pivot in this order exists.
 // Each iteration of Newton's begins where the last one ended; the second is made only if segments have turned enough to show.
 //
 // Sources: L. H. Thomas, "Elliptic Problems in Linear Difference Equations over a Network", 1949; R. J. Vanderbei, "Symmetric Quasidefinite

@@ -23,6 +23,7 @@ SoftPass begin_pass(SoftBody& body, Arena& arena) {
   pass.springs = pattern_of(body.springs.rows);
   pass.rest_length = body.springs.rest_length.data();
   pass.stiffness = body.springs.stiffness.data();
+  pass.spring_bend = body.springs.bend.data();
   pass.bend = pattern_of(body.bend.rows);
   pass.bend_stiffness = body.bend.stiffness.data();
   pass.x = particles.x.data(), pass.y = particles.y.data(), pass.z = particles.z.data();

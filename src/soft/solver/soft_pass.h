@@ -9,7 +9,7 @@
 namespace gyre {
 
 // Slices that one worker takes at a time, and whose sums are added up by themselves.
-constexpr int kBlockSlices = 64;
+constexpr int kBlockSlices = 16;
 
 VectorRows make_vectors(Arena& arena, std::size_t rows);
 // With the body's own columns and patterns, and memory for forces; the rest is the caller's to set.

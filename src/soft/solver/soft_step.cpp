@@ -112,7 +112,7 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
   if (integrator == SoftIntegrator::sdirk2) begin_two_stages(entry, settings, step, kernels, arena, tasks);
   if (integrator == SoftIntegrator::implicit)
     begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
-  if (step.method == SoftMethod::rope && (!entry.contacts.empty() || !entry.attachments.empty()))
+  if (step.method == SoftMethod::rope && settings.asks_for_inverse_masses)
     find_rope_inverse_masses(step.rope, arena);
   return step;
 }
