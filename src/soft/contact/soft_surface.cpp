@@ -92,24 +92,32 @@ Aabb vertex_box(DVec3 p, double pad) {
   return {{low(p.x), low(p.y), low(p.z)}, {high(p.x), high(p.y), high(p.z)}};
 }
 
-// Fits the boxes of the tree to those of the triangles, at the ends of the moves if told so; returns the box of all.
-Aabb fit_nodes(const SoftSurface& surface, std::span<const SweptBox> triangles, bool ends,
-               std::span<StaticNode> nodes, Arena& arena) {
+void put_child(StaticNode& node, int lane, std::uint32_t child, const float* low, const float* high) {
+  node.child[lane] = child;
+  for (int axis = 0; axis < 3; ++axis) {
+    node.low[axis][lane] = low[axis];
+    node.high[axis][lane] = high[axis];
+  }
+}
+
+// Fits the boxes of the tree to those of the triangles, at both ends of the moves; returns the boxes of all.
+SweptBox fit_nodes(const SoftSurface& surface, std::span<const SweptBox> triangles,
+                   std::span<StaticNode> nodes, std::span<StaticNode> end_nodes, Arena& arena) {
+  SweptBox none;
+  for (int axis = 0; axis < 4; ++axis)
+    none.low[axis] = none.high[axis] = none.end_low[axis] = none.end_high[axis] = kNoFloat;
+  const std::span<SweptBox> whole = arena.make<SweptBox>(nodes.size());
   // The children of a node have higher numbers.
-  const Aabb none{{kNoFloat, kNoFloat, kNoFloat}, {kNoFloat, kNoFloat, kNoFloat}};
-  const std::span<Aabb> whole = arena.make<Aabb>(nodes.size());
   for (std::size_t n = nodes.size(); n-- > 0;) {
     const StaticNode& from = surface.tree.nodes[n];
-    StaticNode& node = nodes[n];
     bool any = false;
     for (int lane = 0; lane < StaticNode::kWidth; ++lane) {
       const std::uint32_t child = from.child[lane];
-      Aabb box = none;
+      SweptBox box = none;
       if (child != StaticNode::kNoChild && is_leaf(child)) {
         const std::uint32_t first = leaf_first(child);
-        SweptBox swept = triangles[first];
-        for (std::uint32_t i = first + 1; i < first + leaf_count(child); ++i) swept = merge(swept, triangles[i]);
-        box = ends ? end_box(swept) : start_box(swept);
+        box = triangles[first];
+        for (std::uint32_t i = first + 1; i < first + leaf_count(child); ++i) box = merge(box, triangles[i]);
       } else if (child != StaticNode::kNoChild) {
         box = whole[child];
       }
@@ -117,11 +125,8 @@ Aabb fit_nodes(const SoftSurface& surface, std::span<const SweptBox> triangles, 
         whole[n] = any ? merge(whole[n], box) : box;
         any = true;
       }
-      node.child[lane] = child;
-      for (int axis = 0; axis < 3; ++axis) {
-        node.low[axis][lane] = box.low[axis];
-        node.high[axis][lane] = box.high[axis];
-      }
+      put_child(nodes[n], lane, child, box.low, box.high);
+      if (!end_nodes.empty()) put_child(end_nodes[n], lane, child, box.end_low, box.end_high);
     }
   }
   return nodes.empty() ? none : whole[0];
@@ -179,14 +184,14 @@ SurfaceBoxes fit_boxes(const PlacedSurface& placed, std::span<const DVec3> posit
   }
   for (std::size_t i = 0; i < out.triangles.size(); ++i) {
     const std::uint32_t* const corner = surface.triangles[i].corner;
-    out.triangles[i] = merge(merge(out.vertices[corner[0]], out.vertices[corner[1]]), out.vertices[corner[2]]);
+    out.triangles[i] =
+        merge(merge(out.vertices[corner[0]], out.vertices[corner[1]]), out.vertices[corner[2]]);
   }
   out.nodes = arena.make<StaticNode>(surface.tree.nodes.size());
-  out.box = fit_nodes(surface, out.triangles, false, out.nodes, arena);
-  out.end_nodes = out.nodes, out.end_box = out.box;
-  if (moves.empty()) return out;
-  out.end_nodes = arena.make<StaticNode>(surface.tree.nodes.size());
-  out.end_box = fit_nodes(surface, out.triangles, true, out.end_nodes, arena);
+  out.end_nodes = moves.empty() ? out.nodes : arena.make<StaticNode>(surface.tree.nodes.size());
+  const SweptBox all = fit_nodes(surface, out.triangles, out.nodes,
+                                 moves.empty() ? std::span<StaticNode>() : out.end_nodes, arena);
+  out.box = start_box(all), out.end_box = end_box(all);
   return out;
 }
 

@@ -1,10 +1,9 @@
 #include "soft/contact/surface_candidates.h"
 
 #include "base/container/sort.h"
+#include "task/parallel.h"
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace gyre {
 
@@ -12,53 +11,61 @@ namespace {
 
 // Sub-steps that a track is straight for: those of a step by default.
 constexpr int kTrackSteps = 4;
+constexpr float kMoreOfReach =
+    0.3f;  // by which a vertex that has left its track reaches farther about the next one, at most
 
-// Collects the pairs of features whose boxes overlap and that have a new vertex.
+constexpr std::size_t kBlockNodes = 16;  // of a tree, whose leaves one worker takes at a time
+
+// What the blocks of a search share.
+struct SearchInput {
+  std::span<const SurfaceBoxes> boxes;
+  std::span<const FeatureBase> bases;
+  std::span<const std::uint8_t> is_new;            // by vertex
+  std::span<const std::span<std::uint8_t>> marks;  // by surface and triangle: 1 if it has a new vertex
+  std::span<const SweptBox> edges;                 // by number over all surfaces
+  std::span<const FilterVertex> vertices;
+};
+
+// Collects the pairs of features within reach that have a new vertex.
 class CandidateSearch {
  public:
-  CandidateSearch(std::span<const SurfaceBoxes> boxes, std::span<const std::uint8_t> is_new, std::size_t edges,
-                  std::span<const FeatureBase> bases, Array<SurfaceCandidate>& corners_out,
-                  Array<SurfaceCandidate>& edges_out, Arena& arena)
-      : boxes_(boxes),
-        is_new_(is_new),
-        bases_(bases),
-        corners_out_(corners_out),
-        edges_out_(edges_out),
-        edges_(arena.make<SweptBox>(edges)),
-        marks_(arena.make<std::span<std::uint8_t>>(boxes.size())) {
-    std::size_t next = 0;
-    for (std::size_t s = 0; s < boxes.size(); ++s) {
-      const SurfaceBoxes& one = boxes[s];
-      for (const SurfaceEdge& edge : one.surface->edges) {
-        edges_[next++] = merge(one.vertices[edge.a], one.vertices[edge.b]);
-      }
-      marks_[s] = arena.make<std::uint8_t>(one.surface->triangles.size());
-      for (std::size_t i = 0; i < marks_[s].size(); ++i) {
-        const std::uint32_t* const corner = one.surface->triangles[i].corner;
-        marks_[s][i] = is_new[one.first + corner[0]] | is_new[one.first + corner[1]] | is_new[one.first + corner[2]];
-      }
-    }
-  }
+  CandidateSearch(const SearchInput& input, FoundCandidates& out)
+      : boxes_(input.boxes),
+        bases_(input.bases),
+        is_new_(input.is_new),
+        marks_(input.marks),
+        edges_(input.edges),
+        vertices_(input.vertices),
+        out_(out) {}
 
-  void search(std::uint32_t a, std::uint32_t b) {
-    if (a == b && !boxes_[a].surface->self_collision) return;
-    search_marked(a, b, false);
-    if (a != b) search_marked(b, a, true);
-  }
-
- private:
-  void search_marked(std::uint32_t a, std::uint32_t b, bool rest) {
+  void search(const SearchBlock& block) {
+    const std::size_t corners = out_.corners.size(), edges = out_.edges.size();
+    const std::uint32_t a = block.a, b = block.b;
     for_each_marked_pair(
         boxes_[a], [&](std::uint32_t i) { return marks_[a][i] != 0; }, boxes_[b],
-        [&](std::uint32_t k) { return marks_[b][k] != 0; }, rest, [&](std::uint32_t i, std::uint32_t k) {
+        [&](std::uint32_t k) { return marks_[b][k] != 0; }, block.rest, block.begin, block.end,
+        [&](std::uint32_t i, std::uint32_t k) {
           add_corners(a, i, b, k);
           add_corners(b, k, a, i);
           add_edges(a, i, b, k);
         });
+    const FeatureFilters& filters = select_feature_filters();
+    filter(out_.corners, corners, filters.corners);
+    filter(out_.edges, edges, filters.edges);
   }
+
+ private:
   void add(Array<SurfaceCandidate>& to, const SurfaceCandidate& one) {
     const std::uint32_t* const v = one.vertex;
     if ((is_new_[v[0]] | is_new_[v[1]] | is_new_[v[2]] | is_new_[v[3]]) != 0) to.push_back(one);
+  }
+  void filter(Array<SurfaceCandidate>& pairs, std::size_t first, FeatureFilter keeps) {
+    const std::size_t count = pairs.size() - first;
+    out_.kept.resize_uninitialized(count + 8);
+    const std::size_t left =
+        std::size_t(keeps(pairs.data() + first, int(count), vertices_.data(), out_.kept.data()));
+    for (std::size_t i = 0; i < left; ++i) pairs[first + i] = pairs[first + out_.kept[i]];
+    pairs.resize_uninitialized(first + left);
   }
 
   // Vertices that triangle i owns against triangle k.
@@ -69,11 +76,9 @@ class CandidateSearch {
     const std::uint32_t* const corner = b.surface->triangles[k].corner;
     for (unsigned c = 0; c < 3; ++c) {
       const std::uint32_t v = from.corner[c];
-      if ((from.owned_corners >> c & 1u) == 0 ||
-          !may_meet(a.vertices[v], b.triangles[k]))
-        continue;
+      if ((from.owned_corners >> c & 1u) == 0 || !may_meet(a.vertices[v], b.triangles[k])) continue;
       if (s == t && (v == corner[0] || v == corner[1] || v == corner[2])) continue;
-      add(corners_out_, {{a.first + v, b.first + corner[0], b.first + corner[1], b.first + corner[2]},
+      add(out_.corners, {{a.first + v, b.first + corner[0], b.first + corner[1], b.first + corner[2]},
                          a.first + v,
                          bases_[t].triangle + k,
                          s,
@@ -98,60 +103,56 @@ class CandidateSearch {
                             second = bases_[t].edge + std::uint32_t(other);
         const std::uint32_t p[2] = {a.first + e.a, a.first + e.b}, q[2] = {b.first + f.a, b.first + f.b};
         if (first < second)
-          add(edges_out_, {{p[0], p[1], q[0], q[1]}, first, second, s, t});
+          add(out_.edges, {{p[0], p[1], q[0], q[1]}, first, second, s, t});
         else
-          add(edges_out_, {{q[0], q[1], p[0], p[1]}, second, first, t, s});
+          add(out_.edges, {{q[0], q[1], p[0], p[1]}, second, first, t, s});
       }
     }
   }
 
   std::span<const SurfaceBoxes> boxes_;
-  std::span<const std::uint8_t> is_new_;
   std::span<const FeatureBase> bases_;
-  Array<SurfaceCandidate>&corners_out_, &edges_out_;
-  std::span<SweptBox> edges_;                     // by number over all surfaces
-  std::span<std::span<std::uint8_t>> marks_;  // by surface and triangle: 1 if it has a new vertex
+  std::span<const std::uint8_t> is_new_;
+  std::span<const std::span<std::uint8_t>> marks_;
+  std::span<const SweptBox> edges_;
+  std::span<const FilterVertex> vertices_;
+  FoundCandidates& out_;
 };
 
-// Keeps those that the filter keeps, and sorts them by their numbers.
-void filter_and_sort(Array<SurfaceCandidate>& pairs, std::span<const FilterVertex> vertices,
-                     FeatureFilter filter, Arena& arena) {
+std::uint64_t key_of(const SurfaceCandidate& one) { return std::uint64_t(one.a) << 32 | one.b; }
+
+// Replaces the pairs that have a new vertex by those that the workers have found.
+void replace(Array<SurfaceCandidate>& pairs, std::span<const std::uint8_t> is_new,
+             std::span<const FoundCandidates> found, Array<SurfaceCandidate> FoundCandidates::*list,
+             Arena& arena) {
   const ArenaScope scope(arena);
-  const std::span<std::uint32_t> kept = arena.make<std::uint32_t>(pairs.size() + 8);
-  const std::size_t count =
-      std::size_t(filter(pairs.data(), int(pairs.size()), vertices.data(), kept.data()));
-  const std::span<SurfaceCandidate> copy = arena.make<SurfaceCandidate>(count);
+  std::size_t count = 0;
+  for (const FoundCandidates& one : found) count += (one.*list).size();
+  const std::span<const SurfaceCandidate*> at = arena.make<const SurfaceCandidate*>(count);
   const std::span<std::uint64_t> keys = arena.make<std::uint64_t>(count),
                                  more = arena.make<std::uint64_t>(count);
   const std::span<std::uint32_t> order = arena.make<std::uint32_t>(count),
                                  other = arena.make<std::uint32_t>(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    copy[i] = pairs[kept[i]];
-    keys[i] = std::uint64_t(copy[i].a) << 32 | copy[i].b;
-    order[i] = std::uint32_t(i);
+  std::size_t next = 0;
+  for (const FoundCandidates& one : found) {
+    for (const SurfaceCandidate& pair : one.*list) {
+      at[next] = &pair, keys[next] = key_of(pair), order[next] = std::uint32_t(next);
+      ++next;
+    }
   }
   radix_sort_pairs(keys, order, more, other);
-  pairs.resize_uninitialized(count);
-  for (std::size_t i = 0; i < count; ++i) pairs[i] = copy[order[i]];
-}
-
-std::uint64_t key_of(const SurfaceCandidate& one) { return std::uint64_t(one.a) << 32 | one.b; }
-
-// Replaces the pairs that have a new vertex.
-void replace(Array<SurfaceCandidate>& pairs, std::span<const std::uint8_t> is_new,
-             std::span<const SurfaceCandidate> found, Arena& arena) {
-  const ArenaScope scope(arena);
   const std::span<SurfaceCandidate> before = arena.make<SurfaceCandidate>(pairs.size());
   for (std::size_t i = 0; i < before.size(); ++i) before[i] = pairs[i];
   pairs.clear();
-  std::size_t next = 0;
+  next = 0;
   for (const SurfaceCandidate& one : before) {
     const std::uint32_t* const v = one.vertex;
     if ((is_new[v[0]] | is_new[v[1]] | is_new[v[2]] | is_new[v[3]]) != 0) continue;
-    while (next < found.size() && key_of(found[next]) < key_of(one)) pairs.push_back(found[next++]);
+    for (const std::uint64_t key = key_of(one); next < count && keys[next] < key; ++next)
+      pairs.push_back(*at[order[next]]);
     pairs.push_back(one);
   }
-  while (next < found.size()) pairs.push_back(found[next++]);
+  for (; next < count; ++next) pairs.push_back(*at[order[next]]);
 }
 
 bool are_same(std::span<const PlacedSurface> a, std::span<const PlacedSurface> b) {
@@ -207,10 +208,57 @@ std::size_t renew_tracks(std::span<const PlacedSurface> surfaces, std::span<cons
     if (is_new[v] == 0) continue;
     candidates.way[v] = moves[v] - (mean_then - mean);
     candidates.start[v] = positions[v] - mean - double(candidates.time) * candidates.way[v];
-    candidates.reach[v] = ahead[v] + (candidates.reach[v] < 0.0f ? 0.0f : min(left[v], 0.3f * ahead[v]));
+    // A vertex that has left a track may leave the next one as far.
+    const bool first = candidates.reach[v] < 0.0f;
+    candidates.reach[v] = ahead[v] + (first ? 0.0f : min(left[v], kMoreOfReach * ahead[v]));
     ++renewed;
   }
   return renewed;
+}
+
+// The search, by all workers: what each has found is in candidates.found, in no order.
+void search(std::span<const PlacedSurface> surfaces, std::span<const DVec3> now, std::span<const DVec3> ways,
+            std::span<const std::uint8_t> is_new, Arena& arena, TaskSystem& tasks,
+            SurfaceCandidates& candidates) {
+  const DVec3 origin = now[surfaces[0].first];
+  const std::span<SurfaceBoxes> boxes = arena.make<SurfaceBoxes>(surfaces.size());
+  const std::span<std::span<std::uint8_t>> marks = arena.make<std::span<std::uint8_t>>(surfaces.size());
+  std::size_t count = 0, next = 0;
+  for (const PlacedSurface& one : surfaces) count += one.surface->edges.size();
+  const std::span<SweptBox> edges = arena.make<SweptBox>(count);
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    boxes[s] = fit_boxes(surfaces[s], now, candidates.reach, origin, arena, ways);
+    const SoftSurface& surface = *surfaces[s].surface;
+    for (const SurfaceEdge& edge : surface.edges)
+      edges[next++] = merge(boxes[s].vertices[edge.a], boxes[s].vertices[edge.b]);
+    marks[s] = arena.make<std::uint8_t>(surface.triangles.size());
+    for (std::size_t i = 0; i < marks[s].size(); ++i) {
+      const std::uint32_t first = surfaces[s].first, *const v = surface.triangles[i].corner;
+      marks[s][i] = is_new[first + v[0]] | is_new[first + v[1]] | is_new[first + v[2]];
+    }
+  }
+  const std::span<FilterVertex> vertices = arena.make<FilterVertex>(now.size());
+  fill_filter(now, ways, candidates.reach, origin, vertices);
+
+  Array<SearchBlock>& blocks = candidates.blocks;
+  blocks.clear();
+  const auto add_blocks = [&](std::uint32_t a, std::uint32_t b, bool rest) {
+    for (std::size_t begin = 0; begin < boxes[a].nodes.size(); begin += kBlockNodes)
+      blocks.push_back({a, b, begin, min(begin + kBlockNodes, boxes[a].nodes.size()), rest});
+  };
+  for (std::uint32_t a = 0; a < std::uint32_t(boxes.size()); ++a) {
+    if (surfaces[a].surface->self_collision) add_blocks(a, a, false);
+    for (std::uint32_t b = a + 1; b < std::uint32_t(boxes.size()); ++b) {
+      if (may_meet(boxes[a], boxes[b])) add_blocks(a, b, false), add_blocks(b, a, true);
+    }
+  }
+  candidates.found.resize(std::size_t(tasks.worker_count()));
+  for (FoundCandidates& one : candidates.found) one.corners.clear(), one.edges.clear();
+  const SearchInput input{boxes, candidates.bases, is_new, marks, edges, vertices};
+  for_blocks(tasks, int(blocks.size()), 1, [&](int begin, int end, int worker) {
+    CandidateSearch finder(input, candidates.found[std::size_t(worker)]);
+    for (int i = begin; i < end; ++i) finder.search(blocks[i]);
+  });
 }
 
 }  // namespace
@@ -244,7 +292,8 @@ void fill_filter(std::span<const DVec3> positions, std::span<const DVec3> moves,
 
 void update_candidates(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
                        std::span<const DVec3> moves, std::span<const float> reach,
-                       std::span<const float> ahead, Arena& arena, SurfaceCandidates& candidates) {
+                       std::span<const float> ahead, Arena& arena, TaskSystem& tasks,
+                       SurfaceCandidates& candidates) {
   const ArenaScope scope(arena);
   const std::size_t count = positions.size();
   if (!are_same(candidates.surfaces, surfaces) || candidates.start.size() != count) {
@@ -271,29 +320,9 @@ void update_candidates(std::span<const PlacedSurface> surfaces, std::span<const 
     now[v] = place_on_track(candidates, v, 0);
     ways[v] = place_on_track(candidates, v, kTrackSteps) - now[v];
   }
-  const DVec3 origin = now[surfaces[0].first];
-  const std::span<SurfaceBoxes> boxes = arena.make<SurfaceBoxes>(surfaces.size());
-  std::size_t edges = 0;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    boxes[i] = fit_boxes(surfaces[i], now, candidates.reach, origin, arena, ways);
-    edges += surfaces[i].surface->edges.size();
-  }
-  Array<SurfaceCandidate>& found_corners = candidates.found_corners;
-  Array<SurfaceCandidate>& found_edges = candidates.found_edges;
-  found_corners.clear(), found_edges.clear();
-  CandidateSearch search(boxes, is_new, edges, candidates.bases, found_corners, found_edges, arena);
-  for (std::uint32_t i = 0; i < std::uint32_t(boxes.size()); ++i) {
-    for (std::uint32_t k = i; k < std::uint32_t(boxes.size()); ++k) search.search(i, k);
-  }
-  const std::size_t c0=found_corners.size(), e0=found_edges.size();
-  const std::span<FilterVertex> vertices = arena.make<FilterVertex>(count);
-  fill_filter(now, ways, candidates.reach, origin, vertices);
-  const FeatureFilters& filters = select_feature_filters();
-  filter_and_sort(found_corners, vertices, filters.corners, arena);
-  filter_and_sort(found_edges, vertices, filters.edges, arena);
-  replace(candidates.corners, is_new, found_corners, arena);
-  replace(candidates.edges, is_new, found_edges, arena);
-  if(getenv("DBG")) fprintf(stderr,"  t %d renewed %zu raw %zu %zu kept %zu %zu all %zu %zu\n",candidates.time,renewed,c0,e0,found_corners.size(),found_edges.size(),candidates.corners.size(),candidates.edges.size());
+  search(surfaces, now, ways, is_new, arena, tasks, candidates);
+  replace(candidates.corners, is_new, candidates.found, &FoundCandidates::corners, arena);
+  replace(candidates.edges, is_new, candidates.found, &FoundCandidates::edges, arena);
 }
 
 }  // namespace gyre

@@ -14,17 +14,32 @@
 #include "base/container/array.h"
 #include "soft/contact/feature_filter.h"
 #include "soft/contact/soft_surface.h"
+#include "task/task_system.h"
 
 #include <gyre/math.h>
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace gyre {
 
 // Numbers of the first triangle and edge of a surface over all surfaces.
 struct FeatureBase {
   std::uint32_t triangle = 0, edge = 0;
+};
+
+// Leaves of surface a that one worker holds against those of b; `rest`: see for_each_marked_pair().
+struct SearchBlock {
+  std::uint32_t a, b;
+  std::size_t begin, end;  // nodes of a
+  bool rest;
+};
+
+// What one worker has found, and its room for the filter.
+struct FoundCandidates {
+  Array<SurfaceCandidate> corners, edges;
+  Array<std::uint32_t> kept;
 };
 
 struct SurfaceCandidates {
@@ -34,9 +49,10 @@ struct SurfaceCandidates {
   // By vertex, the track: where it begins, and its way in a sub-step, m; how far from it the vertex reaches, m.
   Array<DVec3> start, way;
   Array<float> reach;
-  Array<SurfaceCandidate> found_corners, found_edges;  // in the last search
-  int time = 0;         // sub-steps since tracks began
-  long new_tracks = 0;  // vertices that got one, so far
+  Array<SearchBlock> blocks;
+  std::vector<FoundCandidates> found;  // by worker, in the last search
+  int time = 0;                        // sub-steps since tracks began
+  long new_tracks = 0;                 // vertices that got one, so far
 
   // Call this when a sub-step has ended.
   void advance() { ++time; }
@@ -51,7 +67,8 @@ std::span<float> spread_over_features(std::span<const PlacedSurface> surfaces, s
 // far as `ahead`, likewise spread, which is no less.
 void update_candidates(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
                        std::span<const DVec3> moves, std::span<const float> reach,
-                       std::span<const float> ahead, Arena& arena, SurfaceCandidates& candidates);
+                       std::span<const float> ahead, Arena& arena, TaskSystem& tasks,
+                       SurfaceCandidates& candidates);
 
 // Input of the filter of pairs.
 void fill_filter(std::span<const DVec3> positions, std::span<const DVec3> moves, std::span<const float> reach,
