@@ -124,7 +124,7 @@ std::uint64_t key_of(const SurfaceCandidate& one) { return std::uint64_t(one.a) 
 // Replaces the pairs that have a new vertex by those that the workers have found.
 void replace(Array<SurfaceCandidate>& pairs, std::span<const std::uint8_t> is_new,
              std::span<const FoundCandidates> found, Array<SurfaceCandidate> FoundCandidates::*list,
-             Arena& arena) {
+             Array<SurfaceCandidate>& before, Arena& arena) {
   const ArenaScope scope(arena);
   std::size_t count = 0;
   for (const FoundCandidates& one : found) count += (one.*list).size();
@@ -141,18 +141,19 @@ void replace(Array<SurfaceCandidate>& pairs, std::span<const std::uint8_t> is_ne
     }
   }
   radix_sort_pairs(keys, order, more, other);
-  const std::span<SurfaceCandidate> before = arena.make<SurfaceCandidate>(pairs.size());
-  for (std::size_t i = 0; i < before.size(); ++i) before[i] = pairs[i];
-  pairs.clear();
+  std::swap(pairs, before);
+  pairs.resize_uninitialized(before.size() + count);
+  std::size_t kept = 0;
   next = 0;
   for (const SurfaceCandidate& one : before) {
     const std::uint32_t* const v = one.vertex;
     if ((is_new[v[0]] | is_new[v[1]] | is_new[v[2]] | is_new[v[3]]) != 0) continue;
     for (const std::uint64_t key = key_of(one); next < count && keys[next] < key; ++next)
-      pairs.push_back(*at[order[next]]);
-    pairs.push_back(one);
+      pairs[kept++] = *at[order[next]];
+    pairs[kept++] = one;
   }
-  for (; next < count; ++next) pairs.push_back(*at[order[next]]);
+  for (; next < count; ++next) pairs[kept++] = *at[order[next]];
+  pairs.resize_uninitialized(kept);
 }
 
 bool are_same(std::span<const PlacedSurface> a, std::span<const PlacedSurface> b) {
@@ -321,8 +322,8 @@ void update_candidates(std::span<const PlacedSurface> surfaces, std::span<const 
     ways[v] = place_on_track(candidates, v, kTrackSteps) - now[v];
   }
   search(surfaces, now, ways, is_new, arena, tasks, candidates);
-  replace(candidates.corners, is_new, candidates.found, &FoundCandidates::corners, arena);
-  replace(candidates.edges, is_new, candidates.found, &FoundCandidates::edges, arena);
+  replace(candidates.corners, is_new, candidates.found, &FoundCandidates::corners, candidates.before, arena);
+  replace(candidates.edges, is_new, candidates.found, &FoundCandidates::edges, candidates.before, arena);
 }
 
 }  // namespace gyre

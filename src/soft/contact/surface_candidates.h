@@ -50,6 +50,7 @@ struct SurfaceCandidates {
   Array<DVec3> start, way;
   Array<float> reach;
   Array<SearchBlock> blocks;
+  Array<SurfaceCandidate> before;      // the list that a new one replaces
   std::vector<FoundCandidates> found;  // by worker, in the last search
   int time = 0;                        // sub-steps since tracks began
   long new_tracks = 0;                 // vertices that got one, so far

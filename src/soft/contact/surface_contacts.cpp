@@ -339,7 +339,7 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     for (std::size_t v = 0; v < count; ++v) moves[v] = asked[v];
     // The last round is for pairs that are found for any moves no longer than those that are asked for.
     report = bound_moves(pairs, vertices.positions, last ? contacts.limits.view() : std::span<const float>(),
-                         held, settings.bounds, moves, arena);
+                         held, settings.bounds, moves, arena, tasks);
     if (last || keeps_plan(surfaces, vertices.inverse_mass, moves, contacts, arena)) break;
     if (contacts.rounds == settings.most_rounds) {
       for (std::size_t v = 0; v < count; ++v) {
