@@ -59,7 +59,7 @@ Vec3 tried_change(SoftSolve& s, const SoftRow& row) {
 }
 template <class Row>
 void try_on_body(SoftSolve& s, const Row& row, Vec3 impulse) {
-  if (row.touched < 0) return;
+  if (row.touched < 0 || !row.pushes) return;
   const BodyInertia& inertia = s.w->bodies.inertia[std::size_t(row.body)];
   VelocityChange& body = s.scratch->changes[row.touched];
   body.linear -= inertia.inverse_mass * impulse;
@@ -146,7 +146,7 @@ void set_grips(SoftSolve& s) {
                  : across <= bound * normal ? SoftGrip::sticks
                                             : SoftGrip::slides;
     }
-    if (row.touched >= 0 && row.grip != SoftGrip::open) ++s.scratch->grips[row.touched];
+    if (row.touched >= 0 && row.pushes && row.grip != SoftGrip::open) ++s.scratch->grips[row.touched];
   }
 }
 

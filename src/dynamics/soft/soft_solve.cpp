@@ -72,7 +72,7 @@ std::int32_t find_touched(const SoftScratch& scratch, std::int32_t body) {
 
 template <class Row>
 void push_body(RigidWorld& w, const Row& row, Vec3 impulse) {
-  if (row.body < 0) return;
+  if (row.body < 0 || !row.pushes) return;
   BodyMotion& motion = w.bodies.motion[std::size_t(row.body)];
   const BodyInertia& inertia = w.bodies.inertia[std::size_t(row.body)];
   motion.linear_velocity += inertia.inverse_mass * impulse;
@@ -82,7 +82,7 @@ void push_body(RigidWorld& w, const Row& row, Vec3 impulse) {
 // The compliance of a point of a body: 1/m 1 + [r] I^-1 [r]^T.
 template <class Row>
 Sym3 body_compliance(const RigidWorld& w, const Row& row) {
-  if (row.body < 0) return {};
+  if (row.body < 0 || !row.pushes) return {};
   const BodyInertia& inertia = w.bodies.inertia[std::size_t(row.body)];
   const auto column = [&](Vec3 axis) {
     return inertia.inverse_mass * axis + cross(inertia.inverse * cross(row.arm, axis), row.arm);
@@ -93,11 +93,14 @@ Sym3 body_compliance(const RigidWorld& w, const Row& row) {
 
 // ------------------------------------------------------------------------------------------------------- a half-step
 
+// Visual matter follows bodies and does not push them: its velocities come from places that were moved to fit, which would throw bodies about.
+bool is_visual(const SoftEntry& entry) { return entry.settings().integrator == SoftIntegrator::visual; }
+
 // Vertices attached to what does not yield are where it takes them when the half-step ends.
 void move_held(const SoftSolve& s, SoftEntry& entry) {
   const RigidWorld& w = *s.w;
   for (const SoftAttachment& one : entry.attachments) {
-    if (yields(w, one.body)) continue;
+    if (yields(w, one.body) && !is_visual(entry)) continue;
     if (one.body == kWorldAnchor) {
       hold(entry.body, int(one.particle), one.place);
       continue;
@@ -150,7 +153,7 @@ Sym3 along(Vec3 n, float scale) {
 
 // The inertia that the vertex of a row which grips carries.
 Sym3 gripped_inertia(const SoftSolve& s, const SoftRow& row, float mass) {
-  const float shares = row.touched >= 0 ? float(s.scratch->grips[row.touched]) : 0.0f;
+  const float shares = row.touched >= 0 && row.pushes ? float(s.scratch->grips[row.touched]) : 0.0f;
   const float give = row.is_contact ? 1.0f / (kGripShare * mass) : 0.0f;
   if (row.grip == SoftGrip::slides)
     return along(row.normal, 1.0f / (shares * dot(row.normal, row.body_compliance * row.normal) + give));
@@ -284,12 +287,13 @@ void make_soft_rows(SoftSolve& s) {
       row.member = m, row.particle = particle, row.source = source;
       row.body = moves(w, body) ? body : -1;
       row.touched = find_touched(scratch, row.body);
+      row.pushes = !is_visual(entry);
       scratch.rows.push_back(row);
       return scratch.rows.back();
     };
     for (std::uint32_t k = 0; k < entry.attachments.size(); ++k) {
       const SoftAttachment& one = entry.attachments[k];
-      if (!yields(w, one.body)) continue;
+      if (!yields(w, one.body) || is_visual(entry)) continue;
       if (entry.body.particles.loose[one.particle] == 0.0f) let_go(entry.body, int(one.particle));
       SoftRow& row = add(one.particle, one.body, k);
       row.grip = SoftGrip::sticks;
@@ -317,7 +321,7 @@ void make_soft_rows(SoftSolve& s) {
   }
   scratch.carried.resize(scratch.rows.size());
   for (const SoftRow& row : scratch.rows)
-    if (row.touched >= 0 && row.grip != SoftGrip::open) ++scratch.grips[row.touched];
+    if (row.touched >= 0 && row.pushes && row.grip != SoftGrip::open) ++scratch.grips[row.touched];
   begin_soft_surfaces(s);
 }
 
@@ -330,8 +334,9 @@ void turn_soft_rows(SoftSolve& s, int, int) {
                          ? turned_now(w, row.body, contact_of(entry, row).from_body)
                          : rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
     const Vec3 moment = cross(arm - row.arm, (-1.0f / float(s.parts)) * row.impulse);
-    s.w->bodies.motion[std::size_t(row.body)].angular_velocity +=
-        w.bodies.inertia[std::size_t(row.body)].inverse * moment;
+    if (row.pushes)
+      s.w->bodies.motion[std::size_t(row.body)].angular_velocity +=
+          w.bodies.inertia[std::size_t(row.body)].inverse * moment;
     row.arm = arm;
   }
 }
@@ -345,7 +350,7 @@ void set_forces(SoftSolve& s, SoftEntry& entry, SoftWork& work, bool again) {
   for (int i = 0; i < int(kept.size()); ++i) p.fx[i] = kept[i].x, p.fy[i] = kept[i].y, p.fz[i] = kept[i].z;
   if (!kept.empty()) return;
   set_field_forces(*s.w, *s.fluids, entry, s.time, s.h, again);
-  if (entry.settings().integrator != SoftIntegrator::visual) return;
+  if (!is_visual(entry)) return;
   for (int i = 0; i < p.count; ++i) kept.push_back({p.fx[i], p.fy[i], p.fz[i]});
 }
 
@@ -354,8 +359,8 @@ void set_forces(SoftSolve& s, SoftEntry& entry, SoftWork& work, bool again) {
 bool has_shared_loops(SoftSolve& s, std::uint32_t member, long all_vertices) {
   const SoftEntry& entry = entry_of(s, member);
   const long vertices = entry.body.particles.count;
-  return entry.kind != SoftKind::rope && entry.settings().integrator != SoftIntegrator::visual &&
-         vertices > kBlockSlices * kSliceRows && vertices * s.tasks->worker_count() > all_vertices;
+  return entry.kind != SoftKind::rope && !is_visual(entry) && vertices > kBlockSlices * kSliceRows &&
+         vertices * s.tasks->worker_count() > all_vertices;
 }
 
 // Calls step(member, tasks) for each member: first for the small ones, each of which one worker steps, and then for the large ones, each of which
@@ -383,9 +388,13 @@ void begin_member(SoftSolve& s, std::uint32_t m, TaskSystem& tasks) {
     set_forces(s, entry, work, pass > 0);
     add_rows(s, m);
     add_forces_of_surfaces(s, m);
-    work.step = begin_soft_step(
-        entry, {s.h, s.w->settings.gravity, carried_by(s, m), work.first_row != work.last_row}, *s.kernels,
-        work.arena, tasks);
+    work.step = begin_soft_step(entry,
+                                {.step = s.h,
+                                 .gravity = s.w->settings.gravity,
+                                 .carried = carried_by(s, m),
+                                 .touches = !entry.contacts.empty() || !entry.faces.empty(),
+                                 .asks_for_inverse_masses = work.first_row != work.last_row},
+                                *s.kernels, work.arena, tasks);
     find_carried_steps(s, m);
     if (!implicit || pass + 1 == kGripPasses || !loosen_grips(s, m)) break;
     work.arena.release(work.mark);

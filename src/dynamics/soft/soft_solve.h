@@ -42,6 +42,7 @@ struct SoftRow {
   std::int32_t touched = -1;  // index of the body in SoftScratch::touched
   std::uint32_t source = 0;   // index among the entry's attachments or contacts
   bool is_contact = false;
+  bool pushes = true;  // false: the body does not feel it, since the member is visual
   // Of a face: its other corners, and the weights of all three; the point of the row is their mean. Its vertices carry nothing.
   bool is_face = false;
   std::uint32_t others[2] = {};

@@ -52,7 +52,7 @@ void give_owed(SoftSolve& s) {
       owed = {};
     }
     const SoftIntegrator scheme = entry_at(s, member).settings().integrator;
-  if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
+    if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
     respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, *s.tasks);
     add_change(entry, work.step, work.change.view(), 1.0f);
     find_carried_steps(s, member);
@@ -109,8 +109,7 @@ void find_crossings(SoftSolve& s) {
     bool moves = false;
     for (const std::uint32_t v : one.vertex) moves = moves || all.inverse_mass[v] > 0.0f;
     if (!moves) continue;
-    for (const std::uint32_t v : {one.vertex[0], one.vertex[2]})
-      crossings_of(tangle.surface[v]).moves = true;
+    for (const std::uint32_t v : {one.vertex[0], one.vertex[2]}) crossings_of(tangle.surface[v]).moves = true;
   }
 }
 
@@ -135,7 +134,7 @@ void begin_soft_surfaces(SoftSolve& s) {
   }
   all.active = any_self || all.placed.size() > 1;
   if (all.surfaces != before) {
-    all.contacts.candidates.surfaces.clear();
+    all.contacts.search.candidates.surfaces.clear();
     all.may_cross = true;
   }
   for (const std::uint32_t slot : s.members) s.store->entries[slot].crossings = {};
@@ -189,7 +188,7 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
   const SurfaceVertices vertices = vertices_of(all);
   const SurfaceContactSettings settings = settings_of(s);
   find_crossings(s);
-  find_surface_contacts(all.placed, vertices, settings, all.arena, all.contacts);
+  find_surface_contacts(all.placed, vertices, settings, all.arena, *s.tasks, all.contacts);
   for (int round = 0; round < kSurfaceRounds; ++round) {
     solve_surface_contacts(vertices, settings, all.arena, all.contacts);
     give_owed(s);
@@ -221,8 +220,8 @@ void bound_soft_surfaces(SoftSolve& s, int, int) {
     const Particles& p = entry_at(s, member).body.particles;
     for (int i = 0; i < p.count; ++i) all.targets[first + std::uint32_t(i)] = p.place(i);
   });
-  all.report =
-      move_surfaces(all.placed, vertices_of(all), all.targets, settings_of(s), all.arena, all.contacts);
+  all.report = move_surfaces(all.placed, vertices_of(all), all.targets, settings_of(s), all.arena, *s.tasks,
+                             all.contacts);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) { place_vertices(s, member, first); });
   all.may_cross = !all.contacts.tangle.empty() || all.report.forced > 0 || all.report.crossed > 0;
 }

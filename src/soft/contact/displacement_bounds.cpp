@@ -1,5 +1,7 @@
 #include "soft/contact/displacement_bounds.h"
 
+#include "task/parallel.h"
+
 #include <cmath>
 
 namespace gyre {
@@ -7,6 +9,7 @@ namespace gyre {
 namespace {
 
 constexpr double kSafe = 1.0 - 0x1p-20;  // more than any rounding here takes
+constexpr int kBlockPairs = 1024;        // that one worker takes at a time
 constexpr int kAdvances = 6;             // in which the room that others have left is given anew
 
 // How far each vertex of a pair may go towards the other feature, m.
@@ -42,8 +45,9 @@ double approach_of(const SurfacePair& pair, int k, std::span<const DVec3> moves)
 class MoveBounds {
  public:
   MoveBounds(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
-             std::span<const std::uint8_t> held, double least_gap, Arena& arena)
-      : pairs_(pairs),
+             std::span<const std::uint8_t> held, double least_gap, Arena& arena, TaskSystem& tasks)
+      : tasks_(tasks),
+        pairs_(pairs),
         held_(held),
         at_(arena.make<DVec3>(positions.size())),
         moves_(arena.make<DVec3>(positions.size())),
@@ -51,11 +55,11 @@ class MoveBounds {
         rooms_(arena.make<PairRoom>(pairs.size())),
         least_(arena.make<double>(pairs.size())) {
     for (std::size_t v = 0; v < positions.size(); ++v) at_[v] = positions[v];
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
+    crossed_ = count_pairs([&](std::size_t i) {
       const double gap = planes_of(pairs[i], at_).gap;
-      crossed_ += !(gap > 0.0);
       least_[i] = min(gap, least_gap * double(pairs[i].thickness));
-    }
+      return !(gap > 0.0);
+    });
   }
 
   // Goes from the present places as far toward `goals` as the rooms of the present gaps let it, and adds that to `moves`. False if there is no more
@@ -63,7 +67,7 @@ class MoveBounds {
   bool advance(std::span<const DVec3> goals, std::span<const float> limits, int passes,
                std::span<DVec3> moves, BoundReport& report) {
     for (std::size_t v = 0; v < moves.size(); ++v) moves_[v] = goals[v] - moves[v];
-    for (std::size_t i = 0; i < pairs_.size(); ++i) rooms_[i] = give_room(i, report);
+    report.forced += count_pairs([&](std::size_t i) { return give_room(i); });
     for (int pass = 0; pass < passes; ++pass) turn();
     shorten();
     bool any = false, all = true;
@@ -81,6 +85,19 @@ class MoveBounds {
   long crossed() const { return crossed_; }
 
  private:
+  // Calls fn(pair) for each pair, by all workers; returns for how many it is true.
+  template <class Fn>
+  long count_pairs(Fn&& fn) {
+    return reduce_blocks(
+        tasks_, int(pairs_.size()), kBlockPairs, 0L,
+        [&](int begin, int end, int) {
+          long count = 0;
+          for (int i = begin; i < end; ++i) count += fn(std::size_t(i));
+          return count;
+        },
+        [](long a, long b) { return a + b; });
+  }
+
   // Turns moves that go too far along the plane.
   void turn() {
     for_each_bound([&](std::uint32_t v, DVec3 toward, double approach, double room) {
@@ -99,7 +116,8 @@ class MoveBounds {
     }
   }
 
-  PairRoom give_room(std::size_t number, BoundReport& report) const {
+  // Sets the rooms of a pair. True if its held vertices take more than there is.
+  bool give_room(std::size_t number) {
     const SurfacePair& pair = pairs_[number];
     const PairPlanes planes = planes_of(pair, at_);
     double free = planes.gap - least_[number];
@@ -113,19 +131,19 @@ class MoveBounds {
     }
     free = max(0.0, kSafe * free);
     double room[2] = {taken[0], taken[1]};
+    bool forced = false;
     free -= taken[0] + taken[1];
     if (free < 0.0) {
       // Held vertices may use the least gap too.
-      if (taken[0] + taken[1] >= planes.gap) ++report.forced;
+      forced = taken[0] + taken[1] >= planes.gap;
     } else {
       const double more[2] = {asked[0] - taken[0], asked[1] - taken[1]};
       const double sum = more[0] + more[1];
       for (int side = 0; side < 2; ++side)
         room[side] += sum > free ? free * (more[side] / sum) : more[side] + 0.5 * (free - sum);
     }
-    PairRoom out;
-    for (int k = 0; k < 4; ++k) out.room[k] = room[k < pair.on_a ? 0 : 1] + planes.behind[k];
-    return out;
+    for (int k = 0; k < 4; ++k) rooms_[number].room[k] = room[k < pair.on_a ? 0 : 1] + planes.behind[k];
+    return forced;
   }
 
   template <class Visit>
@@ -142,6 +160,7 @@ class MoveBounds {
     }
   }
 
+  TaskSystem& tasks_;
   std::span<const SurfacePair> pairs_;
   std::span<const std::uint8_t> held_;
   std::span<DVec3> at_, moves_;  // where vertices are, and how they would go on
@@ -155,7 +174,8 @@ class MoveBounds {
 
 BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
                         std::span<const float> limits, std::span<const std::uint8_t> held,
-                        const BoundSettings& settings, std::span<DVec3> moves, Arena& arena) {
+                        const BoundSettings& settings, std::span<DVec3> moves, Arena& arena,
+                        TaskSystem& tasks) {
   const ArenaScope scope(arena);
   BoundReport report;
   const std::span<DVec3> asked = arena.make<DVec3>(moves.size());
@@ -170,7 +190,7 @@ BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec
     goals[v] = moves[v];
     moves[v] = {};
   }
-  MoveBounds bounds(pairs, positions, held, settings.least_gap, arena);
+  MoveBounds bounds(pairs, positions, held, settings.least_gap, arena, tasks);
   report.crossed = bounds.crossed();
   for (int n = 0; n < kAdvances; ++n) {
     if (!bounds.advance(goals, limits, settings.passes, moves, report)) break;

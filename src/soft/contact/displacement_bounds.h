@@ -47,6 +47,7 @@ struct BoundReport {
 // `limits`: by vertex, m: how far it may go; none: as far as the pairs allow. `held`: by vertex, 1 if it goes where it is told, whatever the bounds.
 BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
                         std::span<const float> limits, std::span<const std::uint8_t> held,
-                        const BoundSettings& settings, std::span<DVec3> moves, Arena& arena);
+                        const BoundSettings& settings, std::span<DVec3> moves, Arena& arena,
+                        TaskSystem& tasks);
 
 }  // namespace gyre

@@ -4,7 +4,7 @@ namespace gyre {
 
 namespace {
 
-constexpr double kHalfUlp = 0x1p-53;  // the largest relative error of one rounding
+constexpr double kHalfUlp = 0x1p-53;                             // the largest relative error of one rounding
 constexpr double kFilter3 = (7.0 + 56.0 * kHalfUlp) * kHalfUlp;  // relative error bound of a 3x3 determinant
 constexpr double kFilter2 = (3.0 + 16.0 * kHalfUlp) * kHalfUlp;  // relative error bound of a 2x2 determinant
 

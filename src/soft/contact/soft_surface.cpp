@@ -92,19 +92,28 @@ Aabb vertex_box(DVec3 p, double pad) {
   return {{low(p.x), low(p.y), low(p.z)}, {high(p.x), high(p.y), high(p.z)}};
 }
 
-// Fits the boxes of the tree to those of the triangles; returns the box of all.
-Aabb fit_nodes(const SoftSurface& surface, std::span<const Aabb> triangles, std::span<StaticNode> nodes,
-               Arena& arena) {
+void put_child(StaticNode& node, int lane, std::uint32_t child, const float* low, const float* high) {
+  node.child[lane] = child;
+  for (int axis = 0; axis < 3; ++axis) {
+    node.low[axis][lane] = low[axis];
+    node.high[axis][lane] = high[axis];
+  }
+}
+
+// Fits the boxes of the tree to those of the triangles, at both ends of the moves; returns the boxes of all.
+SweptBox fit_nodes(const SoftSurface& surface, std::span<const SweptBox> triangles,
+                   std::span<StaticNode> nodes, std::span<StaticNode> end_nodes, Arena& arena) {
+  SweptBox none;
+  for (int axis = 0; axis < 4; ++axis)
+    none.low[axis] = none.high[axis] = none.end_low[axis] = none.end_high[axis] = kNoFloat;
+  const std::span<SweptBox> whole = arena.make<SweptBox>(nodes.size());
   // The children of a node have higher numbers.
-  const Aabb none{{kNoFloat, kNoFloat, kNoFloat}, {kNoFloat, kNoFloat, kNoFloat}};
-  const std::span<Aabb> whole = arena.make<Aabb>(nodes.size());
   for (std::size_t n = nodes.size(); n-- > 0;) {
     const StaticNode& from = surface.tree.nodes[n];
-    StaticNode& node = nodes[n];
     bool any = false;
     for (int lane = 0; lane < StaticNode::kWidth; ++lane) {
       const std::uint32_t child = from.child[lane];
-      Aabb box = none;
+      SweptBox box = none;
       if (child != StaticNode::kNoChild && is_leaf(child)) {
         const std::uint32_t first = leaf_first(child);
         box = triangles[first];
@@ -116,11 +125,8 @@ Aabb fit_nodes(const SoftSurface& surface, std::span<const Aabb> triangles, std:
         whole[n] = any ? merge(whole[n], box) : box;
         any = true;
       }
-      node.child[lane] = child;
-      for (int axis = 0; axis < 3; ++axis) {
-        node.low[axis][lane] = box.low[axis];
-        node.high[axis][lane] = box.high[axis];
-      }
+      put_child(nodes[n], lane, child, box.low, box.high);
+      if (!end_nodes.empty()) put_child(end_nodes[n], lane, child, box.end_low, box.end_high);
     }
   }
   return nodes.empty() ? none : whole[0];
@@ -162,26 +168,30 @@ SurfaceBoxes fit_boxes(const PlacedSurface& placed, std::span<const DVec3> posit
   SurfaceBoxes out;
   out.surface = &surface;
   out.first = placed.first;
-  const auto fit = [&](bool ends, std::span<Aabb>& vertices, std::span<Aabb>& triangles,
-                       std::span<StaticNode>& nodes, Aabb& box) {
-    vertices = arena.make<Aabb>(std::size_t(surface.vertices));
-    triangles = arena.make<Aabb>(surface.triangles.size());
-    nodes = arena.make<StaticNode>(surface.tree.nodes.size());
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-      const std::size_t place = placed.first + v;
-      const DVec3 at = ends ? positions[place] + moves[place] : positions[place];
-      vertices[v] = vertex_box(at - origin, pads.empty() ? 0.0 : double(pads[place]));
+  out.vertices = arena.make<SweptBox>(std::size_t(surface.vertices));
+  out.triangles = arena.make<SweptBox>(surface.triangles.size());
+  for (std::size_t v = 0; v < out.vertices.size(); ++v) {
+    const std::size_t place = placed.first + v;
+    const DVec3 at = positions[place] - origin;
+    const double pad = pads.empty() ? 0.0 : double(pads[place]);
+    const Aabb start = vertex_box(at, pad), end = moves.empty() ? start : vertex_box(at + moves[place], pad);
+    SweptBox& box = out.vertices[v];
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = start.low[axis], box.high[axis] = start.high[axis];
+      box.end_low[axis] = end.low[axis], box.end_high[axis] = end.high[axis];
     }
-    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-      const std::uint32_t* const corner = surface.triangles[i].corner;
-      triangles[i] = merge(merge(vertices[corner[0]], vertices[corner[1]]), vertices[corner[2]]);
-    }
-    box = fit_nodes(surface, triangles, nodes, arena);
-  };
-  fit(false, out.vertices, out.triangles, out.nodes, out.box);
-  out.end_vertices = out.vertices, out.end_triangles = out.triangles, out.end_nodes = out.nodes;
-  out.end_box = out.box;
-  if (!moves.empty()) fit(true, out.end_vertices, out.end_triangles, out.end_nodes, out.end_box);
+    box.low[3] = box.high[3] = box.end_low[3] = box.end_high[3] = 0.0f;
+  }
+  for (std::size_t i = 0; i < out.triangles.size(); ++i) {
+    const std::uint32_t* const corner = surface.triangles[i].corner;
+    out.triangles[i] =
+        merge(merge(out.vertices[corner[0]], out.vertices[corner[1]]), out.vertices[corner[2]]);
+  }
+  out.nodes = arena.make<StaticNode>(surface.tree.nodes.size());
+  out.end_nodes = moves.empty() ? out.nodes : arena.make<StaticNode>(surface.tree.nodes.size());
+  const SweptBox all = fit_nodes(surface, out.triangles, out.nodes,
+                                 moves.empty() ? std::span<StaticNode>() : out.end_nodes, arena);
+  out.box = start_box(all), out.end_box = end_box(all);
   return out;
 }
 

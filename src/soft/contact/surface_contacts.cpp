@@ -225,7 +225,8 @@ void solve_push(Row& row, std::span<Vec3> pushes) {
 }  // namespace
 
 void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
-                           const SurfaceContactSettings& settings, Arena& arena, SurfaceContacts& contacts) {
+                           const SurfaceContactSettings& settings, Arena& arena, TaskSystem& tasks,
+                           SurfaceContacts& contacts) {
   const ArenaScope scope(arena);
   const std::size_t count = vertices.positions.size();
   contacts.plan.resize(count), contacts.limits.resize(count);
@@ -241,7 +242,7 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
     impulses[i] = contacts.impulses[i];
   }
   find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
-                     float(settings.bounds.least_gap), arena, contacts.candidates, contacts.pairs);
+                     float(settings.bounds.least_gap), arena, tasks, contacts.search, contacts.pairs);
   leave_out(contacts.tangle, contacts.pairs);
   keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
   sum_impulses(vertices, contacts);
@@ -316,7 +317,7 @@ void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings
 
 BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
                           std::span<const DVec3> targets, const SurfaceContactSettings& settings,
-                          Arena& arena, SurfaceContacts& contacts) {
+                          Arena& arena, TaskSystem& tasks, SurfaceContacts& contacts) {
   const ArenaScope scope(arena);
   const std::size_t count = vertices.positions.size();
   const std::span<DVec3> goals = arena.make<DVec3>(count), whole = arena.make<DVec3>(count),
@@ -338,7 +339,7 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     for (std::size_t v = 0; v < count; ++v) moves[v] = asked[v];
     // The last round is for pairs that are found for any moves no longer than those that are asked for.
     report = bound_moves(pairs, vertices.positions, last ? contacts.limits.view() : std::span<const float>(),
-                         held, settings.bounds, moves, arena);
+                         held, settings.bounds, moves, arena, tasks);
     if (last || keeps_plan(surfaces, vertices.inverse_mass, moves, contacts, arena)) break;
     if (contacts.rounds == settings.most_rounds) {
       for (std::size_t v = 0; v < count; ++v) {
@@ -347,10 +348,11 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
       }
     }
     find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
-                       float(settings.bounds.least_gap), arena, contacts.candidates, found);
+                       float(settings.bounds.least_gap), arena, tasks, contacts.search, found);
     leave_out(contacts.tangle, found);
     pairs = found;
   }
+  contacts.search.candidates.advance();
   for (std::size_t v = 0; v < count; ++v) {
     // The mean is given back.
     const bool there = held[v] != 0 || moves[v] == whole[v];

@@ -63,13 +63,13 @@ struct SurfaceContacts {
   // N s, by vertex: the impulses of all pairs together; those of the last sub-step act as forces in the next, so that the stiffness of the
   // body spreads them exactly. And the part of them that the velocities do not have yet.
   Array<Vec3> totals, owed;
-  SurfaceCandidates candidates;
+  PairSearch search;
   SurfaceTangle tangle;  // when the sub-step began
-  Array<DVec3> plan;    // m, by vertex: the moves for which pairs were found, against the mean of all
-  Array<float> limits;  // m, by vertex: how far it may end from its plan, or pairs are found again
-  Array<Vec3> pushes;   // m, by vertex
-  int rounds = 0;       // of finding pairs, in the last sub-step
-  int touching = 0;     // pairs with an impulse
+  Array<DVec3> plan;     // m, by vertex: the moves for which pairs were found, against the mean of all
+  Array<float> limits;   // m, by vertex: how far it may end from its plan, or pairs are found again
+  Array<Vec3> pushes;    // m, by vertex
+  int rounds = 0;        // of finding pairs, in the last sub-step
+  int touching = 0;      // pairs with an impulse
 
   void clear(std::size_t vertices) {
     pairs.clear(), impulses.clear();
@@ -80,7 +80,8 @@ struct SurfaceContacts {
 // Finds pairs for a sub-step at these velocities, which have the totals of the last. Pairs that were there keep their impulses; what the totals
 // change by, since pairs are gone and normals turn, is owed.
 void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
-                           const SurfaceContactSettings& settings, Arena& arena, SurfaceContacts& contacts);
+                           const SurfaceContactSettings& settings, Arena& arena, TaskSystem& tasks,
+                           SurfaceContacts& contacts);
 // Solves the rows at the present velocities and what is owed; then all changes are owed. The caller gives what is owed to the bodies, each
 // through its stiffness, and may call this again at the velocities that this makes.
 void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
@@ -91,6 +92,6 @@ void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings
 // Moves the vertices to their targets and by their pushes, as far as the bounds let them. Vertices without inverse mass get to their targets.
 BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
                           std::span<const DVec3> targets, const SurfaceContactSettings& settings,
-                          Arena& arena, SurfaceContacts& contacts);
+                          Arena& arena, TaskSystem& tasks, SurfaceContacts& contacts);
 
 }  // namespace gyre

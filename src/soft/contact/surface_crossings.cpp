@@ -90,7 +90,7 @@ class CrossingSearch {
       if (number < 0) continue;
       const SurfaceEdge edge = a.surface->edges[number];
       if (s == t && shares(edge.a, to) + shares(edge.b, to) > 0) continue;
-      if (!overlap(merge(a.vertices[edge.a], a.vertices[edge.b]), b.triangles[k])) continue;
+      if (!may_meet(merge(a.vertices[edge.a], a.vertices[edge.b]), b.triangles[k])) continue;
       const auto at = [&](std::uint32_t corner) { return positions_[b.first + to.corner[corner]]; };
       if (test_(positions_[a.first + edge.a], positions_[a.first + edge.b], at(0), at(1), at(2)))
         visit_(EdgeCrossing{s, std::uint32_t(number), t, k});

@@ -1,6 +1,7 @@
 #include "soft/contact/surface_pairs.h"
 
 #include "geometry/distance/closest.h"
+#include "task/parallel.h"
 
 #include <cmath>
 
@@ -12,6 +13,8 @@ constexpr std::uint64_t kEdgePairs = std::uint64_t(1) << 63;  // in keys
 
 // A pair is looked for further by this share of the radii of its vertices, so that candidates last.
 constexpr float kAheadOfRadius = 0.3f;
+
+constexpr int kBlockCandidates = 512;  // that one worker takes at a time
 
 DVec3 least_of(DVec3 a, DVec3 b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
 DVec3 most_of(DVec3 a, DVec3 b) { return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; }
@@ -196,7 +199,7 @@ class PairFinder {
 
 void find_surface_pairs(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
                         std::span<const DVec3> moves, std::span<const float> limits, float least_gap,
-                        Arena& arena, SurfaceCandidates& candidates, Array<SurfacePair>& pairs) {
+                        Arena& arena, TaskSystem& tasks, PairSearch& search, Array<SurfacePair>& pairs) {
   const ArenaScope scope(arena);
   pairs.clear();
   if (surfaces.empty() || positions.empty()) return;
@@ -211,19 +214,40 @@ void find_surface_pairs(std::span<const PlacedSurface> surfaces, std::span<const
       ahead[v] = reach[v] + kAheadOfRadius * radii[v];
     }
   }
+  SurfaceCandidates& candidates = search.candidates;
   update_candidates(surfaces, positions, moves, spread_over_features(surfaces, reach, arena),
-                    spread_over_features(surfaces, ahead, arena), arena, candidates);
+                    spread_over_features(surfaces, ahead, arena), arena, tasks, candidates);
   const std::span<FilterVertex> vertices = arena.make<FilterVertex>(count);
   fill_filter(positions, moves, reach, positions[surfaces[0].first], vertices);
   const FeatureFilters& filters = select_feature_filters();
-  PairFinder finder(candidates, positions, moves, limits, radii, least_gap, pairs);
-  const std::span<std::uint32_t> kept =
-      arena.make<std::uint32_t>(max(candidates.corners.size(), candidates.edges.size()) + 8);
-  int near = filters.corners(candidates.corners.data(), int(candidates.corners.size()), vertices.data(),
-                             kept.data());
-  for (int i = 0; i < near; ++i) finder.add_corner(candidates.corners[kept[std::size_t(i)]]);
-  near = filters.edges(candidates.edges.data(), int(candidates.edges.size()), vertices.data(), kept.data());
-  for (int i = 0; i < near; ++i) finder.add_edges(candidates.edges[kept[std::size_t(i)]]);
+  const int corners = int(candidates.corners.size()), edges = int(candidates.edges.size());
+  const int corner_blocks = count_blocks(corners, kBlockCandidates);
+  search.found.resize(std::size_t(tasks.worker_count()));
+  for (Array<SurfacePair>& one : search.found) one.clear();
+  search.blocks.resize(std::size_t(corner_blocks + count_blocks(edges, kBlockCandidates)));
+  for_blocks(tasks, int(search.blocks.size()), 1, [&](int block, int, int worker) {
+    Array<SurfacePair>& found = search.found[std::size_t(worker)];
+    PairFinder finder(candidates, positions, moves, limits, radii, least_gap, found);
+    FoundPairs& out = search.blocks[block];
+    out = {worker, found.size(), 0};
+    const bool of_corners = block < corner_blocks;
+    const int first = (of_corners ? block : block - corner_blocks) * kBlockCandidates;
+    const int some = min(kBlockCandidates, (of_corners ? corners : edges) - first);
+    const SurfaceCandidate* const from = (of_corners ? candidates.corners : candidates.edges).data() + first;
+    std::uint32_t kept[kBlockCandidates + 8];
+    const int near = (of_corners ? filters.corners : filters.edges)(from, some, vertices.data(), kept);
+    for (int i = 0; i < near; ++i) {
+      if (of_corners)
+        finder.add_corner(from[kept[i]]);
+      else
+        finder.add_edges(from[kept[i]]);
+    }
+    out.end = found.size();
+  });
+  for (const FoundPairs& block : search.blocks) {
+    const Array<SurfacePair>& found = search.found[std::size_t(block.worker)];
+    for (std::size_t i = block.begin; i < block.end; ++i) pairs.push_back(found[i]);
+  }
 }
 
 }  // namespace gyre

@@ -19,6 +19,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace gyre {
 
@@ -38,9 +39,22 @@ struct SurfacePair {
   std::uint64_t key = 0;
 };
 
-// `candidates` is brought up to date where it must be; what is found does not depend on it.
+// What one worker has found in one block of candidates.
+struct FoundPairs {
+  int worker = 0;
+  std::size_t begin = 0, end = 0;  // in the worker's list
+};
+
+// What lasts between searches.
+struct PairSearch {
+  SurfaceCandidates candidates;
+  std::vector<Array<SurfacePair>> found;  // by worker
+  Array<FoundPairs> blocks;
+};
+
+// The candidates are brought up to date where they must be; what is found does not depend on them.
 void find_surface_pairs(std::span<const PlacedSurface> surfaces, std::span<const DVec3> positions,
                         std::span<const DVec3> moves, std::span<const float> limits, float least_gap,
-                        Arena& arena, SurfaceCandidates& candidates, Array<SurfacePair>& pairs);
+                        Arena& arena, TaskSystem& tasks, PairSearch& search, Array<SurfacePair>& pairs);
 
 }  // namespace gyre

@@ -91,11 +91,12 @@ TEST(SurfacePairs, AreThoseOfBruteForce) {
     }
     for (std::size_t v = 0; v < all.positions.size(); ++v)
       limits.push_back(n % 2 == 0 ? 0.02f : random.single(0.0f, 0.04f));
-    SurfaceCandidates candidates;
+    TaskSystem tasks;
+    PairSearch candidates;
     Array<SurfacePair> pairs;
     for (SoftSurface& surface : all.surfaces) surface.radius.assign(surface.radius.size(), 0.02f);
     // All that are within their thickness, whether they touch or not.
-    find_surface_pairs(all.placed, all.positions, still(all), limits, 1.0f, arena, candidates, pairs);
+    find_surface_pairs(all.placed, all.positions, still(all), limits, 1.0f, arena, tasks, candidates, pairs);
     Counted found;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const SurfacePair& pair = pairs[i];
@@ -152,14 +153,15 @@ TEST(SurfacePairs, AreThoseThatAPlanBringsTogether) {
       moves[v] = plan[v] + (double(limits[v]) / length(off)) * off;
       together[v] = DVec3{0.7, 2.0, 0.1};
     }
-    SurfaceCandidates candidates, fresh;
+    TaskSystem tasks;
+    PairSearch candidates, fresh;
     Array<SurfacePair> pairs, same;
     Array<DVec3> before = all.positions;
     for (DVec3& p : before) p += DVec3{random.between(-1e-3, 1e-3), 0.5, random.between(-1e-3, 1e-3)};
-    find_surface_pairs(all.placed, before, plan, limits, 0.2f, arena, candidates, pairs);
-    find_surface_pairs(all.placed, all.positions, plan, limits, 0.2f, arena, candidates, pairs);
-    EXPECT_EQ(candidates.made, 1);
-    find_surface_pairs(all.placed, all.positions, plan, limits, 0.2f, arena, fresh, same);
+    find_surface_pairs(all.placed, before, plan, limits, 0.2f, arena, tasks, candidates, pairs);
+    find_surface_pairs(all.placed, all.positions, plan, limits, 0.2f, arena, tasks, candidates, pairs);
+    EXPECT_EQ(candidates.candidates.new_tracks, long(count));
+    find_surface_pairs(all.placed, all.positions, plan, limits, 0.2f, arena, tasks, fresh, same);
     ASSERT_EQ(pairs.size(), same.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(pairs[i].key, same[i].key);
     for (const double t : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
@@ -172,13 +174,65 @@ TEST(SurfacePairs, AreThoseThatAPlanBringsTogether) {
       });
       all.positions = start;
     }
-    SurfaceCandidates other;
-    find_surface_pairs(all.placed, all.positions, still(all), limits, 0.2f, arena, other, pairs);
-    find_surface_pairs(all.placed, all.positions, together, limits, 0.2f, arena, other, same);
+    PairSearch other;
+    find_surface_pairs(all.placed, all.positions, still(all), limits, 0.2f, arena, tasks, other, pairs);
+    find_surface_pairs(all.placed, all.positions, together, limits, 0.2f, arena, tasks, other, same);
     EXPECT_EQ(pairs.size(), same.size());
-    EXPECT_EQ(other.made, 1);
+    EXPECT_EQ(other.candidates.new_tracks, long(count));
   }
   EXPECT_GT(met, 300);
+}
+
+// Over many sub-steps, with all vertices on their way together, most of them at constant speeds of their own and a few that are stopped or thrown, a search that
+// lasts and has three workers finds what a new one finds. Few vertices get new tracks.
+TEST(SurfacePairs, OfALastingSearchAreThoseOfANewOne) {
+  Mixed random{23};
+  Arena arena;
+  TaskSystem one(1), three(3);
+  long found = 0, renewed = 0, all_vertices = 0;
+  for (int n = 0; n < 4; ++n) {
+    Surfaces all;
+    for (int k = 0; k < 1 + n % 3; ++k) {
+      const int cells = 12 + int(random.next() % 6);
+      Array<DVec3> places = crumpled(cells, 0.04, 0.06, random);
+      for (DVec3& p : places) p.y += 0.02 * k;
+      all.add(places, grid_triangles(cells, cells), 0.008f);
+    }
+    const std::size_t count = all.positions.size();
+    Array<DVec3> moves = still(all);
+    Array<float> limits;
+    limits.resize(count);
+    for (DVec3& move : moves)
+      move = {random.between(-1e-3, 1e-3), random.between(-3e-3, 3e-3), random.between(-1e-3, 1e-3)};
+    PairSearch lasting;
+    Array<SurfacePair> pairs, same;
+    for (int step = 0; step < 40; ++step) {
+      if (step == 20) all.surfaces[0].radius[3] *= 1.5f;  // a reach that grows by itself
+      for (std::size_t v = 0; v < count; ++v) {
+        if (random.between(0, 1) < 0.01)
+          moves[v].y = random.between(0, 1) < 0.5 ? 0.0 : random.between(-0.02, 0.02);
+        limits[v] = 0.1f * float(length(moves[v])) + 1e-3f;
+      }
+      for (int round = 0; round < 2; ++round) {
+        find_surface_pairs(all.placed, all.positions, moves, limits, 0.2f, arena, three, lasting, pairs);
+        PairSearch fresh;
+        find_surface_pairs(all.placed, all.positions, moves, limits, 0.2f, arena, one, fresh, same);
+        ASSERT_EQ(pairs.size(), same.size()) << n << " " << step;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+          ASSERT_EQ(pairs[i].key, same[i].key) << n << " " << step;
+          ASSERT_EQ(pairs[i].distance, same[i].distance);
+        }
+        moves[random.next() % count].x *= -3.0;  // what bounds do
+      }
+      for (std::size_t v = 0; v < count; ++v) all.positions[v] += moves[v] + DVec3{0.3, -0.1 * step, 0.2};
+      lasting.candidates.advance();
+      found += long(pairs.size());
+      all_vertices += 2 * long(count);
+    }
+    renewed += lasting.candidates.new_tracks;
+  }
+  EXPECT_GT(found, 30000);
+  EXPECT_LT(renewed, all_vertices / 4);
 }
 
 // Of two flat sheets, forces act between vertices and faces and between edges that cross, all straight up, and nowhere twice; and between
@@ -191,9 +245,10 @@ TEST(SurfacePairs, TouchAlongTheNormalsOfFlatSheets) {
           0.02f);
   Array<float> limits;
   limits.resize(all.positions.size());
-  SurfaceCandidates candidates;
+  TaskSystem tasks;
+  PairSearch candidates;
   Array<SurfacePair> pairs;
-  find_surface_pairs(all.placed, all.positions, still(all), limits, 1.0f, arena, candidates, pairs);
+  find_surface_pairs(all.placed, all.positions, still(all), limits, 1.0f, arena, tasks, candidates, pairs);
   int corners = 0, rim = 0;
   for (const SurfacePair& pair : pairs) {
     if (!pair.touches) continue;
@@ -219,11 +274,12 @@ TEST(SurfacePairs, OfASheetAtRestAreNone) {
   Surfaces all;
   const Array<DVec3> places = places_of(grid_cloth({1, 1}, {30, 30}, {}, {}));
   all.add(places, grid_triangles(30, 30), 1.0f);  // much thicker than its cells
-  SurfaceCandidates candidates;
+  TaskSystem tasks;
+  PairSearch candidates;
   Array<SurfacePair> pairs;
   Array<float> limits;
   limits.resize(all.positions.size());
-  find_surface_pairs(all.placed, all.positions, still(all), limits, 1.0f, arena, candidates, pairs);
+  find_surface_pairs(all.placed, all.positions, still(all), limits, 1.0f, arena, tasks, candidates, pairs);
   EXPECT_EQ(pairs.size(), 0u);
 }
 
@@ -247,10 +303,12 @@ TEST(DisplacementBounds, RandomMovesNeverCross) {
     Array<std::uint8_t> held;
     held.resize(count);
     limits.assign(count, 0.03f);
-    SurfaceCandidates candidates;
+    TaskSystem tasks;
+    PairSearch candidates;
     for (int move = 0; move < 30; ++move) {
       Array<SurfacePair> pairs;
-      find_surface_pairs(all.placed, all.positions, still(all), limits, 0.2f, arena, candidates, pairs);
+      find_surface_pairs(all.placed, all.positions, still(all), limits, 0.2f, arena, tasks, candidates,
+                         pairs);
       double least = 1.0;
       for (const SurfacePair& pair : pairs) least = min(least, pair.distance / double(pair.thickness));
       // Those that were nearer at the start come no nearer; the rest keeps the least gap.
@@ -267,7 +325,7 @@ TEST(DisplacementBounds, RandomMovesNeverCross) {
       Array<DVec3> there = all.positions;
       for (std::size_t v = 0; v < count; ++v) there[v] += moves[v];
       unbounded += count_crossings(all.placed, there, arena);
-      const BoundReport report = bound_moves(pairs, all.positions, limits, held, {}, moves, arena);
+      const BoundReport report = bound_moves(pairs, all.positions, limits, held, {}, moves, arena, tasks);
       shortened += report.shortened;
       EXPECT_EQ(report.forced + report.crossed, 0);
       for (const double part : {0.31, 0.77, 1.0}) {
@@ -293,13 +351,14 @@ TEST(DisplacementBounds, LeaveMovesAloneThatDoNotApproach) {
   limits.assign(all.positions.size(), 0.2f);
   Array<std::uint8_t> held;
   held.resize(all.positions.size());
-  SurfaceCandidates candidates;
+  TaskSystem tasks;
+  PairSearch candidates;
   Array<SurfacePair> pairs;
-  find_surface_pairs(all.placed, all.positions, still(all), limits, 0.2f, arena, candidates, pairs);
+  find_surface_pairs(all.placed, all.positions, still(all), limits, 0.2f, arena, tasks, candidates, pairs);
   Array<DVec3> moves;
   moves.resize(all.positions.size());
   for (std::size_t v = 25; v < 50; ++v) moves[v] = {0.01, -0.1, 0.0};
-  bound_moves(pairs, all.positions, limits, held, {}, moves, arena);
+  bound_moves(pairs, all.positions, limits, held, {}, moves, arena, tasks);
   for (std::size_t v = 0; v < 25; ++v) EXPECT_EQ(moves[v], DVec3{});
   for (std::size_t v = 25; v < 50; ++v) {
     EXPECT_NEAR(moves[v].x, 0.01, 1e-9);

@@ -43,8 +43,8 @@ struct TangledEdge {
 
 struct SurfaceTangle {
   Array<EdgeCrossing> crossings;
-  Array<TangledEdge> edges;        // of the crossings, those that know a way
-  Array<std::uint32_t> surface;    // by vertex: its placed surface; only if there are crossings
+  Array<TangledEdge> edges;      // of the crossings, those that know a way
+  Array<std::uint32_t> surface;  // by vertex: its placed surface; only if there are crossings
   // By vertex: bit n % 64 for surface n if an edge or triangle at it, or at a vertex next to it, crosses one of n.
   Array<std::uint64_t> partners;
 

@@ -113,7 +113,7 @@ struct SoftScene {
       }
     }
     const SurfaceVertices vertices{all.positions, velocities, inverse_mass};
-    find_surface_contacts(all.placed, vertices, settings, contact_arena, contacts);
+    find_surface_contacts(all.placed, vertices, settings, contact_arena, bench.tasks, contacts);
     for (int n = 0; n < outer; ++n) {
       solve_surface_contacts(vertices, settings, contact_arena, contacts);
       at = 0;
@@ -135,7 +135,7 @@ struct SoftScene {
       finish_implicit(bodies[k], steps[k], bench.kernels, bench.tasks);
       for (int i = 0; i < p.count; ++i) targets.push_back(p.place(i));
     }
-    report = move_surfaces(all.placed, vertices, targets, settings, contact_arena, contacts);
+    report = move_surfaces(all.placed, vertices, targets, settings, contact_arena, bench.tasks, contacts);
     at = 0;
     for (SoftBody& body : bodies) {
       for (int i = 0; i < body.particles.count; ++i) body.particles.set_place(i, all.positions[at++]);

@@ -91,7 +91,7 @@ void walk_parts(const SoftEntry& entry, const SoftBoxes& boxes, DVec3 start, DVe
   while (walk_on(boxes.surface.nodes.data(), walk)) {
     const std::uint32_t first = leaf_first(walk.leaf);
     for (std::uint32_t i = first; i < first + leaf_count(walk.leaf); ++i) {
-      if (meets(line, boxes.surface.triangles[i], walk.max_fraction, enter))
+      if (meets(line, start_box(boxes.surface.triangles[i]), walk.max_fraction, enter))
         max_fraction = visit(i, max_fraction);
     }
     walk.max_fraction = min(walk.max_fraction, reach(max_fraction));

@@ -109,8 +109,10 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
     carry_explicitly(entry, step);
     return step;
   }
-  if (integrator == SoftIntegrator::sdirk2) begin_two_stages(entry, settings, step, kernels, arena, tasks);
-  if (integrator == SoftIntegrator::implicit)
+  // Impulses of contacts come as jumps, which the second stage would carry beyond where they lead.
+  const bool has_stages = integrator == SoftIntegrator::sdirk2 && !settings.touches;
+  if (has_stages) begin_two_stages(entry, settings, step, kernels, arena, tasks);
+  if (!has_stages)
     begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
   if (step.method == SoftMethod::rope && settings.asks_for_inverse_masses)
     find_rope_inverse_masses(step.rope, arena);

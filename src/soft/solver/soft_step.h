@@ -18,6 +18,7 @@ struct SoftStepSettings {
   float step = 0.0f;                          // s
   Vec3 gravity{};                             // m/s^2
   std::span<const CarriedInertia> carried{};  // its memory must last as long as the sub-step
+  bool touches = false;  // a shape is near: a sub-step of sdirk2 is one of backward Euler
   bool asks_for_inverse_masses = true;        // false: inverse_mass() is not called in the sub-step
 };
 
