@@ -359,7 +359,7 @@ class World {
   // A definition with which the fluid goes on as it is: its fields or particles are in it.
   GasDef gas_def(FluidId fluid) const;
   LiquidDef liquid_def(FluidId fluid) const;
-  // Pairs of an edge and a triangle without a common vertex that intersect, of one or of two cloths: exact, for tests, and slow.
+  // Pairs of an edge and a triangle without a common vertex that intersect, of one or of two cloths or solids: exact, for tests, and slow.
   std::size_t cloth_crossings() const;
 
   // Copied at most once after a change, by the first thread that asks; both stay valid side by side until the next change or step.

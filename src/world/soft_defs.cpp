@@ -1,9 +1,9 @@
 // World::cloth_def, World::solid_def: definitions with which cloths and solids go on as they are: with present vertices and, if they were torn, present
-// elements. World::cloth_crossings: where cloths pass through themselves and each other: a number, exact for these positions. The test is that of
+// elements. World::cloth_crossings: where cloths and solids pass through themselves and each other: a number, exact for these positions. The test is that of
 // soft/contact/surface_crossings.h. In: the entries of a world.
 #include "base/float_mode.h"
+#include "dynamics/soft/soft_surfaces.h"
 #include "math/rotation.h"
-#include "soft/contact/surface_crossings.h"
 #include "soft/store/soft_builder.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
@@ -31,7 +31,7 @@ bool is_torn(const SoftEntry& entry) {
 std::vector<Vec3> local_rest_places(const SoftEntry& entry, const Pose& pose) {
   const DQuat turn = normalized(to_double(pose.orientation));
   std::vector<Vec3> out;
-  for (const DVec3& place : rest_places(*entry.def, entry.damage.roots))
+  for (const DVec3& place : rest_places(entry))
     out.push_back(to_float(rotate_inverse(turn, place - pose.position)));
   return out;
 }
@@ -67,16 +67,8 @@ SolidDef World::solid_def(SoftId solid) const {
 
 std::size_t World::cloth_crossings() const {
   const FloatMode mode;
-  Array<PlacedSurface> placed;
-  Array<DVec3> positions;
-  state_->soft.for_each([&](const SoftEntry& entry) {
-    if (entry.kind != SoftKind::cloth || entry.contact_surface == nullptr || !entry.contact_surface->touches_soft) return;
-    placed.push_back({entry.contact_surface.get(), std::uint32_t(positions.size())});
-    const Particles& p = entry.body.particles;
-    for (int i = 0; i < p.count; ++i) positions.push_back(p.place(i));
-  });
   Arena arena;
-  return placed.empty() ? 0 : std::size_t(count_crossings(placed.view(), positions.view(), arena));
+  return std::size_t(count_soft_crossings(state_->soft, arena));
 }
 
 }  // namespace gyre

@@ -65,10 +65,20 @@ void VertexSplitter::split(std::uint32_t vertex, std::span<const std::uint8_t> b
       if (group_[i] != g) continue;
       for (std::uint32_t c = 0; c < arity_; ++c) {
         std::uint32_t& corner = corners_[listed_[i] * arity_ + c];
-        if (corner == vertex) corner = number;
+        if (corner != vertex) continue;
+        corner = number;
+        changes_.push_back({listed_[i] * arity_ + c, vertex});
       }
     }
   }
+}
+
+void VertexSplitter::undo(std::uint32_t vertices) {
+  while (!changes_.empty() && corners_[changes_.back().place] >= vertices) {
+    corners_[changes_.back().place] = changes_.back().before;
+    changes_.resize(changes_.size() - 1);
+  }
+  source_.resize(vertices);
 }
 
 }  // namespace gyre

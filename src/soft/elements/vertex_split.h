@@ -22,6 +22,8 @@ class VertexSplitter {
   std::span<const std::uint32_t> around(std::uint32_t vertex);
   // `beyond[i]`: the side of around(vertex)[i]. Appends the new vertices to `made`.
   void split(std::uint32_t vertex, std::span<const std::uint8_t> beyond, Array<std::uint32_t>& made);
+  // Takes back all splits since there were `vertices` vertices.
+  void undo(std::uint32_t vertices);
   // The vertex that it was at the beginning.
   std::uint32_t source(std::uint32_t vertex) const { return source_[vertex]; }
   std::uint32_t vertices() const { return std::uint32_t(source_.size()); }
@@ -35,6 +37,11 @@ class VertexSplitter {
   Array<std::uint32_t> source_;            // the vertex that it was then
   Array<std::uint32_t> listed_, waiting_;
   Array<std::int32_t> group_;
+  struct Change {
+    std::uint32_t place = 0;   // in the corners
+    std::uint32_t before = 0;  // the vertex that was there
+  };
+  Array<Change> changes_;
 };
 
 }  // namespace gyre

@@ -5,6 +5,7 @@
 #include "math/standard_gravity.h"
 #include "soft/body/enclosed_gas.h"
 #include "soft/elements/cloth.h"
+#include "soft/elements/crack_gap.h"
 #include "soft/elements/rope.h"
 #include "soft/elements/solid.h"
 #include "soft/mesh/tetrahedral_fill.h"
@@ -25,6 +26,12 @@ Array<DVec3> placed(std::span<const Vec3> vertices, const Pose& pose) {
   Array<DVec3> places;
   const DQuat turn = to_double(pose.orientation);
   for (const Vec3 vertex : vertices) places.push_back(pose.position + rotate(turn, DVec3(vertex)));
+  return places;
+}
+
+Array<DVec3> places_of(const SoftBody& body) {
+  Array<DVec3> places;
+  for (int i = 0; i < body.particles.count; ++i) places.push_back(body.particles.place(i));
   return places;
 }
 
@@ -157,7 +164,7 @@ Face make_face(std::span<const std::uint32_t> tetrahedra, std::uint32_t tetrahed
 }
 
 // The faces that belong to one tetrahedron alone, seen from outside counter-clockwise, in the order of the tetrahedra.
-void add_outer_faces(std::span<const std::uint32_t> tetrahedra, const SoftBody& body,
+void add_outer_faces(std::span<const std::uint32_t> tetrahedra, std::span<const DVec3> places,
                      Array<std::uint32_t>& triangles) {
   Array<Face> faces, scratch;
   for (std::uint32_t t = 0; t < tetrahedra.size() / 4; ++t) {
@@ -182,10 +189,8 @@ void add_outer_faces(std::span<const std::uint32_t> tetrahedra, const SoftBody& 
     return a.tetrahedron != b.tetrahedron ? a.tetrahedron < b.tetrahedron : a.opposite < b.opposite;
   });
   for (const Face& face : outer) {
-    const DVec3 a = body.particles.place(int(face.low)), b = body.particles.place(int(face.middle)),
-                c = body.particles.place(int(face.high)),
-                inner =
-                    body.particles.place(int(tetrahedra[4 * std::size_t(face.tetrahedron) + face.opposite]));
+    const DVec3 a = places[face.low], b = places[face.middle], c = places[face.high],
+                inner = places[tetrahedra[4 * std::size_t(face.tetrahedron) + face.opposite]];
     const bool is_outward = dot(cross(b - a, c - a), inner - a) < 0.0;
     triangles.push_back(face.low);
     triangles.push_back(is_outward ? face.middle : face.high);
@@ -199,7 +204,7 @@ void build_filled(const SolidSurface& surface, const Pose& pose, SolidMaterial m
       fill_with_tetrahedra(surface.vertices, surface.triangles, surface.resolution);
   material.density = float(double(material.density) * mesh->surface_volume / mesh->filled_volume);
   entry.body = tetrahedral_solid(placed(mesh->vertices, pose), mesh->tetrahedra, material);
-  add_outer_faces(mesh->tetrahedra, entry.body, entry.triangles);
+  add_outer_faces(mesh->tetrahedra, places_of(entry.body), entry.triangles);
   entry.surface = std::move(mesh->surface);
 }
 
@@ -210,12 +215,12 @@ void build(const SolidDef& def, SoftEntry& entry) {
   if (def.box) {
     const int cells[3] = {def.box->cells[0], def.box->cells[1], def.box->cells[2]};
     entry.body = box_solid(def.box->half_extents, cells, pose, material);
-    add_outer_faces(box_tetrahedra(cells), entry.body, entry.triangles);
+    add_outer_faces(box_tetrahedra(cells), places_of(entry.body), entry.triangles);
   } else if (def.surface) {
     build_filled(*def.surface, pose, material, entry);
   } else {
     entry.body = tetrahedral_solid(placed(def.vertices, pose), def.tetrahedra, material);
-    add_outer_faces(def.tetrahedra, entry.body, entry.triangles);
+    add_outer_faces(def.tetrahedra, places_of(entry.body), entry.triangles);
   }
 }
 
@@ -233,13 +238,12 @@ float edge_size(const SoftEntry& entry) {
   return count > 0 ? float(sum / double(count)) : 0.0f;
 }
 
-// Solids keep this share of the length of an edge from other surfaces and from themselves.
+// Solids keep this share of the length of an edge from other surfaces and from themselves. The sides of a crack are twice as far apart at rest, so that they just touch.
 constexpr float kSolidRadius = 0.02f;
 
 std::shared_ptr<const SoftSurface> make_surface(const SoftEntry& entry, const SoftDef& def) {
   if (entry.triangles.empty()) return nullptr;
-  Array<DVec3> places;
-  for (int i = 0; i < entry.body.particles.count; ++i) places.push_back(entry.body.particles.place(i));
+  const Array<DVec3> places = places_of(entry.body);
   const float radius = entry.kind == SoftKind::solid ? kSolidRadius * entry.size : entry.radius;
   SoftSurface surface = make_surface(places, entry.triangles, radius);
   const SoftSettings& settings = entry.settings();
@@ -248,10 +252,6 @@ std::shared_ptr<const SoftSurface> make_surface(const SoftEntry& entry, const So
   surface.dynamic_friction = settings.dynamic_friction;
   if (const ClothDef* const cloth = std::get_if<ClothDef>(&def))
     surface.self_collision = cloth->self_collision;
-  // New faces lie on each other, which the bounds on moves would take for a crossing.
-  if (const SolidDef* const solid = std::get_if<SolidDef>(&def);
-      solid != nullptr && solid->fracture_stress > 0.0f)
-    surface.self_collision = false;
   return std::make_shared<const SoftSurface>(std::move(surface));
 }
 
@@ -275,34 +275,44 @@ SoftEntry build_soft(std::shared_ptr<const SoftDef> def) {
   return entry;
 }
 
-Array<DVec3> rest_places(const SoftDef& def, std::span<const std::uint32_t> roots) {
-  const ClothDef* const cloth = std::get_if<ClothDef>(&def);
-  const Array<DVec3> all = cloth != nullptr ? places_of(*cloth) : places_of(std::get<SolidDef>(def));
+Array<DVec3> whole_places(const SoftEntry& entry) {
+  const ClothDef* const cloth = std::get_if<ClothDef>(entry.def.get());
+  const Array<DVec3> all = cloth != nullptr ? places_of(*cloth) : places_of(std::get<SolidDef>(*entry.def));
   Array<DVec3> places;
-  places.reserve(roots.size());
-  for (const std::uint32_t root : roots) places.push_back(all[root]);
+  places.reserve(entry.damage.roots.size());
+  for (const std::uint32_t root : entry.damage.roots) places.push_back(all[root]);
   return places;
 }
 
-SoftBody build_elements(const SoftDef& def, std::span<const std::uint32_t> corners,
-                        std::span<const std::uint32_t> roots) {
-  const Array<DVec3> places = rest_places(def, roots);
-  if (const ClothDef* const cloth = std::get_if<ClothDef>(&def)) {
+Array<DVec3> rest_places(const SoftEntry& entry) {
+  Array<DVec3> places = whole_places(entry);
+  if (entry.kind != SoftKind::solid) return places;
+  const SoftDamage& damage = entry.damage;
+  open_cracks(damage.corners, damage.roots, double(2.0f * kSolidRadius * entry.size),
+              {places.data(), places.size()});
+  return places;
+}
+
+SoftBody build_elements(const SoftEntry& entry) {
+  const Array<DVec3> places = rest_places(entry);
+  const Array<std::uint32_t>& corners = entry.damage.corners;
+  if (const ClothDef* const cloth = std::get_if<ClothDef>(entry.def.get())) {
     ClothMaterial material = material_of(*cloth);
     SoftBody body = mesh_cloth(places, corners, material);
     if (cloth->links != ClothLinks::rods) return body;
     material.stretch_stiffness = rod_stiffness(*cloth, body);
     return mesh_cloth(places, corners, material);
   }
-  return tetrahedral_solid(places, corners, material_of(std::get<SolidDef>(def)));
+  return tetrahedral_solid(places, corners, material_of(std::get<SolidDef>(*entry.def)));
 }
 
-void build_surface(SoftEntry& entry, std::span<const std::uint32_t> corners) {
+void build_surface(SoftEntry& entry) {
+  const Array<std::uint32_t>& corners = entry.damage.corners;
   entry.triangles.clear();
   if (entry.kind == SoftKind::cloth) {
     entry.triangles.assign(corners);
   } else {
-    add_outer_faces(corners, entry.body, entry.triangles);
+    add_outer_faces(corners, places_of(entry.body), entry.triangles);
   }
   entry.contact_surface = make_surface(entry, *entry.def);
 }

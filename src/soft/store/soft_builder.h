@@ -18,13 +18,14 @@ Error check_soft(const SolidDef& def);
 // The definition must have passed its check.
 SoftEntry build_soft(std::shared_ptr<const SoftDef> def);
 
-// The body of a cloth or solid from elements: `corners` of triangles or tetrahedra, and for each particle the vertex of the definition where it is at
-// rest. Springs of such a cloth lie along the edges of its triangles.
-SoftBody build_elements(const SoftDef& def, std::span<const std::uint32_t> corners, std::span<const std::uint32_t> roots);
-// Where the particles of such a body are at rest.
-Array<DVec3> rest_places(const SoftDef& def, std::span<const std::uint32_t> roots);
-// The triangles of the surface, from elements, and what contacts need of them. The particles are where they are at rest, so that it is the same
-// whenever it is made.
-void build_surface(SoftEntry& entry, std::span<const std::uint32_t> corners);
+// The body of a cloth or solid from the elements of its damage. Springs of such a cloth lie along the edges of its triangles.
+SoftBody build_elements(const SoftEntry& entry);
+// Where the particles of such a body were at rest before it was torn or broken.
+Array<DVec3> whole_places(const SoftEntry& entry);
+// Where the particles of such a body are at rest. The sides of the cracks of a solid are a thickness apart.
+Array<DVec3> rest_places(const SoftEntry& entry);
+// The triangles of the surface, from the elements of its damage, and what contacts need of them. The particles are where they are at rest, so that it is
+// the same whenever it is made.
+void build_surface(SoftEntry& entry);
 
 }  // namespace gyre

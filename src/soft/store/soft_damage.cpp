@@ -2,6 +2,8 @@
 
 #include "base/container/sort.h"
 #include "math/dense.h"
+#include "soft/contact/surface_crossings.h"
+#include "soft/elements/crack_gap.h"
 #include "soft/elements/solid.h"
 #include "soft/elements/vertex_split.h"
 #include "soft/store/soft_builder.h"
@@ -14,9 +16,8 @@ namespace gyre {
 namespace {
 
 constexpr int kMaxSplits = 64;  // of vertices in one step, those of their neighbours apart
-constexpr float kSolidGap =
-    0.04f;  // of the mean edge: what new faces of a solid are apart, twice what surfaces keep
 constexpr float kMaxGap = 0.2f;  // of the mean edge: more is not made by moving vertices
+constexpr int kHalvings = 4;  // of the moves of parts that would cross others
 constexpr int kTetsAtOnce = 256;
 
 struct Excess {
@@ -39,6 +40,10 @@ DVec3 middle_of(const Particles& p, const std::uint32_t* corner, int arity) {
 }
 
 // Twice the area, or six times the volume, at `places`.
+double determinant(const double (&m)[9]) {
+  return dot(cross(DVec3{m[0], m[1], m[2]}, DVec3{m[3], m[4], m[5]}), DVec3{m[6], m[7], m[8]});
+}
+
 double measure_of(std::span<const DVec3> places, const std::uint32_t* corner, int arity) {
   const DVec3 a = places[corner[0]], b = places[corner[1]] - a, c = places[corner[2]] - a;
   return arity == 3 ? length(cross(b, c)) : absolute(dot(cross(b, c), places[corner[3]] - a));
@@ -141,6 +146,7 @@ class Tear {
         corners_(entry.damage.corners),
         splitter_(corners_.view(), arity_, count_) {
     busy_.resize(count_);
+    if (arity_ == 4) list_around_roots();
   }
 
   void run(std::span<const Excess> excesses) {
@@ -171,7 +177,11 @@ class Tear {
     share_masses(weight);
     damage.corners = corners_;
     rebuild(before);
-    move_apart();
+    if (arity_ == 3) {
+      move_apart(recede_in_plane());
+    } else {
+      move_apart(follow_rest());
+    }
   }
 
  private:
@@ -193,18 +203,76 @@ class Tear {
     splitter_.split(vertex, beyond.view(), made_);
     if (made_.size() == first) return false;
     // A neighbour by which alone parts still hang together lets them go.
-    for (const std::uint32_t element : around) {
-      for (int k = 0; k < arity_; ++k) {
-        const std::uint32_t neighbour = corners_[element * std::uint32_t(arity_) + std::uint32_t(k)];
-        const std::uint32_t source = splitter_.source(neighbour);
-        busy_[source] = 1;
-        if (source == vertex) continue;
-        Array<std::uint8_t> same;
-        same.resize(splitter_.around(neighbour).size());
-        splitter_.split(neighbour, same.view(), made_);
+    for_each_corner(around.view(), [&](std::uint32_t neighbour) {
+      if (splitter_.source(neighbour) == vertex) return;
+      Array<std::uint8_t> same;
+      same.resize(splitter_.around(neighbour).size());
+      splitter_.split(neighbour, same.view(), made_);
+    });
+    if (arity_ == 4 && !have_room(around.view(), first)) return false;
+    for_each_corner(around.view(), [&](std::uint32_t one) { busy_[splitter_.source(one)] = 1; });
+    return true;
+  }
+
+  void list_around_roots() {
+    whole_ = whole_places(entry_), roots_ = entry_.damage.roots;
+    parts_.assign(count_, 0u), around_begin_.assign(count_ + 1, 0u);
+    for (const std::uint32_t root : roots_) ++parts_[root];
+    for (const std::uint32_t corner : corners_) ++around_begin_[roots_[corner] + 1];
+    for (std::uint32_t v = 0; v < count_; ++v) around_begin_[v + 1] += around_begin_[v];
+    around_.resize(corners_.size());
+    Array<std::uint32_t> next = around_begin_;
+    for (std::size_t k = 0; k < corners_.size(); ++k)
+      around_[next[roots_[corners_[k]]]++] = std::uint32_t(k) / 4;
+    for (std::size_t k = 0; k < corners_.size(); k += 4)
+      element_volume_.push_back(measure_of(whole_.view(), corners_.data() + k, 4));
+  }
+
+  // Takes the splits since made_[first] back if parts of a vertex around them would grip each other (crack_gap.h).
+  bool have_room(std::span<const std::uint32_t> elements, std::size_t first) {
+    for (std::size_t i = first; i < made_.size(); ++i) {
+      roots_.push_back(roots_[splitter_.source(made_[i])]);
+      ++parts_[roots_.back()];
+    }
+    volumes_.resize(roots_.size()), moves_.resize(roots_.size());
+    bool fits = true;
+    for_each_corner(elements, [&](std::uint32_t one) { fits = fits && has_room(roots_[one]); });
+    if (fits) return true;
+    for (std::size_t i = first; i < made_.size(); ++i) --parts_[roots_[made_[i]]];
+    roots_.resize(made_[first]);
+    splitter_.undo(made_[first]);
+    made_.resize(first);
+    return false;
+  }
+
+  // Calls visit(vertex) for all corners of elements, as they are now.
+  template <class Visit>
+  void for_each_corner(std::span<const std::uint32_t> elements, Visit&& visit) const {
+    for (const std::uint32_t element : elements) {
+      for (int k = 0; k < arity_; ++k) visit(corners_[element * std::uint32_t(arity_) + std::uint32_t(k)]);
+    }
+  }
+  // False if the parts of a vertex of the definition would grip each other.
+  bool has_room(std::uint32_t root) {
+    if (parts_[root] < 2) return true;
+    near_.clear();
+    for (std::uint32_t k = around_begin_[root]; k < around_begin_[root + 1]; ++k) {
+      const std::uint32_t* const corner = corners_.data() + 4 * around_[k];
+      for (int n = 0; n < 4; ++n) {
+        near_.push_back(corner[n]);
+        volumes_[corner[n]] = 0.0, moves_[corner[n]] = {};
       }
     }
-    return true;
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+      const std::uint32_t element = around_[around_begin_[root] + std::uint32_t(k) / 4];
+      volumes_[near_[k]] += element_volume_[element];
+    }
+    list_crack_faces(near_.view(), roots_.view(), whole_.view(), faces_);
+    std::size_t begin = 0, end = 0;
+    while (begin < faces_.size() && faces_[begin].root != root) ++begin;
+    for (end = begin; end < faces_.size() && faces_[end].root == root; ++end) {}
+    return separate_parts(faces_.view().subspan(begin, end - begin), volumes_.view(),
+                          {moves_.data(), moves_.size()});
   }
 
   // Of each vertex, by the elements that it has now; only of those that were split.
@@ -237,10 +305,10 @@ class Tear {
 
   // The surface is that of the places at rest, as after a snapshot is loaded.
   void rebuild(const Particles& before) {
-    SoftBody next = build_elements(*entry_.def, entry_.damage.corners, entry_.damage.roots);
+    SoftBody next = build_elements(entry_);
     next.held = entry_.body.held;
     entry_.body = std::move(next);
-    build_surface(entry_, entry_.damage.corners);
+    build_surface(entry_);
     Particles& p = entry_.body.particles;
     for (int i = 0; i < p.count; ++i) {
       const int from = int(splitter_.source(std::uint32_t(i)));
@@ -251,40 +319,108 @@ class Tear {
     }
   }
 
-  // Parts of a vertex move towards the elements around them, about the centre of mass of all; one that is held stays.
-  void move_apart() {
-    Particles& p = entry_.body.particles;
+  // Parts of a vertex of a cloth recede towards the triangles around them.
+  Array<DVec3> recede_in_plane() const {
+    const Particles& p = entry_.body.particles;
     Array<DVec3> way;
     way.resize(std::size_t(p.count));
-    for (std::size_t first = 0; first < corners_.size(); first += std::size_t(arity_)) {
+    for (std::size_t first = 0; first < corners_.size(); first += 3) {
       const std::uint32_t* const corner = corners_.data() + first;
-      const DVec3 middle = middle_of(p, corner, arity_);
-      for (int k = 0; k < arity_; ++k) way[corner[k]] += middle - p.place(int(corner[k]));
+      const DVec3 middle = middle_of(p, corner, 3);
+      for (int k = 0; k < 3; ++k) way[corner[k]] += middle - p.place(int(corner[k]));
     }
-    const float size = entry_.size;
-    const float gap =
-        min(entry_.kind == SoftKind::solid ? kSolidGap * size : 2.0f * entry_.radius, kMaxGap * size);
+    const double gap = double(min(2.0f * entry_.radius, kMaxGap * entry_.size));
+    for (DVec3& one : way) {
+      const double size = length(one);
+      one = size > 0.0 ? (0.5 * gap / size) * one : DVec3{};
+    }
+    return way;
+  }
+
+  // Parts of a vertex of a solid go where their places at rest have gone, as the elements around them are deformed.
+  Array<DVec3> follow_rest() const {
+    const Particles& p = entry_.body.particles;
+    const Array<DVec3> rest = rest_places(entry_);
+    Array<DVec3> way;
+    Array<double> whole;
+    way.resize(std::size_t(p.count)), whole.resize(std::size_t(p.count));
+    for (std::size_t first = 0; first < corners_.size(); first += 4) {
+      const std::uint32_t* const corner = corners_.data() + first;
+      const auto before = [&](int k) { return rest_[splitter_.source(corner[k])]; };
+      double edges[9], inverse[9];
+      for (int k = 0; k < 3; ++k) {
+        const DVec3 edge = before(k + 1) - before(0);
+        edges[3 * k] = edge.x, edges[3 * k + 1] = edge.y, edges[3 * k + 2] = edge.z;
+      }
+      if (!invert_3x3(edges, inverse)) continue;
+      const double volume = absolute(determinant(edges));
+      for (int k = 0; k < 4; ++k) {
+        const DVec3 moved = rest[corner[k]] - before(k);
+        DVec3 sum{};
+        for (int n = 0; n < 3; ++n) {
+          const double part = inverse[n] * moved.x + inverse[3 + n] * moved.y + inverse[6 + n] * moved.z;
+          sum += part * (p.place(int(corner[n + 1])) - p.place(int(corner[0])));
+        }
+        way[corner[k]] += volume * sum, whole[corner[k]] += volume;
+      }
+    }
+    for (std::size_t v = 0; v < way.size(); ++v)
+      if (whole[v] > 0.0) way[v] = (1.0 / whole[v]) * way[v];
+    return way;
+  }
+
+  // Takes the mean from the moves of the parts of each vertex that was split, so that their centre of mass stays. One that is held stays itself.
+  void take_means(Array<DVec3>& way) const {
+    const Particles& p = entry_.body.particles;
     Array<DVec3> moment;
     Array<double> mass;
     moment.resize(count_), mass.resize(count_);
-    const auto move_of = [&](std::uint32_t v) {
-      const double size_of_way = length(way[v]);
-      return size_of_way > 0.0 ? (0.5 * double(gap) / size_of_way) * way[v] : DVec3{};
-    };
     Array<std::uint8_t> parted;
     parted.resize(count_);
     for (const std::uint32_t one : made_) parted[splitter_.source(one)] = 1;
-    for (std::uint32_t v = 0; v < std::uint32_t(p.count); ++v) {
+    const auto moves = [&](std::uint32_t v) {
       const std::uint32_t source = splitter_.source(v);
-      if (parted[source] == 0 || p.loose[source] == 0.0f) continue;
-      moment[source] += double(p.mass[v]) * move_of(v), mass[source] += double(p.mass[v]);
-    }
-    for (std::uint32_t v = 0; v < std::uint32_t(p.count); ++v) {
+      return parted[source] != 0 && p.loose[source] != 0.0f;
+    };
+    for (std::uint32_t v = 0; v < way.size(); ++v) {
+      if (!moves(v)) continue;
       const std::uint32_t source = splitter_.source(v);
-      if (parted[source] == 0 || p.loose[v] == 0.0f) continue;
-      const DVec3 mean = mass[source] > 0.0 ? (1.0 / mass[source]) * moment[source] : DVec3{};
-      p.set_place(int(v), p.place(int(v)) + move_of(v) - mean);
+      moment[source] += double(p.mass[v]) * way[v], mass[source] += double(p.mass[v]);
     }
+    for (std::uint32_t v = 0; v < way.size(); ++v) {
+      const std::uint32_t source = splitter_.source(v);
+      way[v] = moves(v) ? way[v] - (1.0 / mass[source]) * moment[source] : DVec3{};
+    }
+  }
+
+  // Moves the parts. Where they would cross others, moves are halved: the rest is done by the stress of the room that is missing.
+  void move_apart(Array<DVec3> way) {
+    take_means(way);
+    Particles& p = entry_.body.particles;
+    Array<DVec3> places;
+    for (int v = 0; v < p.count; ++v) places.push_back(p.place(v));
+    const PlacedSurface placed{entry_.contact_surface.get(), 0};
+    Array<DVec3> ends;
+    Array<EdgeCrossing> crossings;
+    Arena arena;
+    for (int round = 0;; ++round) {
+      ends = places;
+      for (std::size_t v = 0; v < ends.size(); ++v) ends[v] += way[v];
+      if (round == kHalvings || arity_ == 3) break;
+      list_passing_edges({&placed, 1}, ends.view(), arena, crossings);
+      if (crossings.empty()) break;
+      Array<std::uint8_t> halved;
+      halved.resize(count_);
+      for (const EdgeCrossing& one : crossings) {
+        const SurfaceEdge& edge = placed.surface->edges[one.edge];
+        const SoftTriangle& triangle = placed.surface->triangles[one.triangle];
+        for (const std::uint32_t v : {edge.a, edge.b, triangle.corner[0], triangle.corner[1], triangle.corner[2]})
+          halved[splitter_.source(v)] = 1;
+      }
+      for (std::uint32_t v = 0; v < way.size(); ++v)
+        if (halved[splitter_.source(v)] != 0) way[v] = 0.5 * way[v];
+    }
+    for (int v = 0; v < p.count; ++v) p.set_place(v, ends[std::size_t(v)]);
   }
 
   SoftEntry& entry_;
@@ -295,6 +431,16 @@ class Tear {
   VertexSplitter splitter_;
   Array<std::uint8_t> busy_;
   Array<std::uint32_t> made_;
+  // Of a solid: where particles were at rest before anything broke, the volumes of elements, the vertex of the definition that each vertex was, into how
+  // many each of those is split, and the elements around each of those.
+  Array<DVec3> whole_;
+  Array<double> element_volume_;
+  Array<std::uint32_t> roots_, parts_, around_begin_, around_;
+  // Of has_room().
+  Array<std::uint32_t> near_;
+  Array<double> volumes_;
+  Array<DVec3> moves_;
+  Array<CrackFace> faces_;
 };
 
 }  // namespace
@@ -350,9 +496,9 @@ bool rebuild_damaged(SoftEntry& entry) {
     if (!is_finite(one)) return false;
   }
   if (count > before) {
-    entry.body = build_elements(*entry.def, damage.corners, damage.roots);
+    entry.body = build_elements(entry);
     for (std::size_t i = 0; i < count; ++i) entry.body.particles.mass[i] = damage.mass[i];
-    build_surface(entry, damage.corners);
+    build_surface(entry);
   }
   if (!damage.flow.empty()) renew_flow(entry);
   return true;
@@ -363,13 +509,13 @@ void tear_soft(SoftEntry& entry, TaskSystem& tasks, Array<SoftSplit>& out) {
   Array<Excess> excesses, scratch;
   Array<DVec3> rest;
   if (entry.kind == SoftKind::cloth) {
-    rest = rest_places(*entry.def, entry.damage.roots);
+    rest = rest_places(entry);
     find_strained_edges(entry, rest.view(), excesses);
   } else {
     find_stressed_vertices(entry, tasks, excesses);
   }
   if (excesses.empty()) return;
-  if (rest.empty()) rest = rest_places(*entry.def, entry.damage.roots);
+  if (rest.empty()) rest = rest_places(entry);
   scratch.resize(excesses.size());
   merge_sort(excesses.view(), scratch.view(),
              [](const Excess& a, const Excess& b) { return a.amount > b.amount; });
