@@ -9,8 +9,10 @@ namespace gyre {
 
 namespace {
 
-// How often impulses are found and given in a sub-step.
-constexpr int kSurfaceRounds = 2;
+// How often impulses are found and given in a sub-step: at least twice, and more often where pairs still close by more than this share of their thickness. Moves
+// that the bounds have to cut stretch a stiff body.
+constexpr int kMaxSurfaceRounds = 12;
+constexpr float kMaxClosing = 0.5f;
 
 SoftWork& work_at(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
 SoftEntry& entry_at(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
@@ -52,7 +54,7 @@ void give_owed(SoftSolve& s) {
       owed = {};
     }
     const SoftIntegrator scheme = entry_at(s, member).settings().integrator;
-  if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
+    if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
     respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, work.tasks);
     add_change(entry, work.step, work.change.view(), 1.0f);
     find_carried_steps(s, member);
@@ -109,8 +111,7 @@ void find_crossings(SoftSolve& s) {
     bool moves = false;
     for (const std::uint32_t v : one.vertex) moves = moves || all.inverse_mass[v] > 0.0f;
     if (!moves) continue;
-    for (const std::uint32_t v : {one.vertex[0], one.vertex[2]})
-      crossings_of(tangle.surface[v]).moves = true;
+    for (const std::uint32_t v : {one.vertex[0], one.vertex[2]}) crossings_of(tangle.surface[v]).moves = true;
   }
 }
 
@@ -190,8 +191,16 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
   const SurfaceContactSettings settings = settings_of(s);
   find_crossings(s);
   find_surface_contacts(all.placed, vertices, settings, all.arena, all.contacts);
-  for (int round = 0; round < kSurfaceRounds; ++round) {
+  Array<SurfaceImpulse> before;
+  Array<Vec3> start;
+  for (int round = 0; round < kMaxSurfaceRounds; ++round) {
+    before = all.contacts.impulses, start = all.velocities;
     solve_surface_contacts(vertices, settings, all.arena, all.contacts);
+    give_owed(s);
+    gather_velocities(s);
+    if (round == 0) continue;
+    if (worst_closing(vertices, settings, all.contacts) < kMaxClosing) break;
+    if (!extend_impulses(before.view(), start.view(), vertices, settings, all.contacts)) continue;
     give_owed(s);
     gather_velocities(s);
   }

@@ -65,11 +65,11 @@ struct SurfaceContacts {
   Array<Vec3> totals, owed;
   SurfaceCandidates candidates;
   SurfaceTangle tangle;  // when the sub-step began
-  Array<DVec3> plan;    // m, by vertex: the moves for which pairs were found, against the mean of all
-  Array<float> limits;  // m, by vertex: how far it may end from its plan, or pairs are found again
-  Array<Vec3> pushes;   // m, by vertex
-  int rounds = 0;       // of finding pairs, in the last sub-step
-  int touching = 0;     // pairs with an impulse
+  Array<DVec3> plan;     // m, by vertex: the moves for which pairs were found, against the mean of all
+  Array<float> limits;   // m, by vertex: how far it may end from its plan, or pairs are found again
+  Array<Vec3> pushes;    // m, by vertex
+  int rounds = 0;        // of finding pairs, in the last sub-step
+  int touching = 0;      // pairs with an impulse
 
   void clear(std::size_t vertices) {
     pairs.clear(), impulses.clear();
@@ -85,6 +85,15 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
 // through its stiffness, and may call this again at the velocities that this makes.
 void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
                             Arena& arena, SurfaceContacts& contacts);
+// By how much pairs would come into each other in the step at the present velocities, at most, as a share of their thickness.
+float worst_closing(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                    const SurfaceContacts& contacts);
+// Goes on along the change of the impulses since `before`, which changed the velocities from `start`: an exact line search of the dual, to where the work of the
+// change on what the pairs still miss is zero. A stiff body answers an impulse with more of its mass than one vertex has, so that the rows alone would take
+// many rounds. The extension is owed. False if it is too short to matter.
+bool extend_impulses(std::span<const SurfaceImpulse> before, std::span<const Vec3> start,
+                     const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                     SurfaceContacts& contacts);
 // Sets the pushes.
 void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
                    SurfaceContacts& contacts);
