@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
 
 namespace gyre::soft_pieces_test {
 namespace {
@@ -74,6 +77,69 @@ TEST(SoftPieces, SnapshotsThreadsAndWidthsDoNotChangeABit) {
       EXPECT_EQ(world.hash(), hash);
     }
     hash = world.hash();
+  }
+}
+
+// Legs of 8 cells of 5 cm on a bridge of 5 x 2 cells, with a gap of one cell between them, and each two cells thick. They swing towards each other.
+SolidDef make_fork(float speed) {
+  constexpr int kColumns = 5, kRows = 10, kLayers = 2, kBridge = 2;
+  SolidDef fork;
+  std::map<std::array<int, 3>, std::uint32_t> numbers;
+  const auto vertex = [&](const std::array<int, 3>& at) {
+    const auto [found, is_new] = numbers.try_emplace(at, std::uint32_t(fork.vertices.size()));
+    if (is_new) {
+      const float share = float(std::max(at[1] - kBridge, 0)) / float(kRows - kBridge);
+      fork.vertices.push_back({0.05f * float(at[0]), 0.05f * float(at[1]), 0.05f * float(at[2])});
+      fork.settings.velocities.push_back({2 * at[0] < kColumns ? share * speed : -share * speed, 0, 0});
+    }
+    return found->second;
+  };
+  for (int i = 0; i < kColumns; ++i) {
+    for (int j = 0; j < kRows; ++j) {
+      for (int k = 0; k < kLayers; ++k) {
+        if (j >= kBridge && i == kColumns / 2) continue;
+        std::array<int, 3> order = {0, 1, 2};
+        do {
+          std::array<int, 3> at = {i, j, k};
+          fork.tetrahedra.push_back(vertex(at));
+          for (const int axis : order) ++at[std::size_t(axis)], fork.tetrahedra.push_back(vertex(at));
+          const int turns = (order[0] > order[1]) + (order[0] > order[2]) + (order[1] > order[2]);
+          if (turns % 2 != 0) std::swap(fork.tetrahedra.end()[-1], fork.tetrahedra.end()[-2]);
+        } while (std::next_permutation(order.begin(), order.end()));
+      }
+    }
+  }
+  return fork;
+}
+
+TEST(SoftPieces, LegsOfOneSolidMeet) {
+  for (const float modulus : {5.0e4f, 1.0e6f}) {
+    WorldDef def;
+    def.gravity = {};
+    World world = std::move(*World::create(def));
+    SolidDef fork = make_fork(4.0f);
+    fork.young_modulus = modulus, fork.poisson_ratio = 0.4f, fork.settings.damping = 0.005f;
+    const SoftId solid = world.add_solid(fork);
+    const auto is_tip = [&](std::size_t i, float x) {
+      return fork.vertices[i] == Vec3{x, 0.05f * 10.0f, 0.05f};
+    };
+    double before = energy_of(world), gained = 0.0, nearest = 1.0;
+    for (int n = 0; n < 60; ++n) {
+      world.step(kStep);
+      ASSERT_EQ(world.cloth_crossings(), 0u) << n;
+      gained += std::max(0.0, energy_of(world) - before);
+      before = energy_of(world);
+      const SoftVertices v = world.vertices(solid);
+      double gap = 0.0;
+      for (std::size_t i = 0; i < v.size(); ++i)
+        gap += (is_tip(i, 0.05f * 3.0f) - is_tip(i, 0.05f * 2.0f)) * v.x[i];
+      nearest = std::min(nearest, gap);
+    }
+    // They are 5 cm apart at the start.
+    EXPECT_LT(nearest, 0.004);
+    EXPECT_GT(nearest, 0.0);
+    EXPECT_LT(gained, 1.0e-3);
+    EXPECT_LT(length(world.momentum().linear), 1.0e-4f);
   }
 }
 
