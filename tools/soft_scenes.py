@@ -258,5 +258,24 @@ def jelly_stack():
     return scene("a heavy ball on a stack of jellies", [1.9, 1.7, 3.6], [0, 0.7, 0], [GROUND, ball], soft_bodies=blocks)
 
 
+def untangling():
+    """Two sheets that begin halfway through each other, like slotted cards, without gravity."""
+    material = {"links": "springs", "area_density": 0.2, "stretch_stiffness": 1000, "shear_stiffness": 100, "bend_stiffness": 1e-3, "damping": 0.02, "thickness": 0.01}
+    cloths = [{"name": "level sheet", "grid": {"size": [1, 1], "cells": [20, 20]}, "position": [0, 1, 0], "color": "#c67d5c", **material},
+              {"name": "upright sheet", "grid": {"size": [1, 1], "cells": [20, 20]}, "position": [0.7, 1.01, 0.013],
+               "orientation": about([1, 0, 0], math.pi / 2), "color": "#5b8fb9", **material}]
+    return scene("two crossed sheets part", [1.9, 2.3, 3.2], [0.35, 1, 0], [GROUND], cloths=cloths, world={"substeps": 4, "gravity": [0, 0, 0]})
+
+
+def broken_plate():
+    """A brittle plate breaks over a rod; its pieces lie on each other."""
+    rod = {"name": "rod", "type": "static", "position": [0, 0.4, 0], "orientation": about([1, 0, 0], math.pi / 2), "color": "#8d99a8",
+           "shapes": [{"type": "cylinder", "radius": 0.05, "half_height": 0.6}]}
+    plate = {"name": "plate", "box": {"half_extents": [0.6, 0.04, 0.4], "cells": [8, 2, 5]}, "position": [0.02, 1, 0.01],
+             "orientation": about([0, 0, 1], 0.04), "density": 1000, "young_modulus": 1e6, "poisson_ratio": 0.3, "fracture_stress": 20000,
+             "damping": 0.005, "color": "#cfa349"}
+    return scene("a plate breaks over a rod", [0.9, 1.2, 3.2], [0, 0.4, 0], [GROUND, rod], soft_bodies=[plate], world={"substeps": 8})
+
+
 ALL = [flag, rope_bridge, jelly, cloth_on_sphere, tearing_banner, integrators, curtain_through_ring, cloth_on_spikes, twisted_towel,
-       sheets_on_cylinder, bag_of_balls, rope_bridge_with_car, crane, jelly_stack]
+       sheets_on_cylinder, bag_of_balls, rope_bridge_with_car, crane, jelly_stack, untangling, broken_plate]

@@ -4,6 +4,7 @@
 #include "dynamics/soft/soft_groups.h"
 #include "geometry/query/face_query.h"
 #include "geometry/query/point_query.h"
+#include "geometry/shape/mesh.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
 #include "task/parallel.h"
@@ -27,6 +28,13 @@ constexpr float kAttachedShare = 1.1f;
 constexpr double kFaceShare = 0.9;
 // A face that is nearer than this share of the length of an edge is pushed along its own normal: the shape's is not to be trusted there.
 constexpr double kTooNear = 1.0e-3;
+
+constexpr double kAnyDepth = 1.0e9;  // m, more than any shape has
+
+// A plane is touched by corners alone. A double-sided mesh has no outside.
+bool may_touch_faces(const Shape& shape) {
+  return shape.kind != ShapeKind::plane && !(shape.kind == ShapeKind::mesh && shape.mesh->double_sided);
+}
 
 struct Candidate {
   std::uint32_t shape = 0;
@@ -171,7 +179,7 @@ class ContactFinder {
     entry_.faces.clear();
     bool any = false;
     for (const Candidate& one : candidates_)
-      any = any || has_face_distance(w_.shapes.colliders[one.shape].shape);
+      any = any || may_touch_faces(w_.shapes.colliders[one.shape].shape);
     if (!any || entry_.contact_surface == nullptr) return;
     const std::size_t faces = entry_.contact_surface->triangles.size();
     const std::span<SoftFaceContact> room = arena_.make<SoftFaceContact>(faces);
@@ -219,17 +227,23 @@ class ContactFinder {
     bool any = false;
     for (const Candidate& candidate : candidates_) {
       const Shape& shape = w_.shapes.colliders[candidate.shape].shape;
-      if (!has_face_distance(shape)) continue;
+      if (!may_touch_faces(shape)) continue;
+      const bool is_convex = has_face_distance(shape);
       if (is_beyond(w_.shapes.proxies[candidate.shape].fat_box, middle, size + own_reach)) continue;
-      if (is_level(v, candidate.shape, touching, counts)) continue;
+      if (is_convex && is_level(v, candidate.shape, touching, counts)) continue;
       const Vec3 arm = difference(middle, w_.bodies.poses[candidate.body].center);
       const float speed = length(point_velocity(w_.bodies.motion[candidate.body], arm));
       const DQuat turn = to_double(candidate.pose.orientation);
       DVec3 local[3];
       for (int k = 0; k < 3; ++k) local[k] = rotate_inverse(turn, at[k] - candidate.pose.position);
       FaceDistance found;
-      if (!find_face_distance(shape, local, own_reach + double(kReachShare * seconds_ * speed),
-                              kFaceShare * double(entry_.radius), found))
+      const double reach_now = own_reach + double(kReachShare * seconds_ * speed),
+                   least_depth = kFaceShare * double(entry_.radius);
+      if (is_convex ? !find_face_distance(shape, local, reach_now, least_depth, found)
+                    : !find_surface_features(
+                          shape, local, reach_now,
+                          min(reach_now, nearest_corner(v, candidate.shape, touching, counts) - least_depth),
+                          found))
         continue;
       if (any && found.distance - double(entry_.radius) >= double(out.at.gap)) continue;
       if (is_shared_edge(number, found) || is_kept_off(v, candidate.body)) continue;
@@ -243,11 +257,25 @@ class ContactFinder {
     return any;
   }
 
+  // The least distance of the corners from the shape, m, of those that are in reach.
+  double nearest_corner(const std::uint32_t* corner, std::uint32_t shape,
+                        std::span<const SoftContact> touching, std::span<const std::uint8_t> counts) const {
+    double nearest = kAnyDepth;
+    for (int k = 0; k < 3; ++k) {
+      for (std::size_t n = 0; n < counts[corner[k]]; ++n) {
+        const SoftContact& one = touching[std::size_t(corner[k]) * kMaxVertexContacts + n];
+        if (one.shape == shape) nearest = min(nearest, double(one.gap + entry_.radius));
+      }
+    }
+    return nearest;
+  }
+
   // An edge between two faces is one contact: that of the face that owns it.
   bool is_shared_edge(std::uint32_t number, const FaceDistance& found) const {
     const SoftTriangle& face = entry_.contact_surface->triangles[number];
     for (int side = 0; side < 3; ++side) {
-      if (!(found.weight[(side + 2) % 3] > 0.0)) return face.owned_edge[side] < 0 && face.neighbour[side] >= 0;
+      if (!(found.weight[(side + 2) % 3] > 0.0))
+        return face.owned_edge[side] < 0 && face.neighbour[side] >= 0;
     }
     return false;
   }
@@ -269,7 +297,8 @@ class ContactFinder {
     DVec3 place{};
     for (int k = 0; k < 3; ++k) place += found.weight[k] * at[k];
     DVec3 normal = rotate(turn, found.normal);
-    if (found.distance < kTooNear * double(entry_.size)) {
+    if (found.distance < kTooNear * double(entry_.size) &&
+        has_face_distance(w_.shapes.colliders[candidate.shape].shape)) {
       // The side on which it was, or else that away from the body.
       const DVec3 area = cross(at[1] - at[0], at[2] - at[0]);
       const DVec3 toward = last != nullptr ? DVec3(last->at.normal) : place - center;
@@ -393,8 +422,6 @@ void wake_groups(SoftStore& soft, float gravity, Arena& arena, float seconds) {
 }
 
 // --------------------------------------------------------------------------- vertices inside bodies that hold them
-
-constexpr double kAnyDepth = 1.0e9;  // m, more than any shape has
 
 // Signed distance of a vertex to the shapes of a body that it may touch.
 double distance_to(const RigidWorld& w, const SoftEntry& entry, std::uint32_t body, std::uint32_t particle) {

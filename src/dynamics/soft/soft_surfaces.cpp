@@ -9,8 +9,10 @@ namespace gyre {
 
 namespace {
 
-// How often impulses are found and given in a sub-step.
-constexpr int kSurfaceRounds = 2;
+// How often impulses are found and given in a sub-step: at least twice, and more often where pairs still close by more than this share of their thickness. Moves
+// that the bounds have to cut stretch a stiff body.
+constexpr int kMaxSurfaceRounds = 12;
+constexpr float kMaxClosing = 0.5f;
 
 SoftWork& work_at(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
 SoftEntry& entry_at(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
@@ -189,8 +191,17 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
   const SurfaceContactSettings settings = settings_of(s);
   find_crossings(s);
   find_surface_contacts(all.placed, vertices, settings, all.arena, *s.tasks, all.contacts);
-  for (int round = 0; round < kSurfaceRounds; ++round) {
+  for (int round = 0; round < kMaxSurfaceRounds; ++round) {
+    all.impulses_before.assign(all.contacts.impulses.view());
+    all.velocities_before.assign(all.velocities.view());
     solve_surface_contacts(vertices, settings, all.arena, all.contacts);
+    give_owed(s);
+    gather_velocities(s);
+    if (round == 0) continue;
+    if (worst_closing(vertices, settings, all.contacts) < kMaxClosing) break;
+    if (!extend_impulses(all.impulses_before.view(), all.velocities_before.view(), vertices, settings,
+                         all.contacts))
+      continue;
     give_owed(s);
     gather_velocities(s);
   }

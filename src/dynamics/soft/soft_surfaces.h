@@ -30,6 +30,9 @@ struct SoftSurfaces {
   Array<Vec3> velocities;
   Array<float> inverse_mass;
   SurfaceContacts contacts;
+  // When a round of contacts began: impulses by pair, velocities by vertex.
+  Array<SurfaceImpulse> impulses_before;
+  Array<Vec3> velocities_before;
   BoundReport report;
   // True if surfaces may cross now: they are not where the last sub-step left them, or crossed then, or were held where they cross.
   bool may_cross = true;

@@ -19,6 +19,9 @@ constexpr float kMaxPushOfThickness = 0.25f;
 // The speed with which crossed surfaces part, as a share of the speed of a fall from the length of an edge: as for vertices in shapes. It bounds the energy
 // that untangling gives: half the mass times its square.
 constexpr float kUntangleShare = 0.4f;
+// An extension of impulses by less than this share of their change is not worth its solve.
+constexpr float kMinExtension = 0.1f;
+constexpr float kNoLimit = 1.0e30f;  // more than any extension
 
 // Takes the mean from the moves: surfaces that fly together do not look far. Returns it.
 DVec3 take_mean(std::span<const PlacedSurface> surfaces, std::span<DVec3> moves) {
@@ -294,6 +297,56 @@ void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContac
         contacts.totals[v] += -(row.edge->weight[k] * row.impulse) * row.edge->way;
     }
   }
+}
+
+float worst_closing(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                    const SurfaceContacts& contacts) {
+  float worst = 0.0f;
+  for (const SurfacePair& pair : contacts.pairs) {
+    if (!pair.touches) continue;
+    const float along = dot(to_float(pair.normal), sum_of(vertices.velocities, pair.vertex, pair.weight));
+    worst = max(worst, (-along * settings.step - max(gap_of(pair), 0.0f)) / pair.thickness);
+  }
+  return worst;
+}
+
+bool extend_impulses(std::span<const SurfaceImpulse> before, std::span<const Vec3> start,
+                     const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                     SurfaceContacts& contacts) {
+  double missing = 0.0, gained = 0.0;
+  float most = kNoLimit;  // by which no normal impulse becomes negative
+  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
+    const SurfacePair& pair = contacts.pairs[i];
+    const float change = contacts.impulses[i].normal - before[i].normal;
+    const Vec3 normal = to_float(pair.normal);
+    const Vec3 way = change * normal + (contacts.impulses[i].friction - before[i].friction);
+    if (way == Vec3{}) continue;
+    const Vec3 now = sum_of(vertices.velocities, pair.vertex, pair.weight),
+               was = sum_of(start, pair.vertex, pair.weight);
+    const float gap = gap_of(pair);
+    const Vec3 target = gap > 0.0f ? (-gap / settings.step) * normal : Vec3{};
+    missing += double(dot(way, target - now));
+    gained += double(dot(way, now - was));
+    if (change < 0.0f) most = min(most, contacts.impulses[i].normal / -change);
+  }
+  if (!(missing > 0.0) || !(gained > 0.0)) return false;
+  const float more = min(float(missing / gained), most);
+  if (!(more > kMinExtension)) return false;
+  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
+    const SurfacePair& pair = contacts.pairs[i];
+    SurfaceImpulse& impulse = contacts.impulses[i];
+    const float normal = more * (impulse.normal - before[i].normal);
+    const Vec3 friction = more * (impulse.friction - before[i].friction);
+    if (normal == 0.0f && friction == Vec3{}) continue;
+    impulse.normal += normal, impulse.friction += friction;
+    for (int k = 0; k < 4; ++k) {
+      const std::uint32_t v = pair.vertex[k];
+      if (!(vertices.inverse_mass[v] > 0.0f)) continue;
+      const Vec3 given = pair.weight[k] * (normal * to_float(pair.normal) + friction);
+      contacts.totals[v] += given, contacts.owed[v] += given;
+    }
+  }
+  return true;
 }
 
 void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,

@@ -86,6 +86,15 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
 // through its stiffness, and may call this again at the velocities that this makes.
 void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
                             Arena& arena, SurfaceContacts& contacts);
+// By how much pairs would come into each other in the step at the present velocities, at most, as a share of their thickness.
+float worst_closing(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                    const SurfaceContacts& contacts);
+// Goes on along the change of the impulses since `before`, which changed the velocities from `start`: an exact line search of the dual, to where the work of the
+// change on what the pairs still miss is zero. A stiff body answers an impulse with more of its mass than one vertex has, so that the rows alone would take
+// many rounds. The extension is owed. False if it is too short to matter.
+bool extend_impulses(std::span<const SurfaceImpulse> before, std::span<const Vec3> start,
+                     const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                     SurfaceContacts& contacts);
 // Sets the pushes.
 void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
                    SurfaceContacts& contacts);

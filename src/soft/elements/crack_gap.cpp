@@ -9,13 +9,13 @@ namespace gyre {
 namespace {
 
 constexpr int kSweeps = 64;
-constexpr double kLeastGap = 0.9;  // of the gap: what sweeps must have reached
-constexpr double kMostMove = 1.5;  // gaps: a part that would go farther grips another one
+constexpr double kMinGap = 0.9;  // of the gap: what sweeps must have reached
+constexpr double kMaxMove = 1.5;  // gaps: a part that would go farther grips another one
 
 // A face of a tetrahedron, to be sorted by the roots of its corners.
 struct Side {
   std::uint32_t root[3] = {}, vertex[3] = {};  // ascending by root
-  std::uint32_t opposite = 0;  // the root of the corner that is not in it
+  std::uint32_t opposite = 0;                  // the root of the corner that is not in it
 };
 
 Side make_side(std::span<const std::uint32_t> corners, std::span<const std::uint32_t> roots,
@@ -82,8 +82,9 @@ bool separate_parts(std::span<const CrackFace> faces, std::span<const double> vo
   }
   bool fits = true;
   for (const CrackFace& face : faces) {
-    fits = fits && dot(moves[face.a] - moves[face.b], face.normal) >= kLeastGap &&
-           length_squared(moves[face.a]) <= square(kMostMove) && length_squared(moves[face.b]) <= square(kMostMove);
+    fits = fits && dot(moves[face.a] - moves[face.b], face.normal) >= kMinGap &&
+           length_squared(moves[face.a]) <= square(kMaxMove) &&
+           length_squared(moves[face.b]) <= square(kMaxMove);
   }
   return fits;
 }

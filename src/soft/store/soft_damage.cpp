@@ -15,7 +15,7 @@ namespace gyre {
 
 namespace {
 
-constexpr int kMaxSplits = 64;  // of vertices in one step, those of their neighbours apart
+constexpr int kMaxSplits = 64;   // of vertices in one step, those of their neighbours apart
 constexpr float kMaxGap = 0.2f;  // of the mean edge: more is not made by moving vertices
 constexpr int kHalvings = 4;  // of the moves of parts that would cross others
 constexpr int kTetsAtOnce = 256;
@@ -270,7 +270,8 @@ class Tear {
     list_crack_faces(near_.view(), roots_.view(), whole_.view(), faces_);
     std::size_t begin = 0, end = 0;
     while (begin < faces_.size() && faces_[begin].root != root) ++begin;
-    for (end = begin; end < faces_.size() && faces_[end].root == root; ++end) {}
+    for (end = begin; end < faces_.size() && faces_[end].root == root; ++end) {
+    }
     return separate_parts(faces_.view().subspan(begin, end - begin), volumes_.view(),
                           {moves_.data(), moves_.size()});
   }
@@ -414,7 +415,8 @@ class Tear {
       for (const EdgeCrossing& one : crossings) {
         const SurfaceEdge& edge = placed.surface->edges[one.edge];
         const SoftTriangle& triangle = placed.surface->triangles[one.triangle];
-        for (const std::uint32_t v : {edge.a, edge.b, triangle.corner[0], triangle.corner[1], triangle.corner[2]})
+        for (const std::uint32_t v :
+             {edge.a, edge.b, triangle.corner[0], triangle.corner[1], triangle.corner[2]})
           halved[splitter_.source(v)] = 1;
       }
       for (std::uint32_t v = 0; v < way.size(); ++v)
