@@ -10,6 +10,8 @@ namespace {
 constexpr int kRounds = 2, kSweeps = 2;
 // Rounds end when they would take less than this share of the energy that a fall in the half-step gives to the vertices in contact.
 constexpr double kContactTolerance = 1.0e-3;
+// A contact that still closes faster than this share of what gravity gives in the sub-step is not met.
+constexpr float kUnmetShare = 1.0f;
 // Friction below this share of its bound sticks.
 constexpr float kStickShare = 0.999f;
 
@@ -132,6 +134,28 @@ void give_to_bodies(SoftSolve& s) {
     row.impulse += row.carried_step;
   }
   change_bodies(s, 1.0f);
+}
+
+namespace {
+
+// A contact with a body that does not yield.
+bool is_unyielding(const SoftRow& row) { return row.is_contact && row.body_compliance == Sym3{}; }
+
+}  // namespace
+
+void forget_unmet(SoftSolve& s) {
+  const float most = kUnmetShare * s.h * reference_gravity(s.w->settings);
+  for (std::uint32_t m = 0; m < s.members.size(); ++m) {
+    const SoftWork& work = work_of(s, m);
+    const std::span<SoftRow> rows =
+        std::span(s.scratch->rows).subspan(work.first_row, work.last_row - work.first_row);
+    bool unmet = false;
+    for (const SoftRow& row : rows)
+      unmet = unmet || (is_unyielding(row) && dot(row.normal, error_of(s, row)) < -most);
+    if (!unmet) continue;
+    for (SoftRow& row : rows)
+      if (is_unyielding(row)) row.impulse = {};
+  }
 }
 
 void set_grips(SoftSolve& s) {

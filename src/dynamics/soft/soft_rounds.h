@@ -42,6 +42,8 @@ Vec3 project(const SoftRow& row, Vec3 impulse);
 // Gives bodies the momentum that the parts carried by vertices have gained.
 void give_to_bodies(SoftSolve& s);
 void solve_contacts_in_rounds(SoftSolve& s);
+// Impulses of contacts that are not met are not remembered: between bodies that close, they would grow without bound, and throw what comes free.
+void forget_unmet(SoftSolve& s);
 // How contacts hold from now on: they stick within the cone of friction, slide at its bound, and are open without load.
 void set_grips(SoftSolve& s);
 
