@@ -98,7 +98,8 @@ TEST(Threads, DoNotShowInALargePile) {
     World world = make_world({.threads = threads, .simd_width = width});
     add_fixed(world, {}, Plane{});
     for (int i = 0; i < 600; ++i) {
-      const DVec3 place{1.0 * (i % 10) - 5 + 0.25 * (i / 100), 0.5 + 1.0 * (i / 100), 1.0 * (i / 10 % 10) - 5};
+      const DVec3 place{1.0 * (i % 10) - 5 + 0.25 * (i / 100), 0.5 + 1.0 * (i / 100),
+                        1.0 * (i / 10 % 10) - 5};
       const BodyId body = i % 3 == 0 ? add_moving(world, place, Sphere{0.5f}, {.rolling_friction = 0.02f})
                           : i % 7 == 0
                               ? add_moving(world, place, Capsule{.radius = 0.25f, .half_height = 0.25f})
@@ -117,6 +118,52 @@ TEST(Threads, DoNotShowInALargePile) {
   for (const int threads : {1, 2, 3, 8})
     for (const int width : {4, 16})
       EXPECT_EQ(expected, outcome(threads, width)) << threads << " threads, " << width << " lanes";
+}
+
+// Contacts leave rounding along a locked axis. Their effect that is repeated in the next half-step contained it where the batch had joints,
+// and several workers have other batches than one.
+TEST(Threads, DoNotShowInALockedBodyApartFromJoints) {
+  const auto outcome = [](int threads) {
+    World world = make_world({.threads = threads});
+    add_fixed(world, {}, Plane{{0.6f, 0.8f, 0}, 0});
+    const BodyId bob = add_moving(world, {0, 50, 0}, Sphere{0.125f});
+    scenes::join(world, JointKind::ball, {}, bob, {0.5, 50, 0});
+    for (int i = 0; i < 100; ++i) {
+      BodyDef def;
+      def.pose.position = {0, 0.625, 2.0 * i};
+      def.linear_velocity = {0, 0, 0.25f};
+      def.locked.linear[0] = true;
+      world.add_body(def, ShapeDef{.geometry = Sphere{0.5f}});
+    }
+    for (int step = 0; step < 60; ++step) world.step(kStepSeconds);
+    EXPECT_EQ(world.stats().touching, 100);
+    return world.hash();
+  };
+  const std::uint64_t expected = outcome(1);
+  for (const int threads : {2, 3, 8}) EXPECT_EQ(expected, outcome(threads)) << threads;
+}
+
+// A hinge whose body cannot rotate has angular impulses of zero, some of them negative. Where its neighbour's limit acted, zeros were added,
+// which made them positive.
+TEST(SimdWidth, DoesNotShowInZerosOfHingesBesideALimit) {
+  const auto outcome = [](int width) {
+    World world = make_world({.simd_width = width});
+    for (int i = 0; i < 16; ++i) {
+      BodyDef def;
+      def.pose.position = {3.0 * i, 0, 0};
+      for (bool& locked : def.locked.angular) locked = i % 2 == 0;
+      HingeDef hinge;
+      hinge.b = world.add_body(def, ShapeDef{.geometry = Box{{0.5f, 0.5f, 0.5f}}});
+      hinge.anchor = DVec3{3.0 * i - 0.75, 0, 0};
+      hinge.axis = {0.25f * float(i % 3) - 0.25f, 0.25f * float(i % 5) - 0.5f, 1};
+      hinge.limits = Limits{-0.25f, 0.25f};
+      world.add_joint(hinge);
+    }
+    for (int step = 0; step < 60; ++step) world.step(kStepSeconds);
+    return world.hash();
+  };
+  const std::uint64_t expected = outcome(1);
+  for (const int width : {4, 8, 16}) EXPECT_EQ(expected, outcome(width)) << width;
 }
 
 // Ends of contacts were told in the order of a list that a loaded world builds anew.

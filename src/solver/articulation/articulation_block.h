@@ -112,6 +112,12 @@ GYRE_INLINE void apply_joint_impulse(const WideBundle<W>& bundle, const LaneNode
   }
 }
 
+// Adds the change of an impulse in some lanes. Zero is not added to the others: it would turn their -0 into 0, and a lane alone keeps it.
+template <int W>
+GYRE_INLINE void add_in_lanes(Vec3W<W>& impulse, Vec3W<W> change, Mask<W> lanes) {
+  impulse = select<W>(lanes, impulse + change, impulse);
+}
+
 // Gathers `Fours` times four floats of records of `Stride` floats; of `none` where there is no record.
 template <int Fours, int W, int Stride>
 GYRE_INLINE void gather_vec4(const float* base, const std::int32_t* indices, const float* none, int first,

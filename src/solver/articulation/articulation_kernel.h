@@ -174,10 +174,16 @@ GYRE_INLINE void solve_rows(const WideBundle<W>& bundle, Mask<W> lanes = Mask<W>
     if (node.kind == JointKind::hinge) {
       t = keep(live, bundle.row(node.row + 3) * joint.perpendicular_1 +
                          bundle.row(node.row + 4) * joint.perpendicular_2);
-      joint.angular_impulse = use == BiasUse::first ? t : joint.angular_impulse + t;
+      if constexpr (use == BiasUse::first)
+        joint.angular_impulse = t;
+      else
+        add_in_lanes<W>(joint.angular_impulse, t, live);
     }
     apply_joint_impulse(bundle, node, joint, p, t);
-    joint.linear_impulse = use == BiasUse::first ? p : joint.linear_impulse + p;
+    if constexpr (use == BiasUse::first)
+      joint.linear_impulse = p;
+    else
+      add_in_lanes<W>(joint.linear_impulse, p, live);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "solver/articulation/articulation_test_kit.h"
 
 #include <cmath>
+#include <memory>
 
 namespace gyre::articulation_test::articulation_kernel_test {
 namespace {
@@ -70,8 +71,8 @@ void expect_same_bits_at_every_width(float tension, Driven driven, const Between
   Crowd reference = start();
   solve_side_by_side(reference, shape, 1, between);
   const SolverKernels &widest = select_kernels(0), &narrower = narrower_kernels(widest);
-  for (const SolverKernels* kernels : {&widest, &narrower, &select_kernels(4),
-                                        &select_kernels(8), &select_kernels(16)}) {
+  for (const SolverKernels* kernels :
+       {&widest, &narrower, &select_kernels(4), &select_kernels(8), &select_kernels(16)}) {
     const int width = kernels->width;
     Crowd crowd = start();
     solve_side_by_side(crowd, shape, kernels->articulations, between);
@@ -124,6 +125,41 @@ void settle(Crowd& crowd, int copy, float noise) {
     joint.limits = {-0.2f, 0.2f};
     for (JointAxisRecord& axis : crowd.details[i].axes) axis.high_impulse = 0.0f, axis.limits = joint.limits;
     crowd.offsets[i].offset = joint.local_anchor_a - joint.local_anchor_b;
+  }
+}
+
+// Impulses of zero may be negative: the last ones, or those of rows that nothing can move.
+TEST(ArticulationKernel, ALaneAtRestKeepsNegativeZerosBesideOthersThatMove) {
+  for (const Driven driven : {Driven::iterative, Driven::motors}) {
+    Shape shape;
+    const auto solve = [&](int width) {
+      auto crowd = std::make_unique<Crowd>(0.05f, driven);
+      for (int copy = 0; copy < kCopies; copy += 2) {
+        settle(*crowd, copy, 0.0f);
+        for (int i = copy * kJoints; i < (copy + 1) * kJoints; ++i) {
+          JointRecord& joint = crowd->records[std::size_t(i)];
+          joint.linear_impulse = {-0.0f, -0.0f, -0.0f};
+          joint.motor_impulse = -0.0f, joint.motor_velocity = 0.0f, joint.has_motor_target = false;
+          JointDetail& detail = crowd->details[std::size_t(i)];
+          detail.drive = {}, detail.drive_torque_impulse = detail.friction_impulse = {};
+          detail.axes[int(JointAxis::angular_x)].friction_impulse = 0.0f;
+        }
+      }
+      solve_side_by_side(*crowd, shape, width);
+      return crowd;
+    };
+    const auto alone = solve(1);
+    for (const int width : {4, 8, 16}) {
+      const auto beside = solve(width);
+      for (std::size_t i = 0; i < alone->records.size(); ++i) {
+        const JointRecord &a = alone->records[i], &b = beside->records[i];
+        EXPECT_EQ(std::memcmp(&a.linear_impulse, &b.linear_impulse, sizeof(Vec3)), 0) << width << ", " << i;
+        EXPECT_EQ(std::memcmp(&a.angular_impulse, &b.angular_impulse, sizeof(Vec3)), 0) << width << ", " << i;
+        EXPECT_EQ(std::signbit(a.motor_impulse), std::signbit(b.motor_impulse)) << width << ", " << i;
+      }
+      const JointRecord& last = beside->records[0];
+      EXPECT_TRUE(std::signbit(driven == Driven::motors ? last.motor_impulse : last.linear_impulse.x));
+    }
   }
 }
 

@@ -511,8 +511,10 @@ class LimitSolver {
       WideLimit<W>& limit = limits_[a];
       if (limit.active == 0) continue;
       const Wide<W> x = limit.low_x - limit.high_x;
-      const Wide<W> low = limit.axis->low_impulse + limit.low_x;
-      limit.axis->low_impulse = a >= end_count() ? low : max(low, Wide<W>(0.0f));
+      // In active lanes only, as add_in_lanes().
+      const Wide<W> before = limit.axis->low_impulse, sum = before + limit.low_x,
+                    low = a >= end_count() ? sum : max(sum, Wide<W>(0.0f));
+      limit.axis->low_impulse = select(Mask<W>::of_bits(limit.active), low, before);
       limit.axis->high_impulse = max(limit.axis->high_impulse + limit.high_x, Wide<W>(0.0f));
       const Mask<W> own = x != 0.0f;
       if (none(own)) continue;
@@ -541,10 +543,10 @@ class LimitSolver {
     if (node.kind == JointKind::hinge) {
       t = keep(applied,
                b_.row(node.row + 3) * joint.perpendicular_1 + b_.row(node.row + 4) * joint.perpendicular_2);
-      joint.angular_impulse += t;
+      add_in_lanes<W>(joint.angular_impulse, t, applied);
     }
     apply_joint_impulse(b_, node, joint, p, t);
-    joint.linear_impulse += p;
+    add_in_lanes<W>(joint.linear_impulse, p, applied);
   }
 
   const WideBundle<W>& b_;
@@ -562,7 +564,7 @@ class LimitSolver {
   Wide<W>* slot_delassus_;  // by two slots
   // By two limits, the later first: lanes whose entry was computed in this half step.
   std::uint32_t* computed_;
-  std::uint8_t* ends_;       // by slot and lane
+  std::uint8_t* ends_;         // by slot and lane
   std::uint8_t* layout_ends_;  // ends of the layout of Delassus entries
 };
 

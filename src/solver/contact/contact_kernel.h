@@ -388,14 +388,10 @@ GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
 template <int W>
 void solve_blocks(void* memory, int begin, int end, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
-  for (int i = begin; i < end; ++i) {
-    // A single lane saves too little for code of its own.
-    if (W == 1 || blocks[i].has_a != 0) {
-      solve_block<W, true>(blocks[i], substep);
-    } else if constexpr (W > 1) {
-      solve_block<W, false>(blocks[i], substep);
-    }
-  }
+  // At width 1, too: where an impulse times an arm overflows, the zero inverse inertia of a missing body A makes it no number.
+  for (int i = begin; i < end; ++i)
+    blocks[i].has_a != 0 ? solve_block<W, true>(blocks[i], substep)
+                         : solve_block<W, false>(blocks[i], substep);
 }
 
 // Another iteration in the same half-step, whose impulses take the place of the last.

@@ -30,12 +30,12 @@ struct OneContact {
   }
 };
 
-// A ball on static ground, with a load from the last step; solved for a sub-step of a 240th of a second.
-BodyMotion touch(int width, float load) {
+// A ball on static ground, with a load from the last step; solved for a sub-step of a 240th of a second. `arm`: from the ground's centre.
+BodyMotion touch(int width, float load, Vec3 arm = {0.3f, 0.5f, 0.2f}) {
   Manifold manifold;
   manifold.count = 1;
   manifold.points[0].from_b = {0, -0.15f, 0};
-  manifold.points[0].from_a = {0.3f, 0.5f, 0.2f};
+  manifold.points[0].from_a = arm;
   manifold.points[0].normal_impulse = load;
   manifold.friction_impulse = {0.1f * load, 0, 0};
   ContactConstraint constraint;
@@ -73,6 +73,19 @@ TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
       const float change = std::fabs(motion.linear_velocity.z - 0.2f);
       ASSERT_LE(change, 0.51f * (1e-3f + 2.0f * load)) << "width " << width << ", load " << load;
     }
+  }
+}
+
+// At width 1 the ground was a body whose angular velocity became zero times infinity.
+TEST(ContactKernel, ImpulsesThatOverflowAtTheGroundAreTheSameAtEveryWidth) {
+  const Vec3 far{1.0e17f, 3.0e17f, 2.0e17f};
+  const BodyMotion expected = touch(1, 1.0e24f, far);
+  EXPECT_TRUE(std::isfinite(expected.linear_velocity.x) && std::isfinite(expected.angular_velocity.x));
+  EXPECT_NE(expected.linear_velocity, touch(1, 1.0f, far).linear_velocity);
+  for (const int width : {4, 8, 16}) {
+    const BodyMotion motion = touch(width, 1.0e24f, far);
+    EXPECT_EQ(motion.linear_velocity, expected.linear_velocity) << width;
+    EXPECT_EQ(motion.angular_velocity, expected.angular_velocity) << width;
   }
 }
 

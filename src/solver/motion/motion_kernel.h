@@ -211,10 +211,13 @@ GYRE_INLINE void record(MotionBlock<W>& block, const MotionW<W>& m) {
   block.recorded_angular = m.angular();
 }
 
-// Adds the velocity change since the record.
+// Adds the velocity change since the record. The rounding that contacts leave along locked axes is no part of it, whether it is removed
+// before this or, where joints are solved in between, later.
 template <int W>
 GYRE_INLINE void add_gain(MotionBlock<W>& block, const MotionW<W>& m) {
-  block.contact_linear = block.contact_linear + (m.linear() - block.recorded_linear);
+  Vec3W<W> gain = m.linear() - block.recorded_linear;
+  if (block.any_locked != 0) gain = along_free_axes<W>(block, gain);
+  block.contact_linear = block.contact_linear + gain;
   block.contact_angular = block.contact_angular + (m.angular() - block.recorded_angular);
 }
 

@@ -184,6 +184,17 @@ TEST(MotionKernel, LockedAxesStayStill) {
   EXPECT_EQ(crowd.motion[0].delta_position, (Vec3{0.5f, 0, 1.5f}));
 }
 
+TEST(MotionKernel, RoundingAlongALockedAxisIsNoEffectOfContacts) {
+  Crowd crowd;
+  crowd.add({1, 1, 1}, {}).locked = 1;
+  crowd.prepare(1);
+  crowd.integrate_velocities(true);
+  crowd.motion[0].linear_velocity = {1.0e-9f, 2, 0};
+  crowd.add_contact_change();
+  crowd.integrate_velocities(true);
+  EXPECT_EQ(crowd.motion[0].linear_velocity, (Vec3{0, 4, 0}));
+}
+
 TEST(MotionKernel, ProjectionMovesWithoutTouchingVelocities) {
   Crowd crowd;
   crowd.add({1, 1, 1}, {}).bounding_radius = 2.0f;
@@ -300,8 +311,7 @@ Crowd run_half_steps(int width, bool in_lanes) {
     const float h = 1.0f / 240.0f;
     for (BodyMotion& m : crowd.motion) m.linear_velocity = m.linear_velocity + random.vector(0.1f);
     if (in_lanes) {
-      kernels.add_contact_change_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion,
-                                              lanes.velocities());
+      kernels.add_contact_change_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion, lanes.velocities());
       kernels.integrate_positions_in_lanes(crowd.place(), 0, crowd.blocks, arrays, lanes.velocities(), h);
       kernels.integrate_velocities_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities(), true,
                                             part % 2 == 0);
