@@ -267,6 +267,7 @@ TEST(Liquid, TensionOfSmallCellsStaysStableInLongSteps) {
   World world = make_world();
   LiquidDef def = tank({0.0033, 0.0025, 0.0033}, 0.0006, 2.08e-4f);
   def.surface_tension = 0.07f;
+  def.initial_velocity = {0.1f, 0, 0};
   const FluidId pool = world.add_liquid(def);
   const double volume = world.fluid_info(pool).volume;
   step(world, 10);

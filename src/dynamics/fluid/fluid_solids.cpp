@@ -169,7 +169,12 @@ float negative_part(float a, float b, float c, float d) {
 class FaceCutter {
  public:
   FaceCutter(const RigidWorld& w, const FluidEntry& entry, const PointGrid& corners, FluidSolids& out)
-      : w_(w), frame_(entry.frame()), box_(entry.box()), grid_(corners), shape_(out.window.shape), out_(out) {}
+      : w_(w),
+        frame_(entry.frame()),
+        box_(entry.box()),
+        grid_(corners),
+        shape_(out.window.shape),
+        out_(out) {}
 
   // Faces across an axis: the open part, the label and the velocity of the solid there.
   void cut(int axis, TaskSystem& tasks) {

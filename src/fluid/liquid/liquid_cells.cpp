@@ -91,10 +91,8 @@ void block_cells(const LiquidPass& pass) {
           const float* const open = pass.memory.open[axis].data();
           const int step = shape.stride(axis);
           any = any || open[at] > 0.0f || open[at + step] > 0.0f;
-          const bool within =
-              pass.wraps(axis) || (index[axis] > 0 && index[axis] < shape.cells[axis] - 1);
-          thin = thin || (within && solids.distance[at - step] >= 0.0f &&
-                          solids.distance[at + step] >= 0.0f);
+          const bool within = pass.wraps(axis) || (index[axis] > 0 && index[axis] < shape.cells[axis] - 1);
+          thin = thin || (within && solids.distance[at - step] >= 0.0f && solids.distance[at + step] >= 0.0f);
         }
         block = solids.distance[at] < 0.0f && (!any || thin);
       }
@@ -137,7 +135,8 @@ void find_surface_in_solids(const LiquidPass& pass) {
         const int step = shape.stride(axis);
         const bool first = index[axis] == 0, last = index[axis] == shape.cells[axis] - 1;
         const int around = shape.cells[axis] * step;
-        const int below = first ? at - step + around : at - step, above = last ? at + step - around : at + step;
+        const int below = first ? at - step + around : at - step,
+                  above = last ? at + step - around : at + step;
         if ((!first || pass.wraps(axis)) && distance[below] >= 0.0f)
           sum += open[at] * surface[below], weights += open[at];
         if ((!last || pass.wraps(axis)) && distance[above] >= 0.0f)
@@ -239,13 +238,13 @@ void find_open_faces(const LiquidPass& pass) {
       // As far as this from every solid, a face is open.
       const float far = 0.51f * pass.edge(axis);
       const bool free =
-          !solids.present() ||
-          (has_distance &&
-           (axis > 0 && across == last && !wraps
-                ? true
-                : are_all_above(solids.distance.data() + c, shape.cells[0], far)) &&
-           (axis > 0 && (across > 0 || wraps) ? are_all_above(solids.distance.data() + c - step, shape.cells[0], far)
-                                   : true));
+          !solids.present() || (has_distance &&
+                                (axis > 0 && across == last && !wraps
+                                     ? true
+                                     : are_all_above(solids.distance.data() + c, shape.cells[0], far)) &&
+                                (axis > 0 && (across > 0 || wraps)
+                                     ? are_all_above(solids.distance.data() + c - step, shape.cells[0], far)
+                                     : true));
       for (int i = 0; i < count; ++i) {
         const int at = axis == 0 ? i : across, f = c + i;
         to[f] = flat ? 0.0f : at == 0 ? low : at == last ? high : 1.0f;
