@@ -394,5 +394,58 @@ TEST(Gas, CarriesABalloonUpAndLeavesItAtTheCeiling) {
   EXPECT_LT(double(length(world.linear_velocity(ball))), 0.02);
 }
 
+// A periodic box repeats what is in it, so a ball that crosses a periodic side is the same obstacle as one in the middle.
+TEST(Fluid, ABallAcrossAPeriodicSideIsLikeOneInTheMiddle) {
+  const auto fastest = [](double place) {
+    World world = make_world({});
+    add_body(world, BodyType::fixed, {0.5, 0.5, place}, Sphere{0.2f});
+    GasDef def{.lower = {}, .upper = {1, 1, 1}, .cells = {16, 16, 16}};
+    def.sides = all_sides(FluidBoundary::closed);
+    def.sides[4] = def.sides[5] = FluidBoundary::periodic;
+    def.initial_velocity = {0, 0, 1};
+    const FluidId gas = world.add_gas(def);
+    step(world, 20);
+    EXPECT_LT(world.fluid_info(gas).divergence, 0.01f) << place;
+    return world.fluid_info(gas).kinetic_energy;
+  };
+  const double middle = fastest(0.5);
+  for (const double place : {0.0, 1.0}) EXPECT_NEAR(fastest(place), middle, 1.0e-3 * middle) << place;
+  for (const double place : {-0.1, 0.1, 0.9}) EXPECT_NEAR(fastest(place), middle, 0.05 * middle) << place;
+}
+
+// Bodies divide a gas into parts that no opening connects. Which parts there are depends on the bodies alone, and not on earlier solves, of which a
+// snapshot knows nothing.
+TEST(Fluid, ASnapshotOfADividedGasGoesOnWithTheSameBits) {
+  World world = make_world({});
+  // A wall across the whole box, and a piston that nears it in one of both rooms.
+  add_body(world, BodyType::fixed, {0.5, 0.5, 0.5}, Box{{0.1f, 1.0f, 1.0f}});
+  const BodyId piston = add_body(world, BodyType::kinematic, {-0.1, 0.5, 0.5}, Box{{0.15f, 1.0f, 1.0f}});
+  world.set_velocity(piston, {0.5f, 0, 0}, {});
+  GasDef def{.lower = {}, .upper = {1, 1, 1}, .cells = {16, 8, 8}};
+  def.sides = all_sides(FluidBoundary::closed);
+  def.initial_velocity = {0.3f, 0.2f, 0.1f};
+  world.add_gas(def);
+  step(world, 3);
+  world.set_velocity(piston, {}, {});
+  World again = std::move(*load_snapshot(save_snapshot(world)));
+  for (int i = 0; i < 3; ++i) {
+    step(world, 1), step(again, 1);
+    ASSERT_EQ(world.hash(), again.hash()) << i;
+  }
+}
+
+// More stages than the solver has would be needed: the viscosity acts like the largest that is stable.
+TEST(Fluid, AGasOfAnyViscosityStaysFinite) {
+  World world = make_world();
+  GasDef def{.lower = {}, .upper = {0.004, 0.004, 0.004}, .cells = {12, 12, 12}};
+  def.density = 0.1f, def.viscosity = 10.0f;
+  def.initial_velocity = {0.1f, 0, 0};
+  const FluidId gas = world.add_gas(def);
+  world.step(1.0f / 30.0f);
+  EXPECT_GT(world.fluid_info(gas).substeps, 0);  // 0: it was stilled
+  EXPECT_TRUE(world.problems().empty());
+  EXPECT_LT(length(world.probe(gas, {0.002, 0.002, 0.002}).velocity), 0.2f);
+}
+
 }  // namespace
 }  // namespace gyre::fluid_test

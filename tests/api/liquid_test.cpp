@@ -255,5 +255,29 @@ TEST(Liquid, GetsTheMomentumThatItsDragTakesFromACloth) {
   EXPECT_NEAR(world.momentum().linear.y, all, 0.03 * all);
 }
 
+// 4.8 m are 80 cells of 6 cm, though the float nearest to 0.06 is a little less.
+TEST(Liquid, ABoxOfWholeCellsIsNotWidened) {
+  World world = make_world();
+  const FluidId pool = world.add_liquid(tank({4.8, 0.6, 0.3}, 0.3, 0.06f));
+  EXPECT_EQ(world.fluid_info(pool).cells, (std::array<int, 3>{80, 10, 5}));
+}
+
+// Waves of cells of 0.2 mm need steps of 0.1 ms. A step that cannot be divided so often has less tension instead of an explosion.
+TEST(Liquid, TensionOfSmallCellsStaysStableInLongSteps) {
+  World world = make_world();
+  LiquidDef def = tank({0.0033, 0.0025, 0.0033}, 0.0006, 2.08e-4f);
+  def.surface_tension = 0.07f;
+  def.initial_velocity = {0.1f, 0, 0};
+  const FluidId pool = world.add_liquid(def);
+  const double volume = world.fluid_info(pool).volume;
+  step(world, 10);
+  std::vector<Vec3> velocities(std::size_t(world.fluid_info(pool).particles));
+  world.liquid_particles(pool, {}, velocities);
+  float fastest = 0.0f;
+  for (const Vec3 one : velocities) fastest = std::fmax(fastest, length(one));
+  EXPECT_LT(fastest, 0.5f);
+  EXPECT_NEAR(world.fluid_info(pool).volume / volume, 1.0, 0.05);
+}
+
 }  // namespace
 }  // namespace gyre::liquid_test

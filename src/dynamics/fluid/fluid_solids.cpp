@@ -169,7 +169,12 @@ float negative_part(float a, float b, float c, float d) {
 class FaceCutter {
  public:
   FaceCutter(const RigidWorld& w, const FluidEntry& entry, const PointGrid& corners, FluidSolids& out)
-      : w_(w), frame_(entry.frame()), grid_(corners), shape_(out.window.shape), out_(out) {}
+      : w_(w),
+        frame_(entry.frame()),
+        box_(entry.box()),
+        grid_(corners),
+        shape_(out.window.shape),
+        out_(out) {}
 
   // Faces across an axis: the open part, the label and the velocity of the solid there.
   void cut(int axis, TaskSystem& tasks) {
@@ -216,7 +221,9 @@ class FaceCutter {
     Vec3 velocity{};
     if (has_solid_motion(w_, body)) {
       const BodyMotion& motion = w_.bodies.motion[body];
-      const Vec3 arm = difference(at, w_.bodies.poses[body].center);
+      const DVec3 center = w_.bodies.poses[body].center, in_box = point_to_frame(frame_, at);
+      const DVec3 shift = image_shift(box_, in_box, point_to_frame(frame_, center));
+      const Vec3 arm = difference(at, center) + to_float(vector_to_world(frame_, shift));
       velocity = motion.linear_velocity + cross(motion.angular_velocity, arm);
     } else if (frame_ == nullptr || !frame_->moves()) {
       return;
@@ -227,6 +234,7 @@ class FaceCutter {
 
   const RigidWorld& w_;
   const FluidFrame* frame_;
+  const GasBox& box_;
   PointGrid grid_;
   const GridShape& shape_;
   FluidSolids& out_;
@@ -343,11 +351,41 @@ void set_center_distances(const PointGrid& grid, const GridShape& shape, FluidSo
       }
     }
   }
+  const GasBox& box = out.window.box;
+  const bool periodic[3] = {box.periodic(0), box.periodic(1), box.periodic(2)};
+  if (periodic[0] || periodic[1] || periodic[2]) wrap_ghosts(shape, periodic, solids.distance.data());
 }
 
 bool do_boxes_meet(const Aabb& a, const Aabb& b) {
   return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
          a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
+
+// A periodic box repeats what is in it: a shape that crosses a periodic side is there on the opposite side too. Calls fn(image) for those images
+// that are within `reach`.
+template <class Fn>
+void for_images(const GasBox& box, const NearShape& near, const Aabb& inside, const Aabb& reach, Fn&& fn) {
+  if (!box.periodic(0) && !box.periodic(1) && !box.periodic(2)) return;
+  const Aabb exact = bounds(*near.shape, Transform{to_float(near.pose.position), near.pose.orientation});
+  if (!do_boxes_meet(exact, inside)) return;
+  int most[3];
+  double length[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    most[axis] = box.periodic(axis) && !box.flat(axis) ? 1 : 0;
+    length[axis] = box.cells[axis] * double(axis == 0 ? box.cell.x : axis == 1 ? box.cell.y : box.cell.z);
+  }
+  for (int k = -most[2]; k <= most[2]; ++k) {
+    for (int j = -most[1]; j <= most[1]; ++j) {
+      for (int i = -most[0]; i <= most[0]; ++i) {
+        if (i == 0 && j == 0 && k == 0) continue;
+        const DVec3 shift{i * length[0], j * length[1], k * length[2]};
+        NearShape image = near;
+        image.pose.position += shift;
+        image.box = Aabb{exact.low + to_float(shift), exact.high + to_float(shift)};
+        if (do_boxes_meet(image.box, reach)) fn(image);
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -361,6 +399,7 @@ void find_near_shapes(const RigidWorld& w, const FluidEntry& entry, FluidSolids&
   const DVec3 upper = box.corner + DVec3{box.cells[0] * double(box.cell.x), box.cells[1] * double(box.cell.y),
                                          box.cells[2] * double(box.cell.z)};
   const Aabb whole{to_float(box.corner - margin), to_float(upper + margin)};
+  const Aabb inside{to_float(box.corner), to_float(upper)};
   out.fixed.clear(), out.moving.clear();
   out.fixed_key = out.all_key = 1;
   w.shapes.ids.for_each_live([&](std::uint32_t one) {
@@ -377,7 +416,9 @@ void find_near_shapes(const RigidWorld& w, const FluidEntry& entry, FluidSolids&
     const bool moves = has_solid_motion(w, body);
     out.all_key = add_shape_key(out.all_key, w, one, near);
     if (!moves) out.fixed_key = add_shape_key(out.fixed_key, w, one, near);
-    (moves ? out.moving : out.fixed).push_back(near);
+    auto& list = moves ? out.moving : out.fixed;
+    list.push_back(near);
+    for_images(box, near, inside, whole, [&](const NearShape& image) { list.push_back(image); });
   });
   out.bodies.clear();
   if (!out.fixed.empty() || !out.moving.empty()) number_bodies(w, out);

@@ -27,7 +27,7 @@ DVec3 upper_corner(const GasBox& box) {
 // The weight of the gas whose place the bodies take: the part of its pressure that the solver leaves out, since it rests on it
 // (gas_forces.h). Faces that a body closes carry it, within the body too.
 void add_lift(const GasGrid& gas, const GasSolids& solids, const GasSettings& settings, float seconds,
-              std::span<GasImpulse> impulses) {
+              std::span<const FluidBody> bodies, std::span<GasImpulse> impulses) {
   const GridShape& shape = gas.shape;
   const Vec3 h = gas.box.cell;
   const double volume = double(h.x) * double(h.y) * double(h.z);
@@ -45,9 +45,9 @@ void add_lift(const GasGrid& gas, const GasSolids& solids, const GasSettings& se
           const std::size_t c = std::size_t(row + i);
           if (label[c] < 0 || (axis == 0 ? i : axis == 1 ? j : k) == 0) continue;
           const double push = scale * (1.0 - double(open[c]));
-          const DVec3 at{(i + (axis == 0 ? 0.0 : 0.5)) * double(h.x),
-                         (j + (axis == 1 ? 0.0 : 0.5)) * double(h.y),
-                         (k + (axis == 2 ? 0.0 : 0.5)) * double(h.z)};
+          DVec3 at{(i + (axis == 0 ? 0.0 : 0.5)) * double(h.x), (j + (axis == 1 ? 0.0 : 0.5)) * double(h.y),
+                   (k + (axis == 2 ? 0.0 : 0.5)) * double(h.z)};
+          at += image_shift(gas.box, at, bodies[std::size_t(label[c])].center - gas.box.corner);
           const DVec3 force{axis == 0 ? push : 0.0, axis == 1 ? push : 0.0, axis == 2 ? push : 0.0};
           GasImpulse& impulse = impulses[std::size_t(label[c])];
           impulse.linear += force;
@@ -241,7 +241,7 @@ void add_lift_to_bodies(const RigidWorld& w, const FluidEntry& entry, const GasS
   if (!any) return;
   Array<GasImpulse> lift;
   lift.resize(own.bodies.size(), GasImpulse{});
-  add_lift(entry.gas, own.solids.solids, settings, seconds, lift.view());
+  add_lift(entry.gas, own.solids.solids, settings, seconds, own.bodies.view(), lift.view());
   for (std::size_t label = 0; label < own.bodies.size(); ++label) {
     FluidBody& body = own.bodies[label];
     if (!(body.inverse_mass > 0.0f)) continue;
@@ -277,7 +277,7 @@ void step_gas_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const G
   if (def.combustion)
     own.report.heat_rate = double(def.combustion->heat_release) * report.burned / double(seconds);
   if (own.solids.solids.present())
-    add_lift(entry.gas, own.solids.solids, settings, seconds, own.impulses.view());
+    add_lift(entry.gas, own.solids.solids, settings, seconds, own.bodies.view(), own.impulses.view());
 }
 
 void step_liquid_entry(RigidWorld& w, FluidEntry& entry, FluidScratch& own, const GasKernels& kernels,

@@ -20,14 +20,14 @@ void prepare_memory(const GasGrid& grid, const GasSolids& solids, GasMemory& mem
   if (!same_size) {
     memory.cells = grid.cells();
     memory.matrix.near.clear();
-    memory.matrix.has_pockets = false;
     for (Array<float>& field : memory.field) field.clear(), field.resize(size, 0.0f);
     for (Array<float>& field : memory.before) field.clear();
   }
   if (!same_size || matrix.solids_revision != (solids.present() ? solids.revision : 0)) {
     build_pressure_matrix(grid.box, grid.shape, solids, kernels, tasks, memory.matrix);
-    memory.matrix.has_pockets = memory.matrix.has_pockets && solids.present();
-    if (memory.matrix.has_pockets) find_pockets(memory.matrix);
+    // Solids may enclose gas, for which the equation has no solution unless its inflow adds up to zero. This depends on the cells alone, and not on
+    // earlier steps, so a snapshot goes on with the same bits.
+    memory.matrix.has_pockets = solids.present() && find_pockets(memory.matrix) > 1;
   }
 }
 

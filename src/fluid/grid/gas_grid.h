@@ -37,6 +37,22 @@ struct GasBox {
   }
 };
 
+// A distance along an axis, in metres: on a periodic axis that to the nearest image.
+inline double nearest_image(const GasBox& box, int axis, double distance) {
+  if (!box.periodic(axis)) return distance;
+  const float edge = axis == 0 ? box.cell.x : axis == 1 ? box.cell.y : box.cell.z;
+  const double length = box.cells[axis] * double(edge);
+  return distance > 0.5 * length    ? distance - length
+         : distance < -0.5 * length ? distance + length
+                                    : distance;
+}
+// How far a place of the box is from the image of it that is nearest to a centre: zero but beyond the sides of periodic axes.
+inline DVec3 image_shift(const GasBox& box, DVec3 place, DVec3 center) {
+  const DVec3 way = place - center;
+  return {nearest_image(box, 0, way.x) - way.x, nearest_image(box, 1, way.y) - way.y,
+          nearest_image(box, 2, way.z) - way.z};
+}
+
 struct GasGrid {
   GasBox whole;  // the box of the gas
   Array<CellBox>

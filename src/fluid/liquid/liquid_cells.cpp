@@ -91,8 +91,8 @@ void block_cells(const LiquidPass& pass) {
           const float* const open = pass.memory.open[axis].data();
           const int step = shape.stride(axis);
           any = any || open[at] > 0.0f || open[at + step] > 0.0f;
-          thin = thin || (index[axis] > 0 && index[axis] < shape.cells[axis] - 1 &&
-                          solids.distance[at - step] >= 0.0f && solids.distance[at + step] >= 0.0f);
+          const bool within = pass.wraps(axis) || (index[axis] > 0 && index[axis] < shape.cells[axis] - 1);
+          thin = thin || (within && solids.distance[at - step] >= 0.0f && solids.distance[at + step] >= 0.0f);
         }
         block = solids.distance[at] < 0.0f && (!any || thin);
       }
@@ -101,12 +101,15 @@ void block_cells(const LiquidPass& pass) {
   });
   for (int axis = 0; axis < 3; ++axis) {
     float* const open = pass.memory.open[axis].data();
-    const int step = shape.stride(axis), last = shape.cells[axis];
+    const int step = shape.stride(axis), last = shape.cells[axis], around = last * step;
+    const bool wraps = pass.wraps(axis);
     each_row(pass, axis, [&](int c, int j, int k) {
       const int across = axis == 1 ? j : k;
       for (int i = 0; i < shape.cells[0] + (axis == 0 ? 1 : 0); ++i) {
         const int at = axis == 0 ? i : across, f = c + i;
-        if ((at > 0 && blocked[f - step] != 0) || (at < last && blocked[f] != 0)) open[f] = 0.0f;
+        const int below = at > 0 ? f - step : f - step + around, above = at < last ? f : f - around;
+        if (((at > 0 || wraps) && blocked[below] != 0) || ((at < last || wraps) && blocked[above] != 0))
+          open[f] = 0.0f;
       }
     });
   }
@@ -130,10 +133,14 @@ void find_surface_in_solids(const LiquidPass& pass) {
       for (int axis = 0; axis < 3; ++axis) {
         const float* const open = pass.memory.open[axis].data();
         const int step = shape.stride(axis);
-        if (index[axis] > 0 && distance[at - step] >= 0.0f)
-          sum += open[at] * surface[at - step], weights += open[at];
-        if (index[axis] < shape.cells[axis] - 1 && distance[at + step] >= 0.0f)
-          sum += open[at + step] * surface[at + step], weights += open[at + step];
+        const bool first = index[axis] == 0, last = index[axis] == shape.cells[axis] - 1;
+        const int around = shape.cells[axis] * step;
+        const int below = first ? at - step + around : at - step,
+                  above = last ? at + step - around : at + step;
+        if ((!first || pass.wraps(axis)) && distance[below] >= 0.0f)
+          sum += open[at] * surface[below], weights += open[at];
+        if ((!last || pass.wraps(axis)) && distance[above] >= 0.0f)
+          sum += open[at + step] * surface[above], weights += open[at + step];
       }
       surface[at] = weights > 0.0f ? sum / weights : pass.edge(0);
       pass.memory.filled[at] = 1.0f;
@@ -231,20 +238,21 @@ void find_open_faces(const LiquidPass& pass) {
       // As far as this from every solid, a face is open.
       const float far = 0.51f * pass.edge(axis);
       const bool free =
-          !solids.present() ||
-          (has_distance &&
-           (axis > 0 && across == last ? true
-                                       : are_all_above(solids.distance.data() + c, shape.cells[0], far)) &&
-           (axis > 0 && across > 0 ? are_all_above(solids.distance.data() + c - step, shape.cells[0], far)
-                                   : true));
+          !solids.present() || (has_distance &&
+                                (axis > 0 && across == last && !wraps
+                                     ? true
+                                     : are_all_above(solids.distance.data() + c, shape.cells[0], far)) &&
+                                (axis > 0 && (across > 0 || wraps)
+                                     ? are_all_above(solids.distance.data() + c - step, shape.cells[0], far)
+                                     : true));
       for (int i = 0; i < count; ++i) {
         const int at = axis == 0 ? i : across, f = c + i;
         to[f] = flat ? 0.0f : at == 0 ? low : at == last ? high : 1.0f;
         if (free) continue;
         float open = solids.open[axis][f];
         if (has_distance) {
-          const float below = solids.distance[at > 0 ? f - step : f],
-                      above = solids.distance[at < last ? f : f - step];
+          const float below = solids.distance[at > 0 || wraps ? f - step : f],
+                      above = solids.distance[at < last || wraps ? f : f - step];
           open = 0.5f + half_inverse * (below + above);
         }
         to[f] = !(open >= kMinOpen) ? 0.0f : open < 1.0f ? open * to[f] : to[f];

@@ -286,12 +286,19 @@ LiquidReport step_liquid(LiquidGrid& grid, const GasSolids& solids, FunctionRef<
          (cells > settings.max_cells * float(report.substeps) || step > longest * float(report.substeps)))
     ++report.substeps;
   pass.step = step / float(report.substeps);
+  // Waves of one cell that pass more than a cell in a sub-step grow without bound. If the sub-steps are too few, the tension is the largest that is
+  // stable: the speed of these waves goes with its root.
+  LiquidSettings stable = settings;
+  if (pass.step > longest) {
+    const float ratio = longest / pass.step;
+    stable.surface_tension *= ratio * ratio;
+  }
   for (int substep = 0; substep < report.substeps; ++substep) {
     pass.elapsed = float(substep) * pass.step;
     if (substep > 0 &&
         !memory.window.cells().contains(with_margin(grid.box, cells_of_particles(grid, 0.0f, tasks))))
       move_window(pass, emitters, time, cut, step - pass.elapsed);
-    run_substep(pass, settings, emitters, time, report, impulses);
+    run_substep(pass, stable, emitters, time, report, impulses);
   }
   if (grid.box.any_open()) sort_particles(pass);
   store_fields(pass);

@@ -67,7 +67,8 @@ ParticleCollision::ParticleCollision(const LiquidPass& pass)
 
 Vec3 ParticleCollision::velocity_at(int label, Vec3 point) const {
   const Motion& motion = motions_[label];
-  return motion.velocity + cross(motion.spin, point - motion.center);
+  const Vec3 shift = to_float(image_shift(pass_.box(), DVec3(point), DVec3(motion.center)));
+  return motion.velocity + cross(motion.spin, point - motion.center + shift);
 }
 
 float ParticleCollision::distance_at(Vec3 point) const {

@@ -223,8 +223,10 @@ class SealedFaces {
     face.share = weight / edges[axis];
     double point[3];
     for (int i = 0; i < 3; ++i)
-      point[i] = (at[i] + grid_.first[i] + (i == axis ? (side > 0 ? 1.0 : 0.0) : 0.5)) * double(edges[i]) -
-                 solid.center[i];
+      point[i] = nearest_image(
+          grid_.box, i,
+          (at[i] + grid_.first[i] + (i == axis ? (side > 0 ? 1.0 : 0.0) : 0.5)) * double(edges[i]) -
+              solid.center[i]);
     const int next = (axis + 1) % 3, last = (axis + 2) % 3;
     face.moment[next] = float(point[last]);
     face.moment[last] = float(-point[next]);
@@ -362,10 +364,12 @@ void find_cut_faces(const CouplingGrid& grid, bool layers, BodyCoupling& couplin
             face.layer = float(coupling.scale) * depth;
           }
           const SolidMotion& solid = coupling.solids[label];
-          const double point[3] = {
-              (i + grid.first[0] + (axis == 0 ? 0.0 : 0.5)) * double(edges[0]) - solid.center[0],
-              (j + grid.first[1] + (axis == 1 ? 0.0 : 0.5)) * double(edges[1]) - solid.center[1],
-              (k + grid.first[2] + (axis == 2 ? 0.0 : 0.5)) * double(edges[2]) - solid.center[2]};
+          const int index[3] = {i, j, k};
+          double point[3];
+          for (int n = 0; n < 3; ++n)
+            point[n] = nearest_image(
+                grid.box, n,
+                (index[n] + grid.first[n] + (axis == n ? 0.0 : 0.5)) * double(edges[n]) - solid.center[n]);
           const int next = (axis + 1) % 3, last = (axis + 2) % 3;
           face.moment[axis] = 0.0f;
           face.moment[next] = float(point[last]);

@@ -36,7 +36,7 @@ struct PressureMatrix {
   std::uint64_t solids_revision = 0;  // from which it was made; 0: from none
   Array<std::uint8_t> cut_row;        // rows of cells: 1 where a solid cuts a face; empty without solids
   Array<std::uint8_t> near;           // those of the solids from which it was made; empty: not known
-  // Pockets (fluid/solver/pressure_pockets.h), found only once a solve has failed for want of them.
+  // Pockets (fluid/solver/pressure_pockets.h), if solids may divide the cells.
   bool has_pockets = false;
   Array<std::int32_t> pocket;            // of each cell, -1: none
   Array<std::uint8_t> pocket_is_closed;  // of each pocket: 0: an open side can be reached

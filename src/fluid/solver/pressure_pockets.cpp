@@ -42,7 +42,7 @@ bool mark_connected(PressureMatrix& matrix, std::int32_t mark, Array<std::int32_
 
 }  // namespace
 
-void find_pockets(PressureMatrix& matrix) {
+int find_pockets(PressureMatrix& matrix) {
   const PressureGrid& finest = matrix.levels[0];
   const GridShape& shape = finest.shape;
   matrix.pocket.clear();
@@ -62,6 +62,7 @@ void find_pockets(PressureMatrix& matrix) {
       }
     }
   }
+  return int(matrix.pocket_is_closed.size());
 }
 
 void remove_pocket_means(const PressureMatrix& matrix, float* field) {

@@ -8,8 +8,8 @@
 
 namespace gyre {
 
-// Finds the pockets of the finest level.
-void find_pockets(PressureMatrix& matrix);
+// Finds the pockets of the finest level. Returns the number of parts that no open face connects, with those that reach an open side.
+int find_pockets(PressureMatrix& matrix);
 
 // Makes the mean of a field zero within every pocket.
 void remove_pocket_means(const PressureMatrix& matrix, float* field);

@@ -1,8 +1,6 @@
 // Pressure: its gradient, its equation, and its impulses on solids.
 #include "fluid/solver/projection.h"
 
-#include "fluid/solver/pressure_pockets.h"
-
 namespace gyre {
 
 namespace {
@@ -230,20 +228,8 @@ PressureReport project_velocity(const GasPass& pass, const ProjectionSettings& s
   const float before = largest_of(rows_of(shape, -1), vectors.r, pass.kernels, pass.tasks);
   const float allowed = settings.divergence / pass.step, reduced = settings.reduction * before;
   const float target = allowed < reduced ? allowed : reduced;
-  PressureMatrix& matrix = pass.memory.matrix;
-  PressureReport report =
-      solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks, coupling);
-  if (report.last > target && pass.solids.present() && !matrix.has_pockets && settings.max_iterations > 0) {
-    // Solids that move may enclose gas, for which the equation then has no solution.
-    matrix.has_pockets = true;
-    find_pockets(matrix);
-    for (float* vector : {vectors.p, vectors.z, vectors.other}) clear_ghosts(shape, vector);
-    find_inflow(pass, vectors.r);
-    const int before_pockets = report.iterations;
-    report =
-        solve_pressure(matrix, vectors, target, settings.max_iterations, pass.kernels, pass.tasks, coupling);
-    report.iterations += before_pockets;
-  }
+  const PressureReport report = solve_pressure(pass.memory.matrix, vectors, target, settings.max_iterations,
+                                               pass.kernels, pass.tasks, coupling);
   subtract_gradient(pass, vectors.x, 1.0f);
   if (couples) {
     push_bodies(vectors.x, pass.memory.coupling);
@@ -297,14 +283,16 @@ void add_impulses(const GasPass& pass, float density, std::span<GasImpulse> impu
           const double push =
               scale * closed *
               (double(lower ? pressure[c + i - step] : 0.0f) - double(upper ? pressure[c + i] : 0.0f));
-          const double position[3] = {(i + (axis == 0 ? 0.0 : 0.5)) * double(pass.edge(0)),
-                                      (j + (axis == 1 ? 0.0 : 0.5)) * double(pass.edge(1)),
-                                      (k + (axis == 2 ? 0.0 : 0.5)) * double(pass.edge(2))};
+          DVec3 position{(i + (axis == 0 ? 0.0 : 0.5)) * double(pass.edge(0)),
+                         (j + (axis == 1 ? 0.0 : 0.5)) * double(pass.edge(1)),
+                         (k + (axis == 2 ? 0.0 : 0.5)) * double(pass.edge(2))};
+          if (one < int(pass.bodies.size()))
+            position += image_shift(pass.box(), position, pass.bodies[one].center - pass.box().corner);
           const DVec3 force = axis == 0   ? DVec3{push, 0, 0}
                               : axis == 1 ? DVec3{0, push, 0}
                                           : DVec3{0, 0, push};
           impulses[std::size_t(one)].linear += force;
-          impulses[std::size_t(one)].angular += cross(DVec3{position[0], position[1], position[2]}, force);
+          impulses[std::size_t(one)].angular += cross(position, force);
         }
       }
     }

@@ -86,16 +86,27 @@ void run_stage(const GasPass& pass, int axis, float scale, const StageWeights& w
   });
 }
 
+// 1/m^2: times a kinematic viscosity this is the rate at which a difference between neighbours decays.
+float viscous_scale(const GasBox& box) {
+  float scale = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float edge = edge_of(box, axis);
+    if (!box.flat(axis)) scale += 2.0f / (edge * edge);
+  }
+  return scale;
+}
+
+// So many stages are stable up to a viscosity that smooths the velocity over 300 cells within a step, which is more than a box has. A larger
+// viscosity acts like that one.
+constexpr int kMaxStages = 1001;
+constexpr float kMaxDecay = 0.25f * float(kMaxStages * kMaxStages + kMaxStages - 2);
+
 }  // namespace
 
 int count_viscous_stages(const GasBox& box, float kinematic_viscosity, float step) {
-  float rate = 0.0f;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float edge = edge_of(box, axis);
-    if (!box.flat(axis)) rate += 2.0f * kinematic_viscosity / (edge * edge);
-  }
+  const float rate = kinematic_viscosity * viscous_scale(box);
   int stages = 3;
-  while (float(stages * stages + stages - 2) < 4.0f * rate * step && stages < 1001) stages += 2;
+  while (float(stages * stages + stages - 2) < 4.0f * rate * step && stages < kMaxStages) stages += 2;
   return stages;
 }
 
@@ -118,7 +129,8 @@ void add_viscosity(const GasPass& pass, float kinematic_viscosity) {
     const double n = double(j);
     return j < 2 ? 1.0 / 3.0 : (n * n + n - 2.0) / (2.0 * n * (n + 1.0));
   };
-  const float scale = pass.step * kinematic_viscosity;
+  const float most = kMaxDecay / viscous_scale(pass.box()), wanted = pass.step * kinematic_viscosity;
+  const float scale = wanted < most ? wanted : most;
   for (int axis = 0; axis < 3; ++axis) {
     if (pass.flat(axis)) continue;
     float* const field = pass.grid.velocity[axis].data();

@@ -165,8 +165,11 @@ std::array<int, 3> liquid_cells(const LiquidDef& def) {
   const double sizes[3] = {size.x, size.y, size.z};
   std::array<int, 3> cells{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    constexpr double kRounding = 1.0e-6;  // of a cell, so that a box of whole cells has no more
-    const double count = std::ceil(sizes[axis] / double(def.cell_size) - kRounding);
+    // A box of whole cells has no more: the float nearest to the edge of a cell may be 2^-24 of it too short, and the corners are rounded too.
+    constexpr double kRounding = 1.0 / (1 << 23);
+    const double count_of_edges = sizes[axis] / double(def.cell_size);
+    const double count =
+        std::ceil(count_of_edges - kRounding * (count_of_edges > 1.0 ? count_of_edges : 1.0));
     cells[axis] = count < 1.0 ? 1 : count < double(kMaxFluidCells) ? int(count) : int(kMaxFluidCells);
   }
   return cells;
