@@ -57,7 +57,8 @@ TEST(SoftStiffSolids, ImpactsOnTheGroundThrowNoSolid) {
 TEST(SoftStiffSolids, WhatIsNotFiniteIsFrozenAndToldOnce) {
   World world = std::move(*World::create({}));
   world.add_body({.type = BodyType::fixed}, ShapeDef{.geometry = Plane{{0, 1, 0}, 0}});
-  const SoftId broken = world.add_solid({.box = SolidBox{{0.1f, 0.1f, 0.1f}, {1, 1, 1}}, .pose = {{0, 5, 0}, {}}});
+  const SoftId broken =
+      world.add_solid({.box = SolidBox{{0.1f, 0.1f, 0.1f}, {1, 1, 1}}, .pose = {{0, 5, 0}, {}}});
   const SoftId sound = world.add_rope({.points = {{3, 5, 0}, {4, 5, 0}}, .segments = 4});
   std::vector<Vec3> wild(world.vertices(broken).size(), Vec3{});
   wild[0] = {3.0e38f, 0, 0}, wild[1] = {-3.0e38f, 0, 0};
@@ -69,7 +70,8 @@ TEST(SoftStiffSolids, WhatIsNotFiniteIsFrozenAndToldOnce) {
   for (int n = 0; n < 30; ++n) {
     world.step(1.0f / 60.0f);
     for (const Problem& one : world.problems())
-      told += std::string(one.message).find("soft matter 0 is no longer finite; it was frozen at its last good places") !=
+      told += std::string(one.message)
+                          .find("soft matter 0 is no longer finite; it was frozen at its last good places") !=
                       std::string::npos
                   ? 1
                   : 0;

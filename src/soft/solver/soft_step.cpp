@@ -11,8 +11,8 @@ namespace {
 // Iterations by which impulses spread through a body. Each reaches the neighbours of those before; what is missing is found by the rows of the
 // next half-step.
 constexpr int kSpreadIterations = 8;
-// Iterations for solids, whose contacts need the response of the whole: a stiff cube that turns as eight iterations leave it is pressed out of shape by each
-// impulse, and gains more from that than it fell.
+// Iterations for solids, which need the response of the whole body: with 8, each impulse of a contact presses a stiff solid out of shape, and it gains more energy
+// than it had.
 constexpr int kSolidSpreadIterations = 50;
 // Iterations of Newton's for ropes, whose tension differs between the stages of a scheme.
 constexpr int kStageIterations = 3;
@@ -115,8 +115,7 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
   // Impulses of contacts come as jumps, which the second stage would carry beyond where they lead.
   const bool has_stages = integrator == SoftIntegrator::sdirk2 && !settings.touches;
   if (has_stages) begin_two_stages(entry, settings, step, kernels, arena, tasks);
-  if (!has_stages)
-    begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
+  if (!has_stages) begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
   if (step.method == SoftMethod::rope && settings.asks_for_inverse_masses)
     find_rope_inverse_masses(step.rope, arena);
   return step;
