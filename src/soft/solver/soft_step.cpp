@@ -11,7 +11,7 @@ namespace {
 // Iterations by which impulses spread through a body. Each reaches the neighbours of those before; what is missing is found by the rows of the
 // next half-step.
 constexpr int kSpreadIterations = 8;
-// Iterations for solids, which need the response of the whole body: with 8, each impulse of a contact presses a stiff solid out of shape, and it gains more energy
+// Iterations for solids that touch shapes, which need the response of the whole body: with 8, each impulse of a contact presses a stiff solid out of shape, and it gains more energy
 // than it had.
 constexpr int kSolidSpreadIterations = 50;
 // Iterations of Newton's for ropes, whose tension differs between the stages of a scheme.
@@ -102,6 +102,7 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
   SoftStep step;
   step.h = settings.step;
   step.carried = settings.carried;
+  step.touches = settings.touches;
   const SoftIntegrator integrator = entry.settings().integrator;
   if (!is_implicit(integrator)) {
     step.method = SoftMethod::explicit_scheme;
@@ -149,7 +150,8 @@ void respond(SoftEntry& entry, SoftStep& step, std::span<const Vec3> impulses, s
     const Vec3 one = i < count && p.loose[i] != 0.0f ? impulses[i] : Vec3{};
     given.x[i] = one.x, given.y[i] = one.y, given.z[i] = one.z;
   }
-  const int iterations = entry.kind == SoftKind::solid ? kSolidSpreadIterations : kSpreadIterations;
+  const bool is_pressed = entry.kind == SoftKind::solid && step.touches;
+  const int iterations = is_pressed ? kSolidSpreadIterations : kSpreadIterations;
   find_response(entry.body, step.implicit, given, found, iterations, kSpreadTolerance, kernels, arena, tasks);
   for (std::size_t i = 0; i < count; ++i) change[i] = {found.x[i], found.y[i], found.z[i]};
 }
