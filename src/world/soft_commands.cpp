@@ -63,15 +63,6 @@ void let_out(SoftEntry& entry, std::int32_t body) {
     if (entry.inside[k].body == body) entry.inside.erase_at(k);
 }
 
-// Contacts of the last step, between steps of a scheme, and the changes that the next step begins with, belong to the old places.
-void forget_motion(SoftEntry& entry) {
-  entry.contacts.clear();
-  entry.faces.clear();
-  wake(entry);
-  for (Array<float>& pull : entry.body.pull) pull.clear();
-  for (Array<double>& moved : entry.body.moved) moved.clear();
-}
-
 }  // namespace
 
 bool is_soft(const WorldState& s, SoftId id) {
@@ -198,6 +189,7 @@ CommandResult execute(WorldState& s, const SetVertices& c) {
   for (std::size_t i = 0; i < c.velocities.size(); ++i) entry.body.particles.set_velocity(int(i), c.velocities[i]);
   end_soft_touches(s, c.soft.index);
   forget_motion(entry);
+  entry.rest[0] = {};
   if (!c.positions.empty()) {
     for (SoftAttachment& attachment : entry.attachments) anchor_here(s.rigid, entry, attachment);
     find_inside_again(s.rigid, entry);

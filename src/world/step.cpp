@@ -9,6 +9,7 @@
 #include "rigid/rigid_step.h"
 #include "rigid/sleep/island.h"
 #include "rigid/time/step_error.h"
+#include "soft/store/soft_quarantine.h"
 #include "world/soft_events.h"
 #include "world/stages.h"
 #include "world/validate_state.h"
@@ -50,7 +51,7 @@ void begin_step(WorldState& s) {
   s.stepping = true;
   s.arena.reset();
   s.queried_changes.store(kNothingQueried, std::memory_order_relaxed);
-  s.frozen.clear();
+  s.frozen.clear(), s.quarantined_soft.clear();
   s.problems.clear();
   s.profile.begin_step();
   refresh_awake(s.rigid.bodies);
@@ -73,6 +74,12 @@ void report_frozen(WorldState& s) {
     report_problem(s, ErrorCode::invalid_data, body_id(s.rigid, body),
                    "body %u is no longer finite; it was frozen at its last good pose", body);
   }
+}
+
+void report_quarantined(WorldState& s) {
+  for (const std::uint32_t slot : s.quarantined_soft)
+    report_problem(s, ErrorCode::invalid_data, {},
+                   "soft matter %d is no longer finite; it was frozen at its last good places", int(slot));
 }
 
 void report_fluids(WorldState& s) {
@@ -197,6 +204,7 @@ void detect_collisions(WorldState& s, float seconds, float flow) {
   run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, s.recycle_contacts, seconds); });
   count_manifold_updates(s);
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
+  keep_good_places(s.soft);
 }
 
 // The stages after the solve of `seconds`, which is the last piece of a step of `whole` seconds or not.
@@ -209,6 +217,7 @@ void finish_step(WorldState& s, float seconds, float whole, bool last) {
   run_stage(s, StageName::break_joints, [&] { break_joints(w, seconds); });
   run_stage(s, StageName::put_to_sleep, [&] {
     put_to_sleep(w, s.arena, seconds);
+    quarantine_soft(s.soft, s.quarantined_soft);
     if (!s.soft.empty()) rest_soft(w, s.soft, s.arena, seconds);
   });
 }
@@ -385,6 +394,7 @@ void step_world(WorldState& s, float seconds) {
   }
   end_step(s, seconds);
   report_frozen(s);
+  report_quarantined(s);
   report_fluids(s);
   report_crossings(s, seconds);
   report_stiffness(s);

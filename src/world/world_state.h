@@ -79,6 +79,7 @@ struct WorldState {
   Array<Problem> problems;
   ProblemHook problem_hook;
   Array<std::uint32_t> frozen;
+  Array<std::uint32_t> quarantined_soft;  // slots, in the last step
   RigidEvents published_events;  // events of the last step; rigid.events collects those of the next
   SoftEvents published_soft_events;  // soft.events collects those of the next step
   Array<FluidTouch> published_fluid_touches;  // fluids.events collects those of commands for the next step

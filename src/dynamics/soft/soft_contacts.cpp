@@ -399,7 +399,7 @@ bool do_all_rest(const RigidWorld& w, const SoftEntry& entry) {
 }
 
 void fall_asleep(SoftEntry& entry) {
-  entry.rest[0].asleep = 1;
+  entry.rest[0].asleep = kResting;
   Particles& p = entry.body.particles;
   for (int i = 0; i < p.count; ++i) p.set_velocity(i, {});
   for (Array<double>& moved : entry.body.moved) moved.clear();

@@ -42,6 +42,7 @@ void clear_reports(WorldState& state) {
   state.events = {};
   state.problems.clear();
   state.frozen.clear();
+  state.quarantined_soft.clear();
   // The solver scratch still holds constraints of the replaced state.
   forget_batch(state.solve.together);
   for (const std::unique_ptr<WorkerContext>& worker : state.solve.workers) forget_batch(worker->scratch);

@@ -11,6 +11,9 @@ namespace {
 // Iterations by which impulses spread through a body. Each reaches the neighbours of those before; what is missing is found by the rows of the
 // next half-step.
 constexpr int kSpreadIterations = 8;
+// Iterations for solids that touch shapes, which need the response of the whole body: with 8, each impulse of a contact presses a stiff solid out of shape, and it gains more energy
+// than it had.
+constexpr int kSolidSpreadIterations = 50;
 // Iterations of Newton's for ropes, whose tension differs between the stages of a scheme.
 constexpr int kStageIterations = 3;
 constexpr double kSpreadTolerance = 1.0e-4;  // of the square of the error
@@ -99,6 +102,7 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
   SoftStep step;
   step.h = settings.step;
   step.carried = settings.carried;
+  step.touches = settings.touches;
   const SoftIntegrator integrator = entry.settings().integrator;
   if (!is_implicit(integrator)) {
     step.method = SoftMethod::explicit_scheme;
@@ -112,8 +116,7 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
   // Impulses of contacts come as jumps, which the second stage would carry beyond where they lead.
   const bool has_stages = integrator == SoftIntegrator::sdirk2 && !settings.touches;
   if (has_stages) begin_two_stages(entry, settings, step, kernels, arena, tasks);
-  if (!has_stages)
-    begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
+  if (!has_stages) begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
   if (step.method == SoftMethod::rope && settings.asks_for_inverse_masses)
     find_rope_inverse_masses(step.rope, arena);
   return step;
@@ -147,8 +150,9 @@ void respond(SoftEntry& entry, SoftStep& step, std::span<const Vec3> impulses, s
     const Vec3 one = i < count && p.loose[i] != 0.0f ? impulses[i] : Vec3{};
     given.x[i] = one.x, given.y[i] = one.y, given.z[i] = one.z;
   }
-  find_response(entry.body, step.implicit, given, found, kSpreadIterations, kSpreadTolerance, kernels, arena,
-                tasks);
+  const bool is_pressed = entry.kind == SoftKind::solid && step.touches;
+  const int iterations = is_pressed ? kSolidSpreadIterations : kSpreadIterations;
+  find_response(entry.body, step.implicit, given, found, iterations, kSpreadTolerance, kernels, arena, tasks);
   for (std::size_t i = 0; i < count; ++i) change[i] = {found.x[i], found.y[i], found.z[i]};
 }
 

@@ -24,6 +24,7 @@ struct SoftStepSettings {
 
 // Memory of the sub-step is the arena's.
 struct SoftStep {
+  bool touches = false;  // as in the settings
   SoftMethod method = SoftMethod::conjugate_gradients;
   float h = 0.0f;  // s
   std::span<const CarriedInertia> carried{};

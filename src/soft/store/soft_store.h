@@ -76,6 +76,9 @@ inline bool is_implicit(SoftIntegrator integrator) {
   return integrator == SoftIntegrator::implicit || integrator == SoftIntegrator::sdirk2;
 }
 
+// SoftRest::asleep of soft matter that rests, and of soft matter that was no longer finite: nothing wakes the latter but a command that sets its vertices.
+constexpr std::uint8_t kResting = 1, kQuarantined = 2;
+
 // Rest, as of bodies.
 struct SoftRest {
   float still_time = 0.0f;  // s
@@ -146,8 +149,10 @@ struct SoftEntry {
   SoftReported reported;
   SoftCrossings crossings;
   float crossed_for = 0.0f;  // s: how long it has crossed, for a report; no state
+  Array<double> good[3];     // x, y, z: where particles were when the step began; no state
 
   bool is_awake() const { return rest[0].asleep == 0; }
+  bool is_quarantined() const { return rest[0].asleep == kQuarantined; }
   const SoftSettings& settings() const {
     return std::visit([](const auto& one) -> const SoftSettings& { return one.settings; }, *def);
   }
@@ -227,6 +232,16 @@ void for_each_contact(Entry& entry, Visit&& visit) {
 inline bool has_rare_state(const SoftEntry& entry) { return !entry.inside.empty() || !entry.limits.empty(); }
 
 // Begins to move again, and does not fall asleep for a while.
-inline void wake(SoftEntry& entry) { entry.rest[0] = {}; }
+inline void wake(SoftEntry& entry) {
+  if (!entry.is_quarantined()) entry.rest[0] = {};
+}
+
+// Contacts of the last step, between steps of a scheme, and the changes that the next step begins with, belong to the old places.
+inline void forget_motion(SoftEntry& entry) {
+  entry.contacts.clear();
+  entry.faces.clear();
+  for (Array<float>& pull : entry.body.pull) pull.clear();
+  for (Array<double>& moved : entry.body.moved) moved.clear();
+}
 
 }  // namespace gyre
