@@ -75,7 +75,9 @@ TEST(SoftStiffSolids, WhatIsNotFiniteIsFrozenAndToldOnce) {
                       std::string::npos
                   ? 1
                   : 0;
-    if (n == 20) ASSERT_TRUE(restore_snapshot(loaded, save_snapshot(world)).ok());
+    if (n == 20) {
+      ASSERT_TRUE(restore_snapshot(loaded, save_snapshot(world)).ok());
+    }
     if (n > 20) {
       loaded.step(1.0f / 60.0f);
       EXPECT_EQ(world.hash(), loaded.hash());
