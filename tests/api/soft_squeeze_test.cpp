@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-namespace gyre {
+namespace gyre::soft_squeeze_test {
 namespace {
 
 constexpr float kStep = 1.0f / 60.0f;
@@ -93,4 +94,4 @@ TEST(SoftSqueeze, AVisualSheetDoesNotPushWhatFallsOnIt) {
 }
 
 }  // namespace
-}  // namespace gyre
+}  // namespace gyre::soft_squeeze_test

@@ -10,6 +10,9 @@ namespace {
 constexpr int kRounds = 2, kSweeps = 2;
 // Rounds end when they would take less than this share of the energy that a fall in the half-step gives to the vertices in contact.
 constexpr double kContactTolerance = 1.0e-3;
+// Bodies press from opposite sides if the cosine between their normals is lower.
+constexpr float kOpposite = -0.5f;
+constexpr std::uint32_t kNotPressed = 0xffffffffu;
 // A contact that still closes faster than this share of what gravity gives in the sub-step is not met.
 constexpr float kUnmetShare = 1.0f;
 // Friction below this share of its bound sticks.
@@ -141,18 +144,37 @@ namespace {
 // A contact with a body that does not yield.
 bool is_unyielding(const SoftRow& row) { return row.is_contact && row.body_compliance == Sym3{}; }
 
+// True if bodies that do not yield press a vertex from opposite sides and one of them is not met.
+bool is_squeezed(SoftSolve& s, std::span<const SoftRow> rows, SoftWork& work) {
+  const float most = kUnmetShare * s.h * reference_gravity(s.w->settings);
+  work.pressed.assign(work.impulses.size(), kNotPressed);
+  bool squeezed = false;
+  for (std::uint32_t k = 0; k < std::uint32_t(rows.size()) && !squeezed; ++k) {
+    const SoftRow& row = rows[k];
+    if (!is_unyielding(row)) continue;
+    for_each_vertex(row, [&](std::uint32_t v, float) {
+      if (work.pressed[v] == kNotPressed) {
+        work.pressed[v] = k;
+        return;
+      }
+      const SoftRow& other = rows[work.pressed[v]];
+      if (dot(row.normal, other.normal) > kOpposite) return;
+      squeezed = squeezed || dot(row.normal, error_of(s, row)) < -most ||
+                 dot(other.normal, error_of(s, other)) < -most;
+    });
+  }
+  return squeezed;
+}
+
 }  // namespace
 
-void forget_unmet(SoftSolve& s) {
-  const float most = kUnmetShare * s.h * reference_gravity(s.w->settings);
+void forget_squeezes(SoftSolve& s) {
   for (std::uint32_t m = 0; m < s.members.size(); ++m) {
-    const SoftWork& work = work_of(s, m);
+    SoftWork& work = work_of(s, m);
+    if (work.first_row == work.last_row) continue;
     const std::span<SoftRow> rows =
         std::span(s.scratch->rows).subspan(work.first_row, work.last_row - work.first_row);
-    bool unmet = false;
-    for (const SoftRow& row : rows)
-      unmet = unmet || (is_unyielding(row) && dot(row.normal, error_of(s, row)) < -most);
-    if (!unmet) continue;
+    if (rows.front().pushes && !is_squeezed(s, rows, work)) continue;
     for (SoftRow& row : rows)
       if (is_unyielding(row)) row.impulse = {};
   }

@@ -42,8 +42,9 @@ Vec3 project(const SoftRow& row, Vec3 impulse);
 // Gives bodies the momentum that the parts carried by vertices have gained.
 void give_to_bodies(SoftSolve& s);
 void solve_contacts_in_rounds(SoftSolve& s);
-// Impulses of contacts that are not met are not remembered: between bodies that close, they would grow without bound, and throw what comes free.
-void forget_unmet(SoftSolve& s);
+// Impulses of a member that is squeezed between bodies which do not yield are not remembered: none of them can be met, so they would grow without bound and
+// throw what comes free. Nor are those of visual members, whose velocities come from places that were moved to fit.
+void forget_squeezes(SoftSolve& s);
 // How contacts hold from now on: they stick within the cone of friction, slide at its bound, and are open without load.
 void set_grips(SoftSolve& s);
 

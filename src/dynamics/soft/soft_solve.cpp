@@ -432,7 +432,7 @@ void solve_soft_rows(SoftSolve& s, int, int) {
     for (int turn = 0; turn < kTurns && solve_soft_surfaces_again(s); ++turn) solve_contacts_in_rounds(s);
   }
   set_grips(s);
-  forget_unmet(s);
+  forget_squeezes(s);
   for (VelocityChange& pending : s.scratch->pending) pending = {};
 }
 

@@ -33,19 +33,28 @@ ExplicitScheme scheme_of(SoftIntegrator integrator) {
 
 Sym3 explicit_inverse_mass(const Particles& p, const SoftStep& step, int particle) {
   const float mass = p.mass[particle];
+  Sym3 inertia{mass, mass, mass, 0.0f, 0.0f, 0.0f};
+  bool carries = false;
   for (const CarriedInertia& one : step.carried) {
-    if (one.particle == particle) return inverse(Sym3{mass, mass, mass, 0.0f, 0.0f, 0.0f} + one.inertia);
+    if (one.particle != particle) continue;
+    inertia = inertia + one.inertia;
+    carries = true;
   }
+  if (carries) return inverse(inertia);
   return {1.0f / mass, 1.0f / mass, 1.0f / mass, 0.0f, 0.0f, 0.0f};
 }
 
 // An explicit scheme has moved its particles as if they carried nothing.
-void carry_explicitly(SoftEntry& entry, const SoftStep& step) {
+void carry_explicitly(SoftEntry& entry, const SoftStep& step, Arena& arena) {
+  const ArenaScope scope(arena);
   Particles& p = entry.body.particles;
-  for (const CarriedInertia& one : step.carried) {
-    const int i = one.particle;
-    const Vec3 push = one.inertia * (one.target - p.velocity(i));
-    const Vec3 change = explicit_inverse_mass(p, step, i) * push;
+  // A particle may carry several, which act together.
+  const std::span<Vec3> pushes = arena.make<Vec3>(step.carried.size());
+  for (std::size_t k = 0; k < pushes.size(); ++k)
+    pushes[k] = step.carried[k].inertia * (step.carried[k].target - p.velocity(step.carried[k].particle));
+  for (std::size_t k = 0; k < pushes.size(); ++k) {
+    const int i = step.carried[k].particle;
+    const Vec3 change = explicit_inverse_mass(p, step, i) * pushes[k];
     p.set_velocity(i, p.velocity(i) + change);
     p.set_place(i, p.place(i) + double(step.h) * DVec3(change));
   }
@@ -110,7 +119,7 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
     if (integrator != SoftIntegrator::visual)
       step_explicit(entry.body, {settings.step, settings.gravity, scheme_of(integrator)}, kernels, arena,
                     tasks);
-    carry_explicitly(entry, step);
+    carry_explicitly(entry, step, arena);
     return step;
   }
   // Impulses of contacts come as jumps, which the second stage would carry beyond where they lead.
