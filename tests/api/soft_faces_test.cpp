@@ -83,7 +83,7 @@ double depth_of(const World& world, SoftId sheet, BodyId body, const AnyShape& g
 }
 
 // A sheet that strikes a rim goes this deep for some steps, m; what passes through is deeper.
-constexpr double kDeepest = 0.018;
+constexpr double kDeepest = 0.016;
 
 double energy_of(const World& world) {
   const Energy energy = world.energy();

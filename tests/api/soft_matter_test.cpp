@@ -220,7 +220,7 @@ TEST(SoftMatter, MomentumIsKept) {
   const Momentum before = world.momentum();
   step(world, 90);
   const Momentum after = world.momentum();
-  EXPECT_LT(length(after.linear - before.linear), 3.0e-4 * 20.0);
+  EXPECT_LT(length(after.linear - before.linear), 1.0e-4 * 20.0);
   // Backward Euler turns along the tangent: it is right to the first order of the step.
   EXPECT_LT(length(after.angular - before.angular), 0.1 * (1.0 + length(before.angular)));
 }

@@ -168,7 +168,7 @@ TEST(SoftPieces, StiffSolidsThatStrikeEachOtherGainNoEnergy) {
       gained += std::max(0.0, energy_of(world) - before);
       before = energy_of(world);
     }
-    EXPECT_LT(gained, 0.04 * start) << speed;
+    EXPECT_LT(gained, 0.03 * start) << speed;
   }
 }
 

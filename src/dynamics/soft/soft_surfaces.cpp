@@ -1,5 +1,6 @@
 #include "dynamics/soft/soft_surfaces.h"
 
+#include "dynamics/soft/soft_rounds.h"
 #include "dynamics/soft/soft_solve.h"
 #include "soft/contact/surface_crossings.h"
 #include "soft/solver/rigid_modes.h"
@@ -39,8 +40,19 @@ void gather_velocities(SoftSolve& s) {
   });
 }
 
-// Gives all bodies what they are owed.
-void give_owed(SoftSolve& s) {
+// The momentum that the parts carried by a member's vertices gain from the change of its velocities.
+void find_carried_change(SoftSolve& s, std::uint32_t member) {
+  const SoftWork& work = work_at(s, member);
+  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+    SoftRow& row = s.scratch->rows[k];
+    if (row.carried >= 0)
+      row.carried_step = -(s.scratch->carried[row.carried].inertia * work.change[row.particle]);
+  }
+}
+
+// Gives all members what they are owed. `find_steps(member)` finds what the parts that their vertices carry gain by it.
+template <class FindSteps>
+void give_owed(SoftSolve& s, FindSteps&& find_steps) {
   SoftSurfaces& all = s.scratch->surfaces;
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     SoftEntry& entry = entry_at(s, member);
@@ -57,8 +69,11 @@ void give_owed(SoftSolve& s) {
     if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
     respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, *s.tasks);
     add_change(entry, work.step, work.change.view(), 1.0f);
-    find_carried_steps(s, member);
+    find_steps(member);
   });
+}
+void give_owed(SoftSolve& s) {
+  give_owed(s, [&](std::uint32_t member) { find_carried_steps(s, member); });
 }
 
 // Puts the vertices of a member where the bounds let them. Velocities follow what the bounds took, or they would go on stretching the body; of a
@@ -219,7 +234,10 @@ bool solve_soft_surfaces_again(SoftSolve& s) {
   all.arena.reset();
   gather_velocities(s);
   solve_surface_contacts(vertices_of(all), settings_of(s), all.arena, all.contacts);
-  give_owed(s);
+  // Bodies have what their parts gained before.
+  for (SoftRow& row : s.scratch->rows) row.carried_step = {};
+  give_owed(s, [&](std::uint32_t member) { find_carried_change(s, member); });
+  give_to_bodies(s);
   return true;
 }
 
