@@ -41,12 +41,12 @@ void gather_velocities(SoftSolve& s) {
 }
 
 // The momentum that the parts carried by a member's vertices gain from the change of its velocities.
-void find_carried_change(SoftSolve& s, std::uint32_t member) {
+void add_carried_change(SoftSolve& s, std::uint32_t member) {
   const SoftWork& work = work_at(s, member);
   for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
     SoftRow& row = s.scratch->rows[k];
     if (row.carried >= 0)
-      row.carried_step = -(s.scratch->carried[row.carried].inertia * work.change[row.particle]);
+      row.carried_step += -(s.scratch->carried[row.carried].inertia * work.change[row.particle]);
   }
 }
 
@@ -72,8 +72,27 @@ void give_owed(SoftSolve& s, FindSteps&& find_steps) {
     find_steps(member);
   });
 }
-void give_owed(SoftSolve& s) {
-  give_owed(s, [&](std::uint32_t member) { find_carried_steps(s, member); });
+
+// Solves the contacts of surfaces and gives what they find, in so many rounds at least, and in more while pairs close too fast.
+template <class FindSteps>
+void solve_in_rounds(SoftSolve& s, int least_rounds, FindSteps&& find_steps) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  const SurfaceVertices vertices = vertices_of(all);
+  const SurfaceContactSettings settings = settings_of(s);
+  for (int round = 1; round <= kMaxSurfaceRounds; ++round) {
+    all.impulses_before.assign(all.contacts.impulses.view());
+    all.velocities_before.assign(all.velocities.view());
+    solve_surface_contacts(vertices, settings, all.arena, all.contacts);
+    give_owed(s, find_steps);
+    gather_velocities(s);
+    if (round < least_rounds) continue;
+    if (worst_closing(vertices, settings, all.contacts) < kMaxClosing) return;
+    if (!extend_impulses(all.impulses_before.view(), all.velocities_before.view(), vertices, settings,
+                         all.contacts))
+      continue;
+    give_owed(s, find_steps);
+    gather_velocities(s);
+  }
 }
 
 // Puts the vertices of a member where the bounds let them. Velocities follow what the bounds took, or they would go on stretching the body; of a
@@ -206,20 +225,7 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
   const SurfaceContactSettings settings = settings_of(s);
   find_crossings(s);
   find_surface_contacts(all.placed, vertices, settings, all.arena, *s.tasks, all.contacts);
-  for (int round = 0; round < kMaxSurfaceRounds; ++round) {
-    all.impulses_before.assign(all.contacts.impulses.view());
-    all.velocities_before.assign(all.velocities.view());
-    solve_surface_contacts(vertices, settings, all.arena, all.contacts);
-    give_owed(s);
-    gather_velocities(s);
-    if (round == 0) continue;
-    if (worst_closing(vertices, settings, all.contacts) < kMaxClosing) break;
-    if (!extend_impulses(all.impulses_before.view(), all.velocities_before.view(), vertices, settings,
-                         all.contacts))
-      continue;
-    give_owed(s);
-    gather_velocities(s);
-  }
+  solve_in_rounds(s, 2, [&](std::uint32_t member) { find_carried_steps(s, member); });
   push_surfaces(vertices, settings, all.arena, all.contacts);
 }
 
@@ -233,10 +239,9 @@ bool solve_soft_surfaces_again(SoftSolve& s) {
   if (!all.active || all.contacts.pairs.empty()) return false;
   all.arena.reset();
   gather_velocities(s);
-  solve_surface_contacts(vertices_of(all), settings_of(s), all.arena, all.contacts);
   // Bodies have what their parts gained before.
   for (SoftRow& row : s.scratch->rows) row.carried_step = {};
-  give_owed(s, [&](std::uint32_t member) { find_carried_change(s, member); });
+  solve_in_rounds(s, 1, [&](std::uint32_t member) { add_carried_change(s, member); });
   give_to_bodies(s);
   return true;
 }
