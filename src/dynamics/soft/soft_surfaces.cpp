@@ -13,7 +13,7 @@ namespace {
 // How often impulses are found and given in a sub-step: at least twice, and more often where pairs still close by more than this share of their thickness. Moves
 // that the bounds have to cut stretch a stiff body.
 constexpr int kMaxSurfaceRounds = 12;
-constexpr float kMaxClosing = 0.5f;
+constexpr float kMaxClosing = 0.1f;
 
 SoftWork& work_at(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
 SoftEntry& entry_at(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
