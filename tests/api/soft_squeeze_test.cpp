@@ -68,7 +68,7 @@ TEST(SoftSqueeze, ASheetBetweenAKinematicBodyAndTheGroundIsNotThrown) {
   }
 }
 
-// What falls on a visual sheet meets the ground below it, as if there were no sheet.
+// A body that falls on a visual sheet meets the ground below it, as if there were no sheet.
 TEST(SoftSqueeze, AVisualSheetDoesNotPushWhatFallsOnIt) {
   for (const int substeps : {1, 2, 8}) {
     World world = make_world(substeps);

@@ -93,6 +93,7 @@ void solve_in_rounds(SoftSolve& s, int least_rounds, FindSteps&& find_steps) {
     give_owed(s, find_steps);
     gather_velocities(s);
   }
+  all.unmet = true;
 }
 
 // Puts the vertices of a member where the bounds let them. Velocities follow what the bounds took, or they would go on stretching the body; of a
@@ -258,6 +259,8 @@ void bound_soft_surfaces(SoftSolve& s, int, int) {
                              all.contacts);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) { place_vertices(s, member, first); });
   all.may_cross = !all.contacts.tangle.empty() || all.report.forced > 0 || all.report.crossed > 0;
+  if (all.unmet) all.contacts.clear(all.positions.size());
+  all.unmet = false;
 }
 
 }  // namespace gyre

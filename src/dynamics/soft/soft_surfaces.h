@@ -34,10 +34,12 @@ struct SoftSurfaces {
   Array<SurfaceImpulse> impulses_before;
   Array<Vec3> velocities_before;
   BoundReport report;
+  // True if pairs close however often they are solved, as between vertices that are held: their impulses are not remembered, which would grow without bound.
+  bool unmet = false;
   // True if surfaces may cross now: they are not where the last sub-step left them, or crossed then, or were held where they cross.
   bool may_cross = true;
   Array<DVec3> left;  // by vertex: where the last step left them
-  Arena arena;  // used within a stage
+  Arena arena;        // used within a stage
 };
 
 // Lists the surfaces of a step. Those that are not as the last step left them are searched for crossings in its first sub-step.

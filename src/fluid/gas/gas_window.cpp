@@ -24,7 +24,7 @@ std::int32_t largest_bits(const float* from, int count, float less) {
   return most;
 }
 
-// What counts in a cell: the largest of all cells, or limits.
+// Values of a cell that count: the largest of all cells, or limits.
 struct CellContents {
   std::int32_t speed[3] = {0, 0, 0}, smoke = 0, heat = 0, fuel = 0;
 };

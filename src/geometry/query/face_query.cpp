@@ -102,7 +102,7 @@ class FeatureSearch {
       low = {min(low.x, c.x), min(low.y, c.y), min(low.z, c.z)};
       high = {max(high.x, c.x), max(high.y, c.y), max(high.z, c.z)};
     }
-    // What touches the face between its corners is above or below it.
+    // A feature that touches the face between its corners is above or below it.
     const DVec3 pad = 1.001 * reach_ * DVec3{absolute(up_.x), absolute(up_.y), absolute(up_.z)};
     const Aabb box{to_float(low - pad), to_float(high + pad)};
     if (surface_.kind == ShapeKind::mesh) {

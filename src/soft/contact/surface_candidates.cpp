@@ -16,7 +16,7 @@ constexpr float kMoreOfReach =
 
 constexpr std::size_t kBlockNodes = 16;  // of a tree, whose leaves one worker takes at a time
 
-// What the blocks of a search share.
+// Input that the blocks of a search share.
 struct SearchInput {
   std::span<const SurfaceBoxes> boxes;
   std::span<const FeatureBase> bases;

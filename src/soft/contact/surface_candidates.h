@@ -36,7 +36,7 @@ struct SearchBlock {
   bool rest;
 };
 
-// What one worker has found, and its room for the filter.
+// Candidates that one worker has found, and its room for the filter.
 struct FoundCandidates {
   Array<SurfaceCandidate> corners, edges;
   Array<std::uint32_t> kept;

@@ -39,13 +39,13 @@ struct SurfacePair {
   std::uint64_t key = 0;
 };
 
-// What one worker has found in one block of candidates.
+// Pairs that one worker has found in one block of candidates.
 struct FoundPairs {
   int worker = 0;
   std::size_t begin = 0, end = 0;  // in the worker's list
 };
 
-// What lasts between searches.
+// Memory that lasts between searches.
 struct PairSearch {
   SurfaceCandidates candidates;
   std::vector<Array<SurfacePair>> found;  // by worker

@@ -1,4 +1,4 @@
-// What a block of elements adds to forces and to the blocks of edges: found W lanes at a time, and added one lane after the other, since
+// Sums of a block of elements to forces and to the blocks of edges: they are found W lanes at a time, and added one lane after the other, since
 // lanes may share particles and edges.
 #pragma once
 
