@@ -25,7 +25,7 @@ constexpr int kGripPasses = 3;
 constexpr float kErrorRate = 48.0f, kErrorShare = 0.2f;
 // Faces come out of shapes at this share of the rate: a sheet of coarse cells that falls on a ball is deep in it between its vertices, and must not be thrown
 // back.
-constexpr float kFaceRate = 0.2f;
+constexpr float kFaceRate = 0.125f;
 // Largest speed of removal of penetration, as a share of the speed of a fall from the length of an edge: as for contacts of bodies.
 constexpr float kSoftPushShare = 0.4f;
 
