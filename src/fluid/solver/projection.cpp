@@ -287,7 +287,7 @@ void add_impulses(const GasPass& pass, float density, std::span<GasImpulse> impu
                          (j + (axis == 1 ? 0.0 : 0.5)) * double(pass.edge(1)),
                          (k + (axis == 2 ? 0.0 : 0.5)) * double(pass.edge(2))};
           if (one < int(pass.bodies.size()))
-            position += image_shift(pass.box(), position, pass.bodies[one].center - pass.box().corner);
+            position += image_shift(pass.box(), position, pass.bodies[std::size_t(one)].center - pass.box().corner);
           const DVec3 force = axis == 0   ? DVec3{push, 0, 0}
                               : axis == 1 ? DVec3{0, push, 0}
                                           : DVec3{0, 0, push};
