@@ -7,7 +7,7 @@ namespace gyre {
 namespace {
 
 // Rounds of a half-step, and sweeps over all contacts in each.
-constexpr int kRounds = 2, kSweeps = 3;
+constexpr int kRounds = 2, kSweeps = 2;
 // Rounds end when they would take less than this share of the energy that a fall in the half-step gives to the vertices in contact.
 constexpr double kContactTolerance = 1.0e-3;
 // Bodies press from opposite sides if the cosine between their normals is lower.

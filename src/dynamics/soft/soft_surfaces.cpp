@@ -3,17 +3,13 @@
 #include "dynamics/soft/soft_rounds.h"
 #include "dynamics/soft/soft_solve.h"
 #include "soft/contact/surface_crossings.h"
+#include "soft/solver/coupled_solve.h"
 #include "soft/solver/rigid_modes.h"
 #include "soft/solver/soft_pass.h"
 
 namespace gyre {
 
 namespace {
-
-// How often impulses are found and given in a sub-step: at least twice, and more often where pairs still close by more than this share of their thickness. Moves
-// that the bounds have to cut stretch a stiff body.
-constexpr int kMaxSurfaceRounds = 12;
-constexpr float kMaxClosing = 0.1f;
 
 SoftWork& work_at(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
 SoftEntry& entry_at(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
@@ -30,7 +26,9 @@ SurfaceContactSettings settings_of(const SoftSolve& s) {
   settings.gravity = reference_gravity(s.w->settings);
   return settings;
 }
-SurfaceVertices vertices_of(SoftSurfaces& all) { return {all.positions, all.velocities, all.inverse_mass}; }
+SurfaceVertices vertices_of(SoftSurfaces& all) {
+  return {all.positions, all.velocities, all.inverse_mass, all.blocks};
+}
 
 void gather_velocities(SoftSolve& s) {
   SoftSurfaces& all = s.scratch->surfaces;
@@ -50,50 +48,34 @@ void add_carried_change(SoftSolve& s, std::uint32_t member) {
   }
 }
 
-// Gives all members what they are owed. `find_steps(member)` finds what the parts that their vertices carry gain by it.
+// Solves the contacts of surfaces and gives members what they get. `find_steps(member)` finds what the parts that their vertices carry gain by it.
 template <class FindSteps>
-void give_owed(SoftSolve& s, FindSteps&& find_steps) {
+void solve_contacts(SoftSolve& s, FindSteps&& find_steps) {
   SoftSurfaces& all = s.scratch->surfaces;
+  const ArenaScope scope(all.arena);
+  const std::span<CoupledBody> bodies = all.arena.make<CoupledBody>(all.placed.size());
+  for (std::size_t i = 0; i < all.placed.size(); ++i) {
+    const SoftStep& step = work_at(s, all.member[i]).step;
+    bodies[i] = {&entry_at(s, all.member[i]).body,
+                 step.method == SoftMethod::conjugate_gradients ? &step.implicit : nullptr,
+                 all.placed[i].first};
+  }
+  const std::span<Vec3> change = all.arena.make<Vec3>(all.positions.size());
+  make_coupling_rows(vertices_of(all), settings_of(s), all.contacts);
+  const CoupledReport report =
+      solve_coupled(bodies, all.contacts.rows, {all.blocks, all.velocities, all.contacts.owed, change}, {},
+                    *s.kernels, all.arena, *s.tasks);
+  all.unmet = all.unmet || !report.met;
+  take_impulses(all.inverse_mass, all.contacts);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     SoftEntry& entry = entry_at(s, member);
     SoftWork& work = work_at(s, member);
-    bool any = false;
-    for (Vec3& impulse : work.impulses) impulse = {};
-    for (int i = 0; i < entry.body.particles.count; ++i) {
-      Vec3& owed = all.contacts.owed[first + std::uint32_t(i)];
-      any |= !(owed == Vec3{});
-      work.impulses[i] = owed;
-      owed = {};
-    }
-    const SoftIntegrator scheme = entry_at(s, member).settings().integrator;
-    if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
-    respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, *s.tasks);
+    // Explicit schemes get the impulses as forces in the next sub-step.
+    if (work.step.method != SoftMethod::conjugate_gradients) return;
+    for (int i = 0; i < entry.body.particles.count; ++i) work.change[i] = change[first + std::uint32_t(i)];
     add_change(entry, work.step, work.change.view(), 1.0f);
     find_steps(member);
   });
-}
-
-// Solves the contacts of surfaces and gives what they find, in so many rounds at least, and in more while pairs close too fast.
-template <class FindSteps>
-void solve_in_rounds(SoftSolve& s, int least_rounds, FindSteps&& find_steps) {
-  SoftSurfaces& all = s.scratch->surfaces;
-  const SurfaceVertices vertices = vertices_of(all);
-  const SurfaceContactSettings settings = settings_of(s);
-  for (int round = 1; round <= kMaxSurfaceRounds; ++round) {
-    all.impulses_before.assign(all.contacts.impulses.view());
-    all.velocities_before.assign(all.velocities.view());
-    solve_surface_contacts(vertices, settings, all.arena, all.contacts);
-    give_owed(s, find_steps);
-    gather_velocities(s);
-    if (round < least_rounds) continue;
-    if (worst_closing(vertices, settings, all.contacts) < kMaxClosing) return;
-    if (!extend_impulses(all.impulses_before.view(), all.velocities_before.view(), vertices, settings,
-                         all.contacts))
-      continue;
-    give_owed(s, find_steps);
-    gather_velocities(s);
-  }
-  all.unmet = true;
 }
 
 // Puts the vertices of a member where the bounds let them. Velocities follow what the bounds took, or they would go on stretching the body; of a
@@ -177,7 +159,7 @@ void begin_soft_surfaces(SoftSolve& s) {
   for (const std::uint32_t slot : s.members) s.store->entries[slot].crossings = {};
   if (!all.active) return all.left.clear();
   all.positions.resize(vertices), all.targets.resize(vertices);
-  all.velocities.resize(vertices), all.inverse_mass.resize(vertices);
+  all.velocities.resize(vertices), all.inverse_mass.resize(vertices), all.blocks.resize(vertices);
   all.contacts.clear(vertices);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     const Particles& p = entry_at(s, member).body.particles;
@@ -219,14 +201,16 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
   gather_velocities(s);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     const Particles& p = entry_at(s, member).body.particles;
-    for (int i = 0; i < p.count; ++i)
-      all.inverse_mass[first + std::uint32_t(i)] = p.loose[i] == 0.0f ? 0.0f : 1.0f / p.mass[i];
+    for (std::uint32_t i = 0; i < std::uint32_t(p.count); ++i) {
+      all.inverse_mass[first + i] = p.loose[i] == 0.0f ? 0.0f : 1.0f / p.mass[i];
+      all.blocks[first + i] = inverse_mass(entry_at(s, member), work_at(s, member).step, i);
+    }
   });
   const SurfaceVertices vertices = vertices_of(all);
   const SurfaceContactSettings settings = settings_of(s);
   find_crossings(s);
   find_surface_contacts(all.placed, vertices, settings, all.arena, *s.tasks, all.contacts);
-  solve_in_rounds(s, 2, [&](std::uint32_t member) { find_carried_steps(s, member); });
+  solve_contacts(s, [&](std::uint32_t member) { find_carried_steps(s, member); });
   push_surfaces(vertices, settings, all.arena, all.contacts);
 }
 
@@ -242,7 +226,7 @@ bool solve_soft_surfaces_again(SoftSolve& s) {
   gather_velocities(s);
   // Bodies have what their parts gained before.
   for (SoftRow& row : s.scratch->rows) row.carried_step = {};
-  solve_in_rounds(s, 1, [&](std::uint32_t member) { add_carried_change(s, member); });
+  solve_contacts(s, [&](std::uint32_t member) { add_carried_change(s, member); });
   give_to_bodies(s);
   return true;
 }

@@ -29,10 +29,8 @@ struct SoftSurfaces {
   Array<DVec3> positions, targets;
   Array<Vec3> velocities;
   Array<float> inverse_mass;
+  Array<Sym3> blocks;  // 1/kg: how a vertex answers an impulse, its neighbours held still
   SurfaceContacts contacts;
-  // When a round of contacts began: impulses by pair, velocities by vertex.
-  Array<SurfaceImpulse> impulses_before;
-  Array<Vec3> velocities_before;
   BoundReport report;
   // True if pairs close however often they are solved, as between vertices that are held: their impulses are not remembered, which would grow without bound.
   bool unmet = false;

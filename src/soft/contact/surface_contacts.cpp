@@ -19,9 +19,10 @@ constexpr float kMaxPushOfThickness = 0.25f;
 // The speed with which crossed surfaces part, as a share of the speed of a fall from the length of an edge: as for vertices in shapes. It bounds the energy
 // that untangling gives: half the mass times its square.
 constexpr float kUntangleShare = 0.4f;
-// An extension of impulses by less than this share of their change is not worth its solve.
-constexpr float kMinExtension = 0.1f;
-constexpr float kNoLimit = 1.0e30f;  // more than any extension
+// Edges that cross resist by so many times what their bare masses do.
+constexpr float kUntangleResistance = 2.0f;
+// Rows resist by so many times what their vertices' own blocks do.
+constexpr float kResistance = 2.0f;
 
 // Takes the mean from the moves: surfaces that fly together do not look far. Returns it.
 DVec3 take_mean(std::span<const PlacedSurface> surfaces, std::span<DVec3> moves) {
@@ -119,17 +120,15 @@ void sum_impulses(const SurfaceVertices& vertices, SurfaceContacts& contacts) {
   for (std::size_t v = 0; v < contacts.totals.size(); ++v) contacts.owed[v] += contacts.totals[v];
 }
 
-// One contact, with all that a sweep reads.
+// One pair to be pushed apart, with all that a sweep reads.
 struct Row {
   std::uint32_t vertex[4];
   float weight[4];
   float change[4];  // 1/kg: weight times inverse mass
   Vec3 normal;
-  float mass;    // kg: impulse for a change of the relative velocity
-  float target;  // m/s: least normal velocity
-  float static_friction, dynamic_friction;
-  SurfaceImpulse impulse;
-  std::uint32_t pair;
+  float mass;    // kg
+  float target;  // m: least displacement along the normal
+  float push;    // kg m
 };
 
 Vec3 sum_of(std::span<const Vec3> values, const std::uint32_t (&vertex)[4], const float (&weight)[4]) {
@@ -141,8 +140,7 @@ void add_to(std::span<Vec3> values, const Row& row, Vec3 impulse) {
 }
 float gap_of(const SurfacePair& pair) { return float(pair.distance - double(pair.thickness)); }
 
-Row make_row(const SurfacePair& pair, std::uint32_t number, const SurfaceVertices& vertices,
-             const SurfaceImpulse& impulse) {
+Row make_row(const SurfacePair& pair, const SurfaceVertices& vertices) {
   Row row;
   float mobility = 0.0f;
   for (int k = 0; k < 4; ++k) {
@@ -154,9 +152,7 @@ Row make_row(const SurfacePair& pair, std::uint32_t number, const SurfaceVertice
   row.normal = to_float(pair.normal);
   row.mass = mobility > 0.0f ? 1.0f / mobility : 0.0f;
   row.target = 0.0f;
-  row.static_friction = pair.friction[0], row.dynamic_friction = pair.friction[1];
-  row.impulse = impulse;
-  row.pair = number;
+  row.push = 0.0f;
   return row;
 }
 
@@ -167,62 +163,29 @@ bool may_touch(const SurfacePair& pair, const SurfaceVertices& vertices, float s
   return gap - near < -kMoveAhead * step * dot(to_float(pair.normal), velocity);
 }
 
-void solve_row(Row& row, std::span<Vec3> velocities) {
-  const Vec3 velocity = sum_of(velocities, row.vertex, row.weight);
-  const float along = dot(row.normal, velocity);
-  const float normal = max(0.0f, row.impulse.normal - (along - row.target) * row.mass);
-  if (normal == 0.0f && row.impulse.normal == 0.0f) return;
-  // Inverse masses are scalars: normal and friction do not act on each other within a row.
-  Vec3 friction = row.impulse.friction - row.mass * (velocity - along * row.normal);
-  const float size = length(friction);
-  if (size > row.static_friction * normal) friction = (row.dynamic_friction * normal / size) * friction;
-  add_to(velocities, row, (normal - row.impulse.normal) * row.normal + (friction - row.impulse.friction));
-  row.impulse = {normal, friction};
-}
-
-// An edge that passes through a triangle moves along its way out, at a given speed or faster.
-struct TangleRow {
-  const TangledEdge* edge;
-  float change[5];  // 1/kg: weight times inverse mass
-  float mass;       // kg
-  float target;     // m/s: least speed along the way
-  float impulse;
-};
-
-std::span<TangleRow> make_tangle_rows(const SurfaceTangle& tangle, const SurfaceVertices& vertices,
-                                      Arena& arena) {
-  const std::span<TangleRow> rows = arena.make<TangleRow>(tangle.edges.size());
-  std::size_t used = 0;
-  for (const TangledEdge& edge : tangle.edges) {
-    TangleRow& row = rows[used];
-    float mobility = 0.0f;
-    for (int k = 0; k < 5; ++k) {
-      row.change[k] = edge.weight[k] * vertices.inverse_mass[edge.vertex[k]];
-      mobility += edge.weight[k] * row.change[k];
-    }
-    if (!(mobility > 0.0f)) continue;
-    row.edge = &edge, row.mass = 1.0f / mobility, row.target = row.impulse = 0.0f;
-    ++used;
+// Sets what the row resists by; false if all its vertices are held. Held vertices count as if they answered as the others do: where they close, the
+// little weight of one that is free is not to stop them all.
+bool set_resistance(std::span<const Sym3> blocks, CouplingRow& row) {
+  float along = 0.0f, trace = 0.0f, loose = 0.0f, all = 0.0f;
+  for (int k = 0; k < 5; ++k) {
+    const Sym3& block = blocks[row.vertex[k]];
+    const float share = row.weight[k] * row.weight[k];
+    along += share * dot(row.normal, block * row.normal);
+    trace += share * (block.xx + block.yy + block.zz);
+    all += share;
+    if (block.xx > 0.0f) loose += share;
   }
-  return rows.first(used);
-}
-
-void solve_tangle_row(TangleRow& row, std::span<Vec3> velocities) {
-  const TangledEdge& edge = *row.edge;
-  Vec3 relative{};
-  for (int k = 0; k < 5; ++k) relative += edge.weight[k] * velocities[edge.vertex[k]];
-  const float impulse = max(0.0f, row.impulse + (row.target - dot(edge.way, relative)) * row.mass);
-  if (impulse == row.impulse) return;
-  const Vec3 change = (impulse - row.impulse) * edge.way;
-  for (int k = 0; k < 5; ++k) velocities[edge.vertex[k]] += row.change[k] * change;
-  row.impulse = impulse;
+  if (!(along > 0.0f) || !(trace > along)) return false;
+  const float resistance = kResistance * loose / all;
+  row.along = resistance / along, row.across = 2.0f * resistance / (trace - along);
+  return true;
 }
 
 void solve_push(Row& row, std::span<Vec3> pushes) {
   const float now = dot(row.normal, sum_of(pushes, row.vertex, row.weight));
-  const float push = max(0.0f, row.impulse.normal + (row.target - now) * row.mass);
-  add_to(pushes, row, (push - row.impulse.normal) * row.normal);
-  row.impulse.normal = push;
+  const float push = max(0.0f, row.push + (row.target - now) * row.mass);
+  add_to(pushes, row, (push - row.push) * row.normal);
+  row.push = push;
 }
 
 }  // namespace
@@ -251,102 +214,55 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
   sum_impulses(vertices, contacts);
 }
 
-void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
-                            Arena& arena, SurfaceContacts& contacts) {
-  const ArenaScope scope(arena);
-  const std::size_t count = vertices.positions.size();
-  const std::span<Vec3> velocities = arena.make<Vec3>(count), start = arena.make<Vec3>(count);
-  for (std::size_t v = 0; v < count; ++v)
-    velocities[v] = start[v] = vertices.velocities[v] + vertices.inverse_mass[v] * contacts.owed[v];
-  std::span<Row> rows = arena.make<Row>(contacts.pairs.size());
-  std::size_t used = 0;
+void make_coupling_rows(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                        SurfaceContacts& contacts) {
+  contacts.rows.clear(), contacts.row_pairs.clear();
   for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
     const SurfacePair& pair = contacts.pairs[i];
     if (!pair.touches) continue;
     if (!(contacts.impulses[i].normal > 0.0f) && !may_touch(pair, vertices, settings.step)) continue;
-    Row& row = rows[used++];
-    row = make_row(pair, i, vertices, contacts.impulses[i]);
-    const float gap = gap_of(pair);
-    if (gap > 0.0f) row.target = -gap / settings.step;
+    CouplingRow row;
+    for (int k = 0; k < 4; ++k) row.vertex[k] = pair.vertex[k], row.weight[k] = pair.weight[k];
+    row.vertex[4] = pair.vertex[0];
+    row.normal = to_float(pair.normal);
+    if (!set_resistance(vertices.blocks, row)) continue;
+    const SurfaceImpulse& impulse = contacts.impulses[i];
+    row.impulse = impulse.normal * row.normal + impulse.friction;
+    row.friction[0] = pair.friction[0], row.friction[1] = pair.friction[1];
+    row.target = -max(gap_of(pair), 0.0f) / settings.step;
+    row.allowed = settings.closing * pair.thickness / settings.step;
+    contacts.rows.push_back(row), contacts.row_pairs.push_back(i);
   }
-  rows = rows.first(used);
-  const std::span<TangleRow> tangled = make_tangle_rows(contacts.tangle, vertices, arena);
-  for (TangleRow& row : tangled)
-    row.target = row.edge->share * kUntangleShare * std::sqrt(settings.gravity * row.edge->edge);
-  for (int n = 0; n < settings.iterations; ++n) {
-    for (std::size_t i = 0; i < used; ++i) solve_row(rows[n % 2 == 0 ? i : used - 1 - i], velocities);
-    for (TangleRow& row : tangled) solve_tangle_row(row, velocities);
-  }
-  contacts.touching = 0;
-  for (const Row& row : rows) {
-    contacts.impulses[row.pair] = row.impulse;
-    contacts.touching += row.impulse.normal > 0.0f;
-  }
-  for (std::size_t v = 0; v < count; ++v) {
-    const float w = vertices.inverse_mass[v];
-    if (!(w > 0.0f)) continue;
-    const Vec3 change = (velocities[v] - start[v]) / w;
-    contacts.owed[v] += change;
-    contacts.totals[v] += change;
-  }
-  // Impulses that untangle do not act again in the next sub-step: other edges cross then.
-  for (const TangleRow& row : tangled) {
+  // Edges that cross may ask for opposite motions, so they resist by their bare masses, and their impulses do not add up over stages.
+  for (const TangledEdge& edge : contacts.tangle.edges) {
+    CouplingRow row;
+    float mobility = 0.0f;
     for (int k = 0; k < 5; ++k) {
-      const std::uint32_t v = row.edge->vertex[k];
-      if (vertices.inverse_mass[v] > 0.0f)
-        contacts.totals[v] += -(row.edge->weight[k] * row.impulse) * row.edge->way;
+      row.vertex[k] = edge.vertex[k], row.weight[k] = edge.weight[k];
+      mobility += edge.weight[k] * edge.weight[k] * vertices.inverse_mass[edge.vertex[k]];
     }
+    if (!(mobility > 0.0f)) continue;
+    row.normal = edge.way;
+    row.along = kUntangleResistance / mobility;
+    row.target = edge.share * kUntangleShare * std::sqrt(settings.gravity * edge.edge);
+    row.adds_up = false;
+    contacts.rows.push_back(row);
   }
 }
 
-float worst_closing(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
-                    const SurfaceContacts& contacts) {
-  float worst = 0.0f;
-  for (const SurfacePair& pair : contacts.pairs) {
-    if (!pair.touches) continue;
-    const float along = dot(to_float(pair.normal), sum_of(vertices.velocities, pair.vertex, pair.weight));
-    worst = max(worst, (-along * settings.step - max(gap_of(pair), 0.0f)) / pair.thickness);
+void take_impulses(std::span<const float> inverse_mass, SurfaceContacts& contacts) {
+  for (Vec3& owed : contacts.owed) owed = {};
+  contacts.touching = 0;
+  for (std::size_t r = 0; r < contacts.row_pairs.size(); ++r) {
+    const CouplingRow& row = contacts.rows[r];
+    SurfaceImpulse& impulse = contacts.impulses[contacts.row_pairs[r]];
+    const Vec3 change = row.impulse - (impulse.normal * row.normal + impulse.friction);
+    for (int k = 0; k < 4; ++k)
+      if (inverse_mass[row.vertex[k]] > 0.0f) contacts.totals[row.vertex[k]] += row.weight[k] * change;
+    impulse.normal = dot(row.normal, row.impulse);
+    impulse.friction = row.impulse - impulse.normal * row.normal;
+    contacts.touching += impulse.normal > 0.0f;
   }
-  return worst;
-}
-
-bool extend_impulses(std::span<const SurfaceImpulse> before, std::span<const Vec3> start,
-                     const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
-                     SurfaceContacts& contacts) {
-  double missing = 0.0, gained = 0.0;
-  float most = kNoLimit;  // by which no normal impulse becomes negative
-  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
-    const SurfacePair& pair = contacts.pairs[i];
-    const float change = contacts.impulses[i].normal - before[i].normal;
-    const Vec3 normal = to_float(pair.normal);
-    const Vec3 way = change * normal + (contacts.impulses[i].friction - before[i].friction);
-    if (way == Vec3{}) continue;
-    const Vec3 now = sum_of(vertices.velocities, pair.vertex, pair.weight),
-               was = sum_of(start, pair.vertex, pair.weight);
-    const float gap = gap_of(pair);
-    const Vec3 target = gap > 0.0f ? (-gap / settings.step) * normal : Vec3{};
-    missing += double(dot(way, target - now));
-    gained += double(dot(way, now - was));
-    if (change < 0.0f) most = min(most, contacts.impulses[i].normal / -change);
-  }
-  if (!(missing > 0.0) || !(gained > 0.0)) return false;
-  const float more = min(float(missing / gained), most);
-  if (!(more > kMinExtension)) return false;
-  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
-    const SurfacePair& pair = contacts.pairs[i];
-    SurfaceImpulse& impulse = contacts.impulses[i];
-    const float normal = more * (impulse.normal - before[i].normal);
-    const Vec3 friction = more * (impulse.friction - before[i].friction);
-    if (normal == 0.0f && friction == Vec3{}) continue;
-    impulse.normal += normal, impulse.friction += friction;
-    for (int k = 0; k < 4; ++k) {
-      const std::uint32_t v = pair.vertex[k];
-      if (!(vertices.inverse_mass[v] > 0.0f)) continue;
-      const Vec3 given = pair.weight[k] * (normal * to_float(pair.normal) + friction);
-      contacts.totals[v] += given, contacts.owed[v] += given;
-    }
-  }
-  return true;
 }
 
 void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
@@ -360,7 +276,7 @@ void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings
     const float overlap = -gap_of(pair);
     if (!pair.touches || overlap < kSlopOfThickness * pair.thickness) continue;
     Row& row = rows[used++];
-    row = make_row(pair, i, vertices, {});
+    row = make_row(pair, vertices);
     row.target = min(settings.pushout * overlap, kMaxPushOfThickness * pair.thickness);
   }
   for (int n = 0; n < settings.push_iterations; ++n) {

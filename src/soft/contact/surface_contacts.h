@@ -1,26 +1,22 @@
-// Contacts of soft surfaces with themselves and each other, in one sub-step: finds the pairs that may touch, solves impulses that stop them from
+// Contacts of soft surfaces with themselves and each other, in one sub-step: finds the pairs that may touch, makes rows that stop them from
 // closing, with Coulomb friction, and moves the vertices without a crossing.
 //
-// A pair with weights w (soft/contact/surface_pairs.h) is one contact: its relative velocity is u = sum w_i v_i, and an impulse p on it gives
-// particle i the change of velocity w_i W_i p, with W_i its inverse mass. Rows are solved by projected Gauss-Seidel in the order of
-// their keys, forward and backward in turn:
+// A pair with weights w (soft/contact/surface_pairs.h) is one row: its relative velocity is u = sum w_i v_i, and an impulse p on it gives
+// particle i the impulse w_i p. The rows of all pairs are solved together with the stiffness of the bodies (soft/solver/coupled_solve.h):
 //
 //   normal     u.n >= -gap / h while the gap is positive, else u.n >= 0;  impulse >= 0
 //   friction   u_t = 0 within the disc of radius mu times the normal impulse
-//   pushout    the same rows over displacements remove a share of the overlap, without momentum
+//   pushout    the same rows over displacements remove a share of the overlap, without momentum, with the bare masses of vertices
 //   untangling u.n >= a speed along the way out, of an edge that passes through a triangle: five vertices (soft/contact/surface_tangle.h). Pairs that
 //              would hold the surfaces on the wrong sides have no rows and no bounds meanwhile
 //
 // The impulse of a pair, equal and opposite on its two closest points, keeps linear momentum exactly, and angular momentum up to the friction times the
 // gap. No impulse adds kinetic energy, but for untangling: contacts are inelastic.
-//
-// W_i is the bare inverse mass, while the bodies answer impulses through their stiffness, with A^-1, A = M + s K (soft/solver/implicit_step.h). Since A - M
-// is positive semi-definite, the rows see vertices as more mobile than they are, so that no solve goes too far: each lowers the energy of the
-// coupled system, and it is exact where a surface moves as a whole (docs/decisions/soft-contact.md).
 #pragma once
 
 #include "base/arena/arena.h"
 #include "base/container/array.h"
+#include "soft/contact/coupling_row.h"
 #include "soft/contact/displacement_bounds.h"
 #include "soft/contact/soft_surface.h"
 #include "soft/contact/surface_pairs.h"
@@ -38,12 +34,13 @@ struct SurfaceVertices {
   std::span<DVec3> positions;
   std::span<const Vec3> velocities;
   std::span<const float> inverse_mass;  // 1/kg, 0: held, it goes where it is told
+  std::span<const Sym3> blocks{};       // 1/kg: how a vertex answers an impulse, its neighbours held still
 };
 
 struct SurfaceContactSettings {
   float step = 0.0f;        // s: of the sub-step
-  int iterations = 16;      // sweeps over the rows
-  int push_iterations = 4;  // and over those of the pushout
+  float closing = 0.1f;     // share of the thickness by which a pair may close in the step
+  int push_iterations = 4;  // sweeps of the pushout
   float pushout = 0.25f;    // share of the overlap removed in a sub-step
   int most_rounds =
       4;  // of finding pairs, for vertices that end farther from their plan than they were looked for
@@ -63,6 +60,8 @@ struct SurfaceContacts {
   // N s, by vertex: the impulses of all pairs together; those of the last sub-step act as forces in the next, so that the stiffness of the
   // body spreads them exactly. And the part of them that the velocities do not have yet.
   Array<Vec3> totals, owed;
+  Array<CouplingRow> rows;         // those of pairs, then those of tangled edges
+  Array<std::uint32_t> row_pairs;  // by row: its pair
   PairSearch search;
   SurfaceTangle tangle;  // when the sub-step began
   Array<DVec3> plan;     // m, by vertex: the moves for which pairs were found, against the mean of all
@@ -82,19 +81,12 @@ struct SurfaceContacts {
 void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
                            const SurfaceContactSettings& settings, Arena& arena, TaskSystem& tasks,
                            SurfaceContacts& contacts);
-// Solves the rows at the present velocities and what is owed; then all changes are owed. The caller gives what is owed to the bodies, each
-// through its stiffness, and may call this again at the velocities that this makes.
-void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
-                            Arena& arena, SurfaceContacts& contacts);
-// By how much pairs would come into each other in the step at the present velocities, at most, as a share of their thickness.
-float worst_closing(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
-                    const SurfaceContacts& contacts);
-// Goes on along the change of the impulses since `before`, which changed the velocities from `start`: an exact line search of the dual, to where the work of the
-// change on what the pairs still miss is zero. A stiff body answers an impulse with more of its mass than one vertex has, so that the rows alone would take
-// many rounds. The extension is owed. False if it is too short to matter.
-bool extend_impulses(std::span<const SurfaceImpulse> before, std::span<const Vec3> start,
-                     const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
-                     SurfaceContacts& contacts);
+// Makes a row for each pair at which forces may act, and for each tangled edge, with what they resist by. solve_coupled()
+// (soft/solver/coupled_solve.h) solves them.
+void make_coupling_rows(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
+                        SurfaceContacts& contacts);
+// Takes the impulses of the rows after that. Nothing is owed then.
+void take_impulses(std::span<const float> inverse_mass, SurfaceContacts& contacts);
 // Sets the pushes.
 void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
                    SurfaceContacts& contacts);

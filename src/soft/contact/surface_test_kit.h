@@ -5,6 +5,7 @@
 #include "soft/contact/surface_crossings.h"
 #include "soft/elements/cloth.h"
 #include "soft/elements/solid.h"
+#include "soft/solver/coupled_solve.h"
 #include "soft/solver/soft_pass.h"
 #include "soft/solver/soft_test_kit.h"
 
@@ -71,7 +72,6 @@ struct SoftScene {
   ImplicitSettings implicit;
   SurfaceContactSettings settings;
   BoundReport report;
-  int spread = 3, outer = 2;
 
   SoftScene(float step, Vec3 gravity) {
     implicit.step = settings.step = step;
@@ -91,54 +91,61 @@ struct SoftScene {
     contact_arena.reset();
     Array<ImplicitStep> steps;
     if (contacts.totals.size() != all.positions.size()) contacts.clear(all.positions.size());
-    std::size_t at = 0;
-    for (SoftBody& body : bodies) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      SoftBody& body = bodies[k];
       Particles& p = body.particles;
       for (int i = 0; i < p.count; ++i) {
-        const Vec3 force = (1.0f / implicit.step) * contacts.totals[at++];
+        const Vec3 force = (1.0f / implicit.step) * contacts.totals[all.placed[k].first + std::size_t(i)];
         p.fx[i] = force.x, p.fy[i] = force.y, p.fz[i] = force.z;
       }
       steps.push_back(begin_implicit(body, implicit, bench.kernels, bench.arena, bench.tasks));
     }
+    const std::size_t count = all.positions.size();
     Array<Vec3> velocities;
     Array<float> inverse_mass;
+    Array<Sym3> blocks;
     Array<DVec3> targets;
-    all.positions.clear();
-    for (const SoftBody& body : bodies) {
-      const Particles& p = body.particles;
+    velocities.assign(count, Vec3{}), inverse_mass.assign(count, 0.0f), blocks.assign(count, Sym3{});
+    targets.assign(count, DVec3{});
+    Array<CoupledBody> coupled;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      const Particles& p = bodies[k].particles;
+      const std::uint32_t first = all.placed[k].first;
+      coupled.push_back({&bodies[k], &steps[k], first});
       for (int i = 0; i < p.count; ++i) {
-        all.positions.push_back(p.place(i));
-        velocities.push_back(p.velocity(i));
-        inverse_mass.push_back(p.loose[i] / p.mass[i]);
+        const std::size_t v = first + std::size_t(i);
+        all.positions[v] = p.place(i);
+        velocities[v] = p.velocity(i);
+        inverse_mass[v] = p.loose[i] / p.mass[i];
+        blocks[v] = gyre::inverse_mass(steps[k], i);
       }
     }
-    const SurfaceVertices vertices{all.positions, velocities, inverse_mass};
+    const SurfaceVertices vertices{all.positions, velocities, inverse_mass, blocks};
     find_surface_contacts(all.placed, vertices, settings, contact_arena, bench.tasks, contacts);
-    for (int n = 0; n < outer; ++n) {
-      solve_surface_contacts(vertices, settings, contact_arena, contacts);
-      at = 0;
-      for (std::size_t k = 0; k < bodies.size(); ++k) {
-        Particles& p = bodies[k].particles;
-        const VectorRows rows = make_vectors(bench.arena, p.x.size());
-        for (std::size_t i = 0; i < p.x.size(); ++i) {
-          Vec3 one{};
-          if (int(i) < p.count) std::swap(one, contacts.owed[at + i]);
-          rows.x[i] = one.x, rows.y[i] = one.y, rows.z[i] = one.z;
-        }
-        add_impulses(bodies[k], steps[k], rows, spread, bench.kernels, bench.arena, bench.tasks);
-        for (int i = 0; i < p.count; ++i) velocities[at++] = p.velocity(i);
+    make_coupling_rows(vertices, settings, contacts);
+    Array<Vec3> change;
+    change.resize(count);
+    const CoupledVertices solved{blocks, velocities, contacts.owed, change};
+    solve_coupled(coupled, contacts.rows, solved, {}, bench.kernels, contact_arena, bench.tasks);
+    take_impulses(inverse_mass, contacts);
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      Particles& p = bodies[k].particles;
+      for (int i = 0; i < p.count; ++i) {
+        const std::size_t v = all.placed[k].first + std::size_t(i);
+        velocities[v] = p.velocity(i) + change[v];
+        p.set_velocity(i, velocities[v]);
       }
     }
     push_surfaces(vertices, settings, contact_arena, contacts);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       Particles& p = bodies[k].particles;
       finish_implicit(bodies[k], steps[k], bench.kernels, bench.tasks);
-      for (int i = 0; i < p.count; ++i) targets.push_back(p.place(i));
+      for (int i = 0; i < p.count; ++i) targets[all.placed[k].first + std::size_t(i)] = p.place(i);
     }
     report = move_surfaces(all.placed, vertices, targets, settings, contact_arena, bench.tasks, contacts);
-    at = 0;
-    for (SoftBody& body : bodies) {
-      for (int i = 0; i < body.particles.count; ++i) body.particles.set_place(i, all.positions[at++]);
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      Particles& p = bodies[k].particles;
+      for (int i = 0; i < p.count; ++i) p.set_place(i, all.positions[all.placed[k].first + std::size_t(i)]);
     }
   }
 

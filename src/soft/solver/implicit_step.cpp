@@ -1,6 +1,7 @@
 #include "soft/solver/implicit_step.h"
 
 #include "soft/body/enclosed_gas.h"
+#include "soft/solver/body_system.h"
 #include "soft/solver/rigid_modes.h"
 #include "soft/solver/soft_pass.h"
 #include "task/parallel.h"
@@ -74,109 +75,31 @@ void keep_pull(SoftBody& body, const ImplicitSettings& settings, const SoftPass&
   }
 }
 
-// Iterations over which the fall of the energy of the error is summed.
-constexpr int kDelay = 2;
-
-// Conjugate gradients on a pass whose residual, first direction and their product `error` are there.
-class Solver {
- public:
-  Solver(const SoftPass& pass, std::span<const CarriedInertia> carried, const SoftKernels& kernels,
-         TaskSystem& tasks)
-      : pass_(pass), carried_(carried), kernels_(kernels), tasks_(tasks) {}
-
-  // product = A p; p times it.
-  double apply() {
-    double curvature = sum(kernels_.apply);
-    for (const CarriedInertia& one : carried_) {
-      const int i = one.particle;
-      const Vec3 p{pass_.direction.x[i], pass_.direction.y[i], pass_.direction.z[i]};
-      const Vec3 more = one.inertia * p;
-      pass_.product.x[i] += more.x, pass_.product.y[i] += more.y, pass_.product.z[i] += more.z;
-      curvature += double(dot(p, more));
-    }
-    return pass_.volume_scale > 0.0f ? curvature + apply_gas() : curvature;
-  }
-
-  double apply_gas() {
-    const std::size_t rows = std::size_t(pass_.slices) * kSliceRows;
-    double along = 0.0;
-    for (std::size_t i = 0; i < rows; ++i)
-      along += double(
-          dot(pass_.volume_gradient[i], {pass_.direction.x[i], pass_.direction.y[i], pass_.direction.z[i]}));
-    const float scaled = pass_.volume_scale * float(along);
-    for (std::size_t i = 0; i < rows; ++i) {
-      const Vec3 more = scaled * pass_.volume_gradient[i];
-      pass_.product.x[i] += more.x, pass_.product.y[i] += more.y, pass_.product.z[i] += more.z;
-    }
-    return double(pass_.volume_scale) * along * along;
-  }
-
-  template <class Kernel, class... Rest>
-  void each(Kernel kernel, Rest... rest) {
-    for_blocks(tasks_, pass_.slices, kBlockSlices,
-               [&](int begin, int end, int) { kernel(pass_, rest..., begin, end); });
-  }
-  template <class Kernel, class... Rest>
-  double sum(Kernel kernel, Rest... rest) {
-    return reduce_blocks(
-        tasks_, pass_.slices, kBlockSlices, 0.0,
-        [&](int begin, int end, int) { return kernel(pass_, rest..., begin, end); },
-        [](double a, double b) { return a + b; });
-  }
-
-  // Goes along the direction that is there as far as pays, and begins anew from there. So a bad guess is no worse than none, and the energy
-  // that an early end leaves is at most that of not having solved at all.
-  double go_along_direction(double error) {
-    const double curvature = apply(), slope = sum(kernels_.match);
-    if (curvature > 0.0 && absolute(slope) > 0.0)
-      error = sum(kernels_.advance, float(slope / curvature));
-    else
-      error = sum(kernels_.advance, 0.0f);
-    each(kernels_.turn, 0.0f);
-    return error;
-  }
-
-  // Until the energy of the error, e . A e, falls by at most `wanted` in kDelay iterations, which is a lower bound of that energy and near it
-  // (M. Hestenes, E. Stiefel, 1952). The residual says less: in a fine mesh of a stiff body a small one belongs to a large slow motion.
-  // Returns the number of iterations, within bounds; `error` becomes the residual at the end.
-  int iterate(double& error, double wanted, int least, int most) {
-    int iterations = 0;
-    double gains[kDelay] = {};
-    while (error > 0.0 && iterations < most) {
-      const double curvature = apply();
-      if (!(curvature > 0.0)) break;
-      gains[iterations % kDelay] = error * (error / curvature);
-      const double after = sum(kernels_.advance, float(error / curvature));
-      each(kernels_.turn, float(after / error));
-      error = after;
-      ++iterations;
-      double recent = 0.0;
-      for (const double gain : gains) recent += gain;
-      if (iterations >= max(least, kDelay) && recent <= wanted) break;
-    }
-    return iterations;
-  }
-
- private:
-  const SoftPass& pass_;
-  std::span<const CarriedInertia> carried_;
-  const SoftKernels& kernels_;
-  TaskSystem& tasks_;
-};
+// Goes along the direction that is there as far as pays, and begins anew from there. So a bad guess is no worse than none, and the energy
+// that an early end leaves is at most that of not having solved at all.
+double go_along_direction(BodySystem& system, const SoftKernels& kernels, double error) {
+  const double curvature = system.apply(), slope = system.sum(kernels.match);
+  if (curvature > 0.0 && absolute(slope) > 0.0)
+    error = system.advance(float(slope / curvature));
+  else
+    error = system.advance(0.0f);
+  system.turn(0.0f);
+  return error;
+}
 
 ImplicitReport solve(SoftBody& body, const SoftPass& pass, const ImplicitSettings& settings, double mass,
                      const SoftKernels& kernels, TaskSystem& tasks) {
-  Solver solver(pass, settings.carried, kernels, tasks);
+  BodySystem solver(pass, settings.carried, kernels, tasks);
   solver.each(kernels.start);
   double error = solver.sum(kernels.begin);
   const double start = error;
   guess_direction(body, settings, pass);
-  error = solver.go_along_direction(error);
+  error = go_along_direction(solver, kernels, error);
   const double fall = double(settings.step) * double(length(settings.gravity));
   const double reference = start + mass * fall * fall;
   const double wanted = double(settings.tolerance) * double(settings.tolerance) * reference;
   ImplicitReport report;
-  report.iterations = solver.iterate(error, wanted, settings.least_iterations, settings.most_iterations);
+  report.iterations = iterate(solver, error, wanted, settings.least_iterations, settings.most_iterations);
   report.residual = reference > 0.0 ? float(std::sqrt(error / reference)) : 0.0f;
   return report;
 }
@@ -284,9 +207,9 @@ void find_response(const SoftBody& body, const ImplicitStep& step, const VectorR
     pass.residual.x[i] = impulses.x[i], pass.residual.y[i] = impulses.y[i],
     pass.residual.z[i] = impulses.z[i];
   }
-  Solver solver(pass, step.carried, kernels, tasks);
+  BodySystem solver(pass, step.carried, kernels, tasks);
   double error = solver.sum(kernels.precondition);
-  solver.iterate(error, tolerance * error, tolerance > 0.0 ? 1 : iterations, iterations);
+  iterate(solver, error, tolerance * error, tolerance > 0.0 ? 1 : iterations, iterations);
   if (body.held.empty()) keep_momentum(body, step, impulses, change);
 }
 
@@ -300,7 +223,7 @@ void add_impulses(SoftBody& body, const ImplicitStep& step, const VectorRows& im
 
 void finish_implicit(SoftBody& body, const ImplicitStep& step, const SoftKernels& kernels,
                      TaskSystem& tasks) {
-  Solver(step.pass, {}, kernels, tasks).each(kernels.finish);
+  BodySystem(step.pass, {}, kernels, tasks).each(kernels.finish);
   place_held(body);
 }
 
