@@ -44,6 +44,19 @@ TEST(Snapshot, GoesOnWithAJointToABodyThatWasNailedDown) {
   }
 }
 
+// A snapshot forgot the generations of ids once the last soft body or fluid was removed. The next one then had the id of one that is gone.
+TEST(Snapshot, KeepsIdsOfSoftMatterAndFluidsThatAreGone) {
+  World world = make_world();
+  const SoftId rope = world.add_rope({.points = {{0, 0, 0}, {1, 0, 0}}});
+  const FluidId gas = world.add_gas({.cells = {4, 4, 4}});
+  world.remove_soft(rope);
+  world.remove_fluid(gas);
+  World loaded = copy_of(world);
+  EXPECT_EQ(world.hash(), loaded.hash());
+  EXPECT_NE(loaded.add_rope({.points = {{0, 0, 0}, {1, 0, 0}}}).generation, rope.generation);
+  EXPECT_NE(loaded.add_gas({.cells = {4, 4, 4}}).generation, gas.generation);
+}
+
 // The fat box of a body that the step does not move was extended by its velocity, but only if a command had set that since the last step. A
 // snapshot and a rollback do not know.
 TEST(Snapshot, GoesOnWithADisabledBodyThatWasGivenAVelocity) {
