@@ -30,9 +30,7 @@ class RandomMatter {
     if (weightless_) def.gravity = {};
     def.sleeping = pick(random, 4) != 0;
     def.stepping.substeps = int(1 + pick(random, 5));
-    const TimeStepping times[] = {TimeStepping::fixed, TimeStepping::adaptive,
-                                  TimeStepping::error_controlled};
-    if (pick(random, 5) == 0) def.stepping.time = times[pick(random, 3)];
+    if (pick(random, 10) == 0) def.stepping.time = TimeStepping(1 + pick(random, 2));
     def.stepping.tolerance = 0.0078125f;  // m; less takes many sub-steps
     if (pick(random, 6) == 0) def.stepping.solver = SolverKind(pick(random, 3));
     return def;

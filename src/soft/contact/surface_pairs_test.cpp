@@ -235,36 +235,6 @@ TEST(SurfacePairs, OfALastingSearchAreThoseOfANewOne) {
   EXPECT_LT(renewed, all_vertices / 4);
 }
 
-// So far from the origin, as a body that was thrown by mistake may be, tracks are lost in rounding: a list of another time must not be used.
-TEST(SurfacePairs, FarFromTheOriginDoNotDependOnEarlierSearches) {
-  Mixed random{29};
-  Arena arena;
-  TaskSystem one(1);
-  Surfaces all;
-  all.add(crumpled(12, 0.04, 0.06, random), grid_triangles(12, 12), 0.008f);
-  const std::size_t count = all.positions.size();
-  Array<DVec3> moves = still(all);
-  Array<float> limits;
-  limits.assign(count, 1.0e-3f);
-  PairSearch lasting;
-  Array<SurfacePair> pairs, same;
-  for (int step = 0; step < 12; ++step) {
-    const double size = step % 3 == 2 ? 0.01 : 1.0e24;  // m
-    for (std::size_t v = 0; v < count; ++v) {
-      moves[v] = {random.between(-size, size), random.between(-size, size), random.between(-size, size)};
-      limits[v] = 0.1f * float(length(moves[v])) + 1.0e-3f;
-    }
-    find_surface_pairs(all.placed, all.positions, moves, limits, 0.2f, arena, one, lasting, pairs);
-    PairSearch fresh;
-    find_surface_pairs(all.placed, all.positions, moves, limits, 0.2f, arena, one, fresh, same);
-    ASSERT_EQ(pairs.size(), same.size()) << step;
-    for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(pairs[i].key, same[i].key) << step;
-    if (step % 4 == 1)
-      for (std::size_t v = 0; v < count; ++v) all.positions[v] += moves[v];
-    lasting.candidates.advance();
-  }
-}
-
 // Of two flat sheets, forces act between vertices and faces and between edges that cross, all straight up, and nowhere twice; and between
 // the rim of the upper sheet and vertices beyond it.
 TEST(SurfacePairs, TouchAlongTheNormalsOfFlatSheets) {
