@@ -104,7 +104,8 @@ void ensure_fat_boxes_cover_motion(RigidWorld& w, TaskSystem& tasks, float secon
     list_marked(w, w.bodies.awake);
   } else {
     for (const std::uint32_t shape : w.shapes.moved_shapes) {
-      if (!w.shapes.ids.live(shape)) continue;
+      // Frozen and disabled bodies have velocities, but the step does not move them.
+      if (!w.shapes.ids.live(shape) || !is_simulated(w.bodies.flags[w.shapes.bodies[shape]])) continue;
       if (ensure_fat_box_covers_motion(w, shape, seconds)) w.shapes.changed.push_back(shape);
     }
   }

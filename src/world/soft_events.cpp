@@ -1,6 +1,7 @@
 #include "world/soft_events.h"
 
 #include "base/container/sort.h"
+#include "dynamics/soft/soft_solve.h"
 #include "task/parallel.h"
 #include "world/soft_commands.h"
 #include "world/world_state.h"
@@ -100,6 +101,7 @@ void damage_soft(WorldState& s, float seconds) {
   for (std::uint32_t slot = 0; slot < s.soft.entries.size(); ++slot) {
     SoftEntry& entry = s.soft.entries[slot];
     if (entry.def == nullptr || entry.damage.empty() || !entry.is_awake()) continue;
+    hold_attached(s.rigid, entry);
     flow_soft(entry, seconds, *s.tasks);
     s.soft_splits.clear();
     tear_soft(entry, *s.tasks, s.soft_splits);

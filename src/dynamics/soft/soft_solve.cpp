@@ -247,6 +247,16 @@ void find_carried_steps(SoftSolve& s, std::uint32_t member) {
   }
 }
 
+void hold_attached(const RigidWorld& w, SoftEntry& entry) {
+  for (const SoftAttachment& one : entry.attachments) {
+    const int particle = int(one.particle);
+    const bool is_held = entry.body.particles.loose[one.particle] == 0.0f;
+    const bool is_free = yields(w, one.body) && !is_visual(entry);
+    if (is_held && is_free) let_go(entry.body, particle);
+    if (!is_held && !is_free) hold(entry.body, particle, entry.body.particles.place(particle));
+  }
+}
+
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   scratch.slots.clear(), scratch.touched.clear();
   store.ids.for_each_live([&](std::uint32_t slot) {

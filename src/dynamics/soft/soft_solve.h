@@ -110,6 +110,9 @@ struct SoftSolve {
   double time = 0.0;  // s, when the step began
 };
 
+// Holds the vertices that are attached to what does not yield now, and lets the others go. The solve does so, too; what comes before it in a step
+// must not depend on whether the state was loaded.
+void hold_attached(const RigidWorld& w, SoftEntry& entry);
 // Before batches are found: lists slots and touched bodies, and marks these as constrained.
 void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch);
 // Makes the rows of a step; holds vertices that are attached to what does not yield.

@@ -61,11 +61,17 @@ struct ColumnLayout<FluidStore> {
   static RecordLayout get() { return {1, kFluidLayout}; }
 };
 
-// An empty later column is not written, and a missing one is read as empty, so older snapshots can be read.
+// An empty later column is not written, and a missing one is read as empty, so older snapshots can be read. Soft matter and fluids that were
+// removed leave the generations of their ids behind.
 template <class Column>
 bool is_left_out(const Column& column) {
-  if constexpr (is_later_column<Column>) return column.empty();
-  return false;
+  if constexpr (std::is_same_v<Column, SoftStore> || std::is_same_v<Column, FluidStore>) {
+    return column.entries.empty();
+  } else if constexpr (is_later_column<Column>) {
+    return column.empty();
+  } else {
+    return false;
+  }
 }
 
 class ColumnWriter {

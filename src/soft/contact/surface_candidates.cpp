@@ -14,6 +14,10 @@ constexpr int kTrackSteps = 4;
 constexpr float kMoreOfReach =
     0.3f;  // by which a vertex that has left its track reaches farther about the next one, at most
 
+// Farther from the origin, or with longer moves, the rounding of places is more than a part of a thickness and may exceed the reach of tracks. Squares
+// of what is much farther overflow a float. What is found from a list would then depend on when it was made.
+constexpr double kFarthestTrack = 0x1p30;  // m
+
 constexpr std::size_t kBlockNodes = 16;  // of a tree, whose leaves one worker takes at a time
 
 // Input that the blocks of a search share.
@@ -164,6 +168,14 @@ bool are_same(std::span<const PlacedSurface> a, std::span<const PlacedSurface> b
   return true;
 }
 
+// True if any is farther than kFarthestTrack, or is no number.
+bool is_any_far(std::span<const DVec3> vectors) {
+  bool far = false;
+  for (const DVec3& one : vectors)
+    far = far || !(max(absolute(one.x), max(absolute(one.y), absolute(one.z))) <= kFarthestTrack);
+  return far;
+}
+
 DVec3 mean_of(std::span<const PlacedSurface> surfaces, std::span<const DVec3> values) {
   DVec3 sum{};
   double count = 0.0;
@@ -297,7 +309,10 @@ void update_candidates(std::span<const PlacedSurface> surfaces, std::span<const 
                        SurfaceCandidates& candidates) {
   const ArenaScope scope(arena);
   const std::size_t count = positions.size();
-  if (!are_same(candidates.surfaces, surfaces) || candidates.start.size() != count) {
+  const bool was_far = candidates.is_far;
+  candidates.is_far = is_any_far(positions) || is_any_far(moves);
+  if (was_far || candidates.is_far || !are_same(candidates.surfaces, surfaces) ||
+      candidates.start.size() != count) {
     candidates.corners.clear(), candidates.edges.clear(), candidates.bases.clear();
     candidates.surfaces.assign(surfaces);
     candidates.start.assign(positions), candidates.way.assign(moves);

@@ -53,6 +53,7 @@ struct SurfaceCandidates {
   Array<SurfaceCandidate> before;      // the list that a new one replaces
   std::vector<FoundCandidates> found;  // by worker, in the last search
   int time = 0;                        // sub-steps since tracks began
+  bool is_far = false;                 // made so far from the origin that it holds for one sub-step only
   long new_tracks = 0;                 // vertices that got one, so far
 
   // Call this when a sub-step has ended.

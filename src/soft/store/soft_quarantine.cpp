@@ -10,6 +10,15 @@ bool is_sound(const Particles& p) {
   return true;
 }
 
+// The next step would begin with these impulses. A body that is frozen now leaves some that are not finite at vertices that are sound.
+void forget_infinite_impulses(SoftEntry& entry) {
+  const auto keep_finite = [](Vec3& impulse) {
+    if (!is_finite(impulse)) impulse = {};
+  };
+  for (SoftAttachment& one : entry.attachments) keep_finite(one.impulse);
+  for_each_contact(entry, [&](SoftContact& one) { keep_finite(one.impulse); });
+}
+
 void freeze(SoftEntry& entry) {
   Particles& p = entry.body.particles;
   p.x = entry.good[0], p.y = entry.good[1], p.z = entry.good[2];
@@ -34,7 +43,9 @@ void keep_good_places(SoftStore& soft) {
 void quarantine_soft(SoftStore& soft, Array<std::uint32_t>& frozen) {
   for (std::uint32_t slot = 0; slot < soft.entries.size(); ++slot) {
     SoftEntry& entry = soft.entries[slot];
-    if (entry.def == nullptr || !entry.is_awake() || is_sound(entry.body.particles)) continue;
+    if (entry.def == nullptr || !entry.is_awake()) continue;
+    forget_infinite_impulses(entry);
+    if (is_sound(entry.body.particles)) continue;
     freeze(entry);
     frozen.push_back(slot);
   }

@@ -10,7 +10,7 @@ namespace gyre {
 
 // Keeps the places of all awake entries, before the solve.
 void keep_good_places(SoftStore& soft);
-// Freezes awake entries whose places or velocities are not finite, and appends their slots to `frozen`.
+// Freezes awake entries whose places or velocities are not finite, and appends their slots to `frozen`. Impulses that are not finite are forgotten.
 void quarantine_soft(SoftStore& soft, Array<std::uint32_t>& frozen);
 
 }  // namespace gyre
