@@ -112,6 +112,30 @@ TEST(Liquid, StaysAboveNarrowGaps) {
       limit_row("F-44 fastest particle there over sqrt(g H)", fastest / std::sqrt(kG * 0.35), 1e-2, 2e-3));
 }
 
+// Under flat rafts that bob, particles do not gather.
+TEST(Liquid, KeepsItsVolumeUnderRafts) {
+  constexpr double kCell = 0.025;
+  double drift = 0.0;
+  const float halves[] = {0.25f, 0.2f}, densities[] = {500.0f, 700.0f};
+  const double heights[] = {0.55, 0.6};
+  for (int i = 0; i < 2; ++i) {
+    World world = make_world();
+    BodyDef raft = plane_block({0.6, heights[i], 0.5 * kCell}, true);
+    raft.locked = {.linear = {true, false, true}, .angular = {true, true, false}};
+    world.add_body(raft, {.geometry = Box{{halves[i], 0.04f, 0.5f * float(kCell)}}, .density = densities[i]});
+    const FluidId pool = world.add_liquid(plane_tank(1.2, 1.0, 0.45, float(kCell)));
+    const double before = world.fluid_info(pool).volume;
+    run(world, 4.0);
+    double after = 0.0;
+    for (int step = 0; step < 30; ++step) {
+      world.step(kStep);
+      after += world.fluid_info(pool).volume / 30.0;
+    }
+    drift = std::max(drift, std::fabs(after / before - 1.0));
+  }
+  EXPECT_TRUE(limit_row("F-47 drift of the volume under a raft that fell on a pool", drift, 1e-2, 5e-3));
+}
+
 // Drops that lie on a plate above a pool rest there.
 TEST(Liquid, RestsOnAPlateAsDrops) {
   constexpr double kCell = 0.05;

@@ -122,8 +122,8 @@ void block_cells(const LiquidPass& pass) {
 }
 
 // A cell whose centre lies in a solid has too little room for particles to tell whether it is liquid. It is as far from the surface as the cells
-// beside it whose centres do not.
-void find_surface_in_solids(const LiquidPass& pass) {
+// beside it whose centres do not. It may be too full, though: particles would gather there without bound under a flat body.
+void find_surface_in_solids(const LiquidPass& pass, const float* room) {
   const GridShape& shape = pass.shape();
   const float* const distance = pass.solids.distance.empty() ? nullptr : pass.solids.distance.data();
   if (distance == nullptr) return;
@@ -149,7 +149,9 @@ void find_surface_in_solids(const LiquidPass& pass) {
           sum += open[at + step] * surface[above], weights += open[at + step];
       }
       surface[at] = weights > 0.0f ? sum / weights : pass.edge(0);
-      pass.memory.filled[at] = 1.0f;
+      float& filled = pass.memory.filled[at];
+      const float excess = filled * (room[at] > kMinRoom ? room[at] : kMinRoom) - room[at];
+      filled = 1.0f + (excess > 0.0f ? excess : 0.0f);
       cell[at] = surface[at] <= 0.0f ? LiquidCell::liquid : LiquidCell::air;
     }
   });
@@ -298,7 +300,7 @@ void find_surface(const LiquidPass& pass) {
                                                       : LiquidCell::air;
     }
   });
-  if (pass.solids.present()) find_surface_in_solids(pass);
+  if (pass.solids.present()) find_surface_in_solids(pass, room);
   fill_ghosts(pass.box(), shape, surface);
   fill_cell_ghosts(pass, cell);
   pass.memory.wet_row.resize(std::size_t(shape.rows()));
