@@ -205,13 +205,20 @@ FluidInfo World::fluid_info(FluidId fluid) const {
   info.user_data = std::visit([](const auto& def) { return def.user_data; }, *entry.def);
   const GasSolids none;
   const FluidScratch* const scratch = scratch_of(*state_, fluid.index);
-  const GasSolids& solids = scratch != nullptr ? scratch->solids.solids : none;
+  const FluidSolids* cut = scratch != nullptr ? &scratch->solids : nullptr;
+  FluidSolids own;
+  if (entry.is_liquid() && (cut == nullptr || cut->window.box.cells[0] == 0)) {
+    // No step has cut the cells of this liquid yet.
+    find_near_shapes(state_->rigid, entry, own);
+    cut_fluid_cells(state_->rigid, entry, whole_window(box), reading.tasks, own);
+    cut = &own;
+  }
+  const GasSolids& solids = cut != nullptr ? cut->solids : none;
   if (entry.is_liquid()) {
     const LiquidTotals totals = totals_of(*state_, entry);
     info.particles = entry.liquid.particles();
     info.kinetic_energy = totals.kinetic_energy;
-    const FluidWindow* const window =
-        scratch != nullptr && solids.present() ? &scratch->solids.window : nullptr;
+    const FluidWindow* const window = solids.present() ? &cut->window : nullptr;
     info.volume = liquid_volume(entry.liquid, solids, window);
   } else {
     info.kinetic_energy = gas_kinetic_energy(entry.gas, solids, entry.gas_def().density, reading.tasks);

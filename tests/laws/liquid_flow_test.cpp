@@ -58,7 +58,7 @@ TEST(Liquid, FallsAsAColumnWasMeasured) {
   def.fill[0].upper.x = kWidth;
   const FluidId water = world.add_liquid(def);
   std::vector<Measured> front, height;
-  for (int i = 0; i < 108; ++i) {
+  for (int i = 0; i < 144; ++i) {
     world.step(kShort);
     const double time = world.time();
     double tip = 0.0;
@@ -67,8 +67,8 @@ TEST(Liquid, FallsAsAColumnWasMeasured) {
     const double top = double(world.probe(water, {0.5 * double(kCell), 0.01, 0.001}).surface);
     height.push_back({time * std::sqrt(kG / kWidth), top / (2 * kWidth)});
   }
-  constexpr Measured kFront[] = {{0.84, 1.22}, {1.19, 1.44}, {1.43, 1.67}, {1.63, 1.89},
-                                 {1.83, 2.11}, {1.98, 2.33}, {2.20, 2.56}, {2.32, 2.78}};
+  constexpr Measured kFront[] = {{0.41, 1.11}, {0.84, 1.22}, {1.19, 1.44}, {1.43, 1.67}, {1.63, 1.89},
+                                 {1.83, 2.11}, {1.98, 2.33}, {2.20, 2.56}, {2.32, 2.78}, {2.51, 3.00}};
   // The gate took time to open: the measured times may be later by up to 0.2.
   double least = 1.0;
   for (double shift = 0.0; shift <= 0.2; shift += 0.02) {
@@ -80,12 +80,82 @@ TEST(Liquid, FallsAsAColumnWasMeasured) {
   EXPECT_TRUE(
       limit_row("F-23 front of a falling column, largest error over the measured place", least, 0.10, 0.03));
   constexpr Measured kHeight[] = {{0.56, 0.94}, {0.77, 0.89}, {0.93, 0.83}, {1.08, 0.78}, {1.28, 0.72},
-                                  {1.46, 0.67}, {1.66, 0.61}, {1.84, 0.56}, {2.00, 0.50}};
+                                  {1.46, 0.67}, {1.66, 0.61}, {1.84, 0.56}, {2.00, 0.50}, {2.21, 0.44},
+                                  {2.45, 0.39}, {2.70, 0.33}, {3.06, 0.28}};
   double most = 0.0;
   for (const Measured one : kHeight)
     most = std::max(most, std::fabs(between(height, one.time) / one.value - 1.0));
   EXPECT_TRUE(
       limit_row("F-24 height of a falling column, largest error over the measured height", most, 0.08, 0.03));
+}
+
+// Between a solid and the floor there is less than a cell of room. Liquid is not drawn in there: the level stays, and so does rest.
+TEST(Liquid, StaysAboveNarrowGaps) {
+  constexpr double kCell = 0.025;
+  double drift = 0.0, fastest = 0.0;
+  const AnyShape shapes[] = {Sphere{0.1f}, Box{{0.1f, 0.1f, 0.1f}}, Sphere{0.1f}};
+  const double heights[] = {0.1, 0.112, 0.104};
+  for (int i = 0; i < 3; ++i) {
+    World world = make_world();
+    world.add_body({.type = BodyType::fixed, .pose = {.position = {0.403, heights[i], 0.5 * kCell}}},
+                   {.geometry = shapes[i]});
+    const FluidId pool = world.add_liquid(plane_tank(0.8, 0.6, 0.35, float(kCell)));
+    const double before = world.fluid_info(pool).volume;
+    run(world, 3.0);
+    drift = std::max(drift, std::fabs(world.fluid_info(pool).volume / before - 1.0));
+    for (const Vec3 one : particles_of(world, pool).velocities)
+      fastest = std::max(fastest, double(length(one)));
+  }
+  EXPECT_TRUE(
+      limit_row("F-43 drift of the volume with a solid less than a cell above the floor", drift, 1e-2, 5e-3));
+  EXPECT_TRUE(
+      limit_row("F-44 fastest particle there over sqrt(g H)", fastest / std::sqrt(kG * 0.35), 1e-2, 2e-3));
+}
+
+// Under flat rafts that bob, particles do not gather.
+TEST(Liquid, KeepsItsVolumeUnderRafts) {
+  constexpr double kCell = 0.025;
+  double drift = 0.0;
+  const float halves[] = {0.25f, 0.2f}, densities[] = {500.0f, 700.0f};
+  const double heights[] = {0.55, 0.6};
+  for (int i = 0; i < 2; ++i) {
+    World world = make_world();
+    BodyDef raft = plane_block({0.6, heights[i], 0.5 * kCell}, true);
+    raft.locked = {.linear = {true, false, true}, .angular = {true, true, false}};
+    world.add_body(raft, {.geometry = Box{{halves[i], 0.04f, 0.5f * float(kCell)}}, .density = densities[i]});
+    const FluidId pool = world.add_liquid(plane_tank(1.2, 1.0, 0.45, float(kCell)));
+    const double before = world.fluid_info(pool).volume;
+    run(world, 4.0);
+    double after = 0.0;
+    for (int step = 0; step < 30; ++step) {
+      world.step(kStep);
+      after += world.fluid_info(pool).volume / 30.0;
+    }
+    drift = std::max(drift, std::fabs(after / before - 1.0));
+  }
+  EXPECT_TRUE(limit_row("F-47 drift of the volume under a raft that fell on a pool", drift, 1e-2, 5e-3));
+}
+
+// Drops that lie on a plate above a pool rest there.
+TEST(Liquid, RestsOnAPlateAsDrops) {
+  constexpr double kCell = 0.05;
+  World world = make_world();
+  world.add_body({.type = BodyType::fixed, .pose = {.position = {0.5, 0.43, 0}}},
+                 {.geometry = Box{{0.3f, 0.05f, 1}}});
+  LiquidDef def = plane_tank(1.0, 1.0, 0.2, float(kCell));
+  def.fill.push_back({{0.5, 0.52, 0}, {0.53, 0.56, kCell}});
+  const FluidId pool = world.add_liquid(def);
+  run(world, 2.0);
+  const Particles drops = particles_of(world, pool);
+  double fastest = 0.0;
+  int on_plate = 0;
+  for (std::size_t i = 0; i < drops.positions.size(); ++i) {
+    if (drops.positions[i].y < 0.45) continue;
+    fastest = std::max(fastest, double(length(drops.velocities[i])));
+    ++on_plate;
+  }
+  EXPECT_GT(on_plate, 0);
+  EXPECT_TRUE(limit_row("F-45 speed of drops on a plate after 2 s, m/s", fastest, 0.1, 0.01));
 }
 
 TEST(Liquid, ComesToRest) {
@@ -205,7 +275,7 @@ TEST(Liquid, TakesTheMomentumOfABlow) {
     gained += 1000.0 * 0.25 * h * h * h * double(one.x);
   EXPECT_GT(lost, 0.3 * mass);
   EXPECT_TRUE(relative_row("F-30 momentum that a blow gives to a liquid over what the block lost",
-                           gained / lost, 1.0, 5e-2, 3e-2));
+                           gained / lost, 1.0, 3e-2, 2e-2));
 }
 
 // A tank that is shaken through ten periods of its first wave keeps its volume.

@@ -1,6 +1,7 @@
 // Energy, mass and probes of a gas.
 #include "fluid/gas/gas_reading.h"
 
+#include "fluid/grid/velocity_sample.h"
 #include "fluid/solver/gas_pass.h"
 
 namespace gyre {
@@ -34,7 +35,8 @@ double smoke_mass(const GasGrid& grid, const GasSolids& solids, TaskSystem& task
   return field_mass(grid, grid.density, solids, tasks);
 }
 
-double field_mass(const GasGrid& grid, const Array<float>& field, const GasSolids& solids, TaskSystem& tasks) {
+double field_mass(const GasGrid& grid, const Array<float>& field, const GasSolids& solids,
+                  TaskSystem& tasks) {
   const GridShape& shape = grid.shape;
   const std::uint8_t* const solid = solids.present() ? solids.solid.data() : nullptr;
   const double sum = sum_rows(shape, tasks, [&](int c, int, int) {
@@ -65,9 +67,7 @@ bool is_computed(const GasGrid& grid, Vec3 local) {
 Vec3 gas_velocity(const GasGrid& grid, DVec3 point) {
   const Vec3 local = difference(point, grid.box.corner);
   if (!is_computed(grid, local)) return {};
-  return {sample_field(grid.box, grid.shape, grid.velocity[0].data(), 0, local),
-          sample_field(grid.box, grid.shape, grid.velocity[1].data(), 1, local),
-          sample_field(grid.box, grid.shape, grid.velocity[2].data(), 2, local)};
+  return sample_velocity(grid.box, grid.shape, grid.velocity, local);
 }
 
 GasProbe probe_gas(const GasGrid& grid, DVec3 point, float density, Vec3 gravity) {

@@ -57,7 +57,7 @@ void fill_solid_cells(const GasPass& pass, float* field, float otherwise) {
   });
 }
 
-// Transport between grid values does not keep the sum of smoke or fuel exactly. In a closed box without solids it is set right, in proportion.
+// Transport between grid values does not keep the sum of smoke or fuel exactly. In a closed box it is set right, in proportion.
 void conserve_mass(const GasPass& pass, Array<float>& field, double mass) {
   const double now = field_mass(pass.grid, field, pass.solids, pass.tasks);
   if (!(now > 0.0) || !(mass > 0.0)) return;
@@ -106,7 +106,7 @@ void run_substep(const GasPass& pass, std::span<const GasEmitter> emitters, cons
                  double time, GasReport& report) {
   GasGrid& grid = pass.grid;
   apply_emitters(pass, emitters, settings.emitter_fuel, time);
-  const bool conserves = !grid.whole.any_open() && !pass.solids.present();
+  const bool conserves = !grid.whole.any_open();
   const bool burns = settings.combustion.has_value();
   const double smoke = conserves ? smoke_mass(grid, pass.solids, pass.tasks) : 0.0;
   const double fuel = conserves && burns ? field_mass(grid, grid.fuel, pass.solids, pass.tasks) : 0.0;

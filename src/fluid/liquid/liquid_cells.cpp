@@ -16,7 +16,8 @@ constexpr float kMinTheta = 0.02f;
 // A cell by a solid counts as if at least this share of the room around it were open: particles are too coarse to fill less evenly.
 constexpr float kMinRoom = 0.3f;
 
-// The share of each cell that solids leave, from the distance of its centre; without distances, from its faces.
+// The share of each cell that solids leave, from the distance of its centre; without distances, from its faces. Particles, which keep a distance
+// from solids, lie closer together beside them, so that a solid lifts the level by its own volume alone.
 void find_room(const LiquidPass& pass, float* room) {
   const GridShape& shape = pass.shape();
   const GasSolids& solids = pass.solids;
@@ -26,7 +27,7 @@ void find_room(const LiquidPass& pass, float* room) {
     for (int i = c; i < c + shape.cells[0]; ++i) {
       float share = 0.0f;
       if (distance != nullptr) {
-        share = 0.5f - kParticleSkin + distance[i] * inverse;
+        share = 0.5f + distance[i] * inverse;
       } else if (solids.solid[i] == 0) {
         for (int axis = 0; axis < 3; ++axis)
           share += solids.open[axis][i] + solids.open[axis][i + shape.stride(axis)];
@@ -70,8 +71,10 @@ bool are_all_above(const float* from, int count, float bound) {
   return below == 0;
 }
 
-// Cells that solids leave no face of, and cells in a solid between two that are not: liquid on either side of a thin wall must not share a
-// pressure within it. Their faces are closed. Without distances, all cells in solids.
+// Cells without room for liquid; their faces are closed. With distances they are those in solids that have no open face to a cell outside, since
+// nothing says whether they are liquid, and those between two cells outside: liquid on either side of a thin wall must not share a pressure
+// within it. Where a body nears a wall by less than a cell, the former would be air without pressure, which draws in particles for ever.
+// Without distances they are all cells in solids.
 void block_cells(const LiquidPass& pass) {
   const GridShape& shape = pass.shape();
   const GasSolids& solids = pass.solids;
@@ -90,9 +93,12 @@ void block_cells(const LiquidPass& pass) {
         for (int axis = 0; axis < 3; ++axis) {
           const float* const open = pass.memory.open[axis].data();
           const int step = shape.stride(axis);
-          any = any || open[at] > 0.0f || open[at + step] > 0.0f;
-          const bool within = pass.wraps(axis) || (index[axis] > 0 && index[axis] < shape.cells[axis] - 1);
-          thin = thin || (within && solids.distance[at - step] >= 0.0f && solids.distance[at + step] >= 0.0f);
+          const bool has_lower = pass.wraps(axis) || index[axis] > 0,
+                     has_upper = pass.wraps(axis) || index[axis] < shape.cells[axis] - 1;
+          const bool lower = has_lower && solids.distance[at - step] >= 0.0f,
+                     upper = has_upper && solids.distance[at + step] >= 0.0f;
+          thin = thin || (lower && upper);
+          any = any || (lower && open[at] > 0.0f) || (upper && open[at + step] > 0.0f);
         }
         block = solids.distance[at] < 0.0f && (!any || thin);
       }
@@ -116,8 +122,8 @@ void block_cells(const LiquidPass& pass) {
 }
 
 // A cell whose centre lies in a solid has too little room for particles to tell whether it is liquid. It is as far from the surface as the cells
-// beside it whose centres do not.
-void find_surface_in_solids(const LiquidPass& pass) {
+// beside it whose centres do not. It may be too full, though: particles would gather there without bound under a flat body.
+void find_surface_in_solids(const LiquidPass& pass, const float* room) {
   const GridShape& shape = pass.shape();
   const float* const distance = pass.solids.distance.empty() ? nullptr : pass.solids.distance.data();
   if (distance == nullptr) return;
@@ -143,7 +149,9 @@ void find_surface_in_solids(const LiquidPass& pass) {
           sum += open[at + step] * surface[above], weights += open[at + step];
       }
       surface[at] = weights > 0.0f ? sum / weights : pass.edge(0);
-      pass.memory.filled[at] = 1.0f;
+      float& filled = pass.memory.filled[at];
+      const float excess = filled * (room[at] > kMinRoom ? room[at] : kMinRoom) - room[at];
+      filled = 1.0f + (excess > 0.0f ? excess : 0.0f);
       cell[at] = surface[at] <= 0.0f ? LiquidCell::liquid : LiquidCell::air;
     }
   });
@@ -292,7 +300,7 @@ void find_surface(const LiquidPass& pass) {
                                                       : LiquidCell::air;
     }
   });
-  if (pass.solids.present()) find_surface_in_solids(pass);
+  if (pass.solids.present()) find_surface_in_solids(pass, room);
   fill_ghosts(pass.box(), shape, surface);
   fill_cell_ghosts(pass, cell);
   pass.memory.wet_row.resize(std::size_t(shape.rows()));

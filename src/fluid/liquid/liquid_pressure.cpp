@@ -12,7 +12,8 @@ constexpr int kX = 0, kRight = 1, kP = 2, kQ = 3, kZ = 4, kOther = 5;  // scratc
 // Of the room that is too full or not full enough this share is made up for in a sub-step: all at once would overshoot where particles lie unevenly.
 constexpr float kSpreadShare = 0.25f;
 constexpr float kSpreadTolerance = 0.02f;  // of a full cell: what is left alone
-constexpr float kMaxSpread = 0.5f;         // of a full cell, that counts
+constexpr float kMaxSpread =
+    2.0f;  // of a full cell, that counts: half of one is too slow where a flat body presses particles together
 
 PressureVectors vectors_of(const LiquidPass& pass) {
   PressureVectors vectors;

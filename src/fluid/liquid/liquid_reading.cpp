@@ -1,6 +1,7 @@
 // Volume, energies, momenta and probes of a liquid.
 #include "fluid/liquid/liquid_reading.h"
 
+#include "fluid/grid/velocity_sample.h"
 #include "fluid/liquid/liquid_pass.h"
 
 namespace gyre {
@@ -58,6 +59,52 @@ LiquidTotals liquid_totals(const LiquidGrid& grid, float density, Vec3 gravity, 
   return totals;
 }
 
+namespace {
+
+// Pressure over density, linearly between centres, and on from them in the half cell at a wall. Outside it is zero. Between centres of which some
+// are outside it grows from the surface on, so it is the mean of the centres within.
+float pressure_at(const LiquidGrid& grid, Vec3 local) {
+  const GridShape& shape = grid.shape;
+  int base[3];
+  float fraction[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const ParticleAxis points = particle_axis(grid.box, axis);
+    float place = part_along(local, axis) * points.inverse_edge - 0.5f;
+    const bool wall_below = !points.wraps && !grid.box.open(2 * axis) && !grid.box.flat(axis),
+               wall_above = !points.wraps && !grid.box.open(2 * axis + 1) && !grid.box.flat(axis);
+    place = clamp(place, float(points.low) - (wall_below ? 0.5f : 0.0f),
+                  points.highest_center + (wall_above ? 0.5f : 0.0f));
+    const int whole = place < float(points.low) ? points.low : int(place - float(points.low)) + points.low;
+    base[axis] = whole < points.last_center ? whole : points.last_center;
+    fraction[axis] = place - float(base[axis]);
+  }
+  // Beyond the last centres only if all of them are within.
+  float sum = 0.0f, weights = 0.0f, beyond = 0.0f;
+  bool all_within = true;
+  for (int corner = 0; corner < 8; ++corner) {
+    float weight = 1.0f, inner_weight = 1.0f;
+    int at = shape.first;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int up = corner >> axis & 1;
+      const float inner = clamp(fraction[axis], 0.0f, 1.0f);
+      weight *= up != 0 ? fraction[axis] : 1.0f - fraction[axis];
+      inner_weight *= up != 0 ? inner : 1.0f - inner;
+      at += (base[axis] + up) * shape.stride(axis);
+    }
+    if (weight == 0.0f) continue;
+    const bool within = grid.surface[at] <= 0.0f;
+    all_within = all_within && within;
+    if (!within) continue;
+    beyond += weight * grid.pressure[at];
+    sum += inner_weight * grid.pressure[at];
+    weights += inner_weight;
+  }
+  if (all_within) return beyond;
+  return weights > 0.0f ? sum / weights : 0.0f;
+}
+
+}  // namespace
+
 LiquidProbe probe_liquid(const LiquidGrid& grid, DVec3 point, float density) {
   const GasBox& box = grid.box;
   const GridShape& shape = grid.shape;
@@ -66,34 +113,8 @@ LiquidProbe probe_liquid(const LiquidGrid& grid, DVec3 point, float density) {
   const float depth = -sample_field(box, shape, grid.surface.data(), -1, local);
   probe.inside = depth > 0.0f;
   if (probe.inside) {
-    probe.velocity.x = sample_field(box, shape, grid.velocity[0].data(), 0, local);
-    probe.velocity.y = sample_field(box, shape, grid.velocity[1].data(), 1, local);
-    probe.velocity.z = sample_field(box, shape, grid.velocity[2].data(), 2, local);
-    // Outside the pressure is zero. Between centres of which some are outside it grows from the surface on, so it is taken from the centres within.
-    float sum = 0.0f, weights = 0.0f;
-    int base[3];
-    float fraction[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const ParticleAxis points = particle_axis(box, axis);
-      const float place = clamp(part_along(local, axis) * points.inverse_edge - 0.5f, float(points.low),
-                                points.highest_center);
-      const int whole = int(place - float(points.low)) + points.low;
-      base[axis] = whole < points.last_center ? whole : points.last_center;
-      fraction[axis] = place - float(base[axis]);
-    }
-    for (int corner = 0; corner < 8; ++corner) {
-      float weight = 1.0f;
-      int at = shape.first;
-      for (int axis = 0; axis < 3; ++axis) {
-        const int up = corner >> axis & 1;
-        weight *= up != 0 ? fraction[axis] : 1.0f - fraction[axis];
-        at += (base[axis] + up) * shape.stride(axis);
-      }
-      if (weight <= 0.0f || !(grid.surface[at] <= 0.0f)) continue;
-      sum += weight * grid.pressure[at];
-      weights += weight;
-    }
-    probe.pressure = weights > 0.0f ? density * sum / weights : 0.0f;
+    probe.velocity = sample_velocity(box, shape, grid.velocity, local);
+    probe.pressure = density * pressure_at(grid, local);
   }
   // The column, from above.
   const float top = (float(shape.cells[1]) - 0.5f) * box.cell.y;

@@ -145,7 +145,29 @@ void ParticleCollision::avoid_solids(int particle, const float (&from)[3], float
   if (distance_at(slid) < skin) slid = distance_at(out) >= 0.0f ? out : push_out(slid);
   slid += shift_end;
   to[0] = slid.x, to[1] = slid.y, to[2] = slid.z;
-  (void)particle;
+  if (square > 0.0f && flies(from))
+    stop(particle, label >= 0 && label < int(motions_.size()) ? velocity_at(label, begin) : Vec3{}, outward);
+}
+
+void ParticleCollision::stop(int particle, Vec3 solid, Vec3 outward) const {
+  Array<float>(&motion)[3] = pass_.grid.motion;
+  const Vec3 velocity{motion[0][particle], motion[1][particle], motion[2][particle]};
+  const float into = dot(velocity - solid, outward) / dot(outward, outward);
+  if (!(into < 0.0f)) return;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!pass_.flat(axis)) motion[axis][particle] -= into * part_along(outward, axis);
+}
+
+bool ParticleCollision::flies(const float (&from)[3]) const {
+  int index[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const int low = pass_.wraps(axis) ? -1 : 0,
+              last = pass_.shape().cells[axis] - (pass_.wraps(axis) ? 1 : 2);
+    const float place = from[axis] / pass_.edge(axis) - 0.5f - float(pass_.memory.window.first[axis]);
+    const int i = place > 0.0f ? int(place) : low;
+    index[axis] = pass_.flat(axis) ? 0 : i > last ? last : i;
+  }
+  return pass_.memory.wet[pass_.shape().at(index[0], index[1], index[2])] == 0;
 }
 
 void ParticleCollision::finish(int particle, const float (&from)[3], float (&to)[3]) const {

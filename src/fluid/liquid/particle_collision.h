@@ -18,6 +18,11 @@ class ParticleCollision {
     Vec3 center{}, velocity{}, spin{};
   };
   Vec3 velocity_at(int label, Vec3 point) const;
+  // Takes the speed of a particle into a solid of this velocity. No pressure stops particles that fly, which else would gain the speed of a fall
+  // while they lie on a solid.
+  void stop(int particle, Vec3 solid, Vec3 outward) const;
+  // True if no centre around is liquid.
+  bool flies(const float (&from)[3]) const;
   void avoid_solids(int particle, const float (&from)[3], float (&to)[3]) const;
   float distance_at(Vec3 point) const;
 
