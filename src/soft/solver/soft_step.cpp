@@ -51,7 +51,7 @@ void carry_explicitly(SoftEntry& entry, const SoftStep& step, Arena& arena) {
   // A particle may carry several, which act together.
   const std::span<Vec3> pushes = arena.make<Vec3>(step.carried.size());
   for (std::size_t k = 0; k < pushes.size(); ++k)
-    pushes[k] = step.carried[k].inertia * (step.carried[k].target - p.velocity(step.carried[k].particle));
+    pushes[k] = momentum_to_target(step.carried[k], p.velocity(step.carried[k].particle));
   for (std::size_t k = 0; k < pushes.size(); ++k) {
     const int i = step.carried[k].particle;
     const Vec3 change = explicit_inverse_mass(p, step, i) * pushes[k];
