@@ -164,10 +164,6 @@ class Solver {
   TaskSystem& tasks_;
 };
 
-// Of the change that gravity makes in a sub-step: errors are measured against at least this share of it. With the whole of it what hangs still wanders, since errors
-// of 1 % of the weight are alike from sub-step to sub-step: a strip of 10 cm by 5 % of its drop. With none of it iterations go on at rest until they are spent.
-constexpr double kRestShare = 0.1;
-
 ImplicitReport solve(SoftBody& body, const SoftPass& pass, const ImplicitSettings& settings, double mass,
                      const SoftKernels& kernels, TaskSystem& tasks) {
   Solver solver(pass, settings.carried, kernels, tasks);
@@ -176,7 +172,7 @@ ImplicitReport solve(SoftBody& body, const SoftPass& pass, const ImplicitSetting
   const double start = error;
   guess_direction(body, settings, pass);
   error = solver.go_along_direction(error);
-  const double fall = kRestShare * double(settings.step) * double(length(settings.gravity));
+  const double fall = double(settings.rest_share) * double(settings.step) * double(length(settings.gravity));
   const double reference = start + mass * fall * fall;
   const double wanted = double(settings.tolerance) * double(settings.tolerance) * reference;
   ImplicitReport report;
