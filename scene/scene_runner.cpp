@@ -109,15 +109,22 @@ void SceneRunner::apply_forces() {
   }
 }
 
+std::string SceneRunner::subject_of(const Problem& problem) const {
+  if (const SceneBody* body = body_of(problem.body)) return "body \"" + body->name + "\": ";
+  std::string subject;
+  for_each_soft([&](const SceneSoft& soft, SoftId id) {
+    if (id == problem.soft) subject = "\"" + soft.name + "\": ";
+  });
+  return subject;
+}
+
 bool SceneRunner::find_problem() {
   for (const Problem& problem : world_.problems()) {
-    const SceneBody* body = body_of(problem.body);
     if (problem.code == ErrorCode::unstable) {
-      if (warning_.empty())
-        warning_ = (body ? "body \"" + body->name + "\": " : std::string()) + problem.message;
+      if (warning_.empty()) warning_ = subject_of(problem) + problem.message;
       continue;
     }
-    problem_ = (body ? "body \"" + body->name + "\": " : std::string()) + problem.message;
+    problem_ = subject_of(problem) + problem.message;
     return true;
   }
   const BodyColumns awake = world_.awake_bodies();

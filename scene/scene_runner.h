@@ -78,6 +78,8 @@ class SceneRunner {
  private:
   SceneRunner(Scene scene, World world);
   void apply_forces();
+  // Name of what a problem is about, as a beginning of its message.
+  std::string subject_of(const Problem& problem) const;
   bool find_problem();
   bool find_soft_problem();
   void put_present_settings(SceneBody& body, BodyId id) const;

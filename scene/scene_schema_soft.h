@@ -99,7 +99,7 @@ inline constexpr char kSchemaOfCloths[] = R"json(    "cloth": {
         },
         "area_density": { "$ref": "#/$defs/amount", "default": 0.2, "description": "kg/m^2" },
         "stretch_stiffness": { "$ref": "#/$defs/stiffness", "default": 1000, "description": "N/m: force per width and strain; rods do not ask for it" },
-        "shear_stiffness": { "$ref": "#/$defs/stiffness", "default": 200, "description": "N/m: force per width and angle" },
+        "shear_stiffness": { "$ref": "#/$defs/stiffness", "default": 200, "description": "N/m: force per width and angle; of a membrane of a mesh half the stretch_stiffness if it is not given" },
         "bend_stiffness": { "$ref": "#/$defs/stiffness", "default": 1e-4, "description": "N m: moment per width and curvature" },
         "thickness": { "$ref": "#/$defs/stiffness", "default": 0.005, "description": "m" },
         "integrator": { "$ref": "#/$defs/soft_integrator" },

@@ -219,6 +219,18 @@ TEST(SceneSoft, DefaultsAreThoseOfTheFormat) {
   EXPECT_EQ(solid.settings.dynamic_friction, 0.7f);  // as the static one
 }
 
+// The default of a grid, 200 of 1000 N/m, is that of no isotropic sheet.
+TEST(SceneSoft, AMembraneOfAMeshNeedsNoShearStiffness) {
+  const auto shear_of = [](const std::string& members) {
+    return run(cloth_with(members)).scene().cloths[0].def.shear_stiffness;
+  };
+  EXPECT_EQ(shear_of(R"("mesh": "sheet", "links": "membrane", "stretch_stiffness": 600)"), 300.0f);
+  EXPECT_EQ(
+      shear_of(R"("mesh": "sheet", "links": "membrane", "stretch_stiffness": 600, "shear_stiffness": 200)"),
+      200.0f);
+  EXPECT_EQ(shear_of(R"("mesh": "sheet", "stretch_stiffness": 600)"), 200.0f);
+}
+
 // Every member of the three kinds.
 const std::string kAll = R"({"gyre_scene": 1, "name": "all", )" + kMeshes + kBodies +
                          R"("ropes": [

@@ -346,6 +346,8 @@ void read_cloth(SceneReading& reading, const Field& field) {
   members.read("area_density", cloth.def.area_density, kPositive);
   members.read("stretch_stiffness", cloth.def.stretch_stiffness,
                cloth.def.links == ClothLinks::rods ? kNotNegative : kPositive);
+  // Without lateral contraction, as along the lines of a grid, where nothing is said: the default of a grid may be none of a material.
+  if (is_membrane_of_mesh) cloth.def.shear_stiffness = 0.5f * cloth.def.stretch_stiffness;
   members.read("shear_stiffness", cloth.def.shear_stiffness, is_membrane_of_mesh ? kPositive : kNotNegative);
   members.read("bend_stiffness", cloth.def.bend_stiffness, kNotNegative);
   members.read("thickness", cloth.def.thickness, kNotNegative);

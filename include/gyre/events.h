@@ -124,6 +124,7 @@ struct Problem {
   BodyId body{};  // null if it is not about one body
   char message[232] = {};
   Severity severity = Severity::error;
+  SoftId soft{};  // null if it is not about one rope, cloth or solid
 };
 
 // Called for each problem at once, from the thread that changes or steps the world: for logs. It must not call the world.

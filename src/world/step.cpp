@@ -10,6 +10,7 @@
 #include "rigid/sleep/island.h"
 #include "rigid/time/step_error.h"
 #include "soft/store/soft_quarantine.h"
+#include "world/soft_commands.h"
 #include "world/soft_events.h"
 #include "world/stages.h"
 #include "world/validate_state.h"
@@ -78,7 +79,7 @@ void report_frozen(WorldState& s) {
 
 void report_quarantined(WorldState& s) {
   for (const std::uint32_t slot : s.quarantined_soft)
-    report_problem(s, ErrorCode::invalid_data, {},
+    report_problem(s, ErrorCode::invalid_data, soft_id(s, slot),
                    "soft matter %d is no longer finite; it was frozen at its last good places", int(slot));
 }
 
@@ -151,7 +152,7 @@ void report_crossings(WorldState& s, float seconds) {
     }
     entry.crossed_for += seconds;
     const bool is_late = entry.crossed_for > kUntangling;
-    report_problem(s, ErrorCode::unstable, {},
+    report_problem(s, ErrorCode::unstable, soft_id(s, std::uint32_t(slot)),
                    is_late ? "soft matter %d crosses itself or others in %d places and could not be untangled "
                              "within %.3g s"
                            : "soft matter %d crosses itself or others in %d places; it is being untangled, for "

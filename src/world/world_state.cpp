@@ -231,14 +231,15 @@ std::uint64_t hash_state(const WorldState& state) {
   return visitor.value();
 }
 
-void report_problem(WorldState& state, ErrorCode code, BodyId body, const char* format, ...) {
+void report_problem(WorldState& state, ErrorCode code, ProblemSubject subject, const char* format, ...) {
   constexpr std::size_t kMaxProblems = 256;  // bounds the memory of hosts that never read problems
   const bool is_kept = state.problems.size() < kMaxProblems;
   if (!is_kept && state.problem_hook.call == nullptr) return;
   Problem problem;
   problem.severity = code == ErrorCode::unstable ? Severity::warning : Severity::error;
   problem.code = code;
-  problem.body = body;
+  problem.body = subject.body;
+  problem.soft = subject.soft;
   va_list arguments;
   va_start(arguments, format);
   std::vsnprintf(problem.message, sizeof problem.message, format, arguments);

@@ -200,11 +200,20 @@ Error rebuild_derived(RigidWorld& w);
 // 64-bit hash of all columns.
 std::uint64_t hash_state(const WorldState& state);
 
+// What a problem is about: a body, soft matter, or neither.
+struct ProblemSubject {
+  BodyId body{};
+  SoftId soft{};
+  ProblemSubject() = default;
+  ProblemSubject(BodyId of) : body(of) {}
+  ProblemSubject(SoftId of) : soft(of) {}
+};
+
 // Adds a problem for the user.
 #if defined(__GNUC__)
 __attribute__((format(printf, 4, 5)))
 #endif
-void report_problem(WorldState& state, ErrorCode code, BodyId body, const char* format, ...);
+void report_problem(WorldState& state, ErrorCode code, ProblemSubject subject, const char* format, ...);
 
 // One step: world/step.cpp.
 void step_world(WorldState& state, float seconds);

@@ -69,12 +69,14 @@ TEST(SoftStiffSolids, WhatIsNotFiniteIsFrozenAndToldOnce) {
   World loaded = std::move(*World::create({}));
   for (int n = 0; n < 30; ++n) {
     world.step(1.0f / 60.0f);
-    for (const Problem& one : world.problems())
+    for (const Problem& one : world.problems()) {
+      EXPECT_EQ(one.soft, broken);
       told += std::string(one.message)
                           .find("soft matter 0 is no longer finite; it was frozen at its last good places") !=
                       std::string::npos
                   ? 1
                   : 0;
+    }
     if (n == 20) {
       ASSERT_TRUE(restore_snapshot(loaded, save_snapshot(world)).ok());
     }

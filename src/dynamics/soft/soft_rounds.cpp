@@ -15,8 +15,11 @@ constexpr float kOpposite = -0.5f;
 constexpr std::uint32_t kNotPressed = 0xffffffffu;
 // A contact that still closes faster than this share of what gravity gives in the sub-step is not met.
 constexpr float kUnmetShare = 1.0f;
-// Friction below this share of its bound sticks.
+// Friction below this share of what sliding gives sticks; so does more than the inverse, which only static friction gives.
 constexpr float kStickShare = 0.999f;
+// A contact that slides faster than this many times what gravity gives in the sub-step does not stick, however small its friction is: the load may just have
+// grown. With 3 a block of 4 cm and 1 MPa slides down a slope too slowly.
+constexpr float kStickSpeedShare = 1.0f;
 
 }  // namespace
 
@@ -25,7 +28,9 @@ Vec3 project(const SoftRow& row, Vec3 impulse) {
   if (!(normal > 0.0f)) return {};
   const Vec3 tangent = impulse - normal * row.normal;
   const float size = length(tangent);
-  if (size <= row.static_friction * normal) return impulse;
+  // A contact that slides is held by dynamic friction alone, else it would creep up to the static one and fall back.
+  const float bound = row.grip == SoftGrip::slides ? row.dynamic_friction : row.static_friction;
+  if (size <= bound * normal) return impulse;
   return normal * row.normal + (row.dynamic_friction * normal / size) * tangent;
 }
 
@@ -181,16 +186,21 @@ void forget_squeezes(SoftSolve& s) {
 }
 
 void set_grips(SoftSolve& s) {
+  const float slow = kStickSpeedShare * s.h * reference_gravity(s.w->settings);
   for (std::uint32_t& grips : s.scratch->grips) grips = 0;
   for (SoftRow& row : s.scratch->rows) {
     if (row.is_contact && !row.is_face) {
       const float normal = dot(row.normal, row.impulse);
       const float across = length(row.impulse - normal * row.normal);
-      const float bound =
-          row.grip == SoftGrip::sticks ? row.static_friction : kStickShare * row.dynamic_friction;
-      row.grip = !(normal > 0.0f)           ? SoftGrip::open
-                 : across <= bound * normal ? SoftGrip::sticks
-                                            : SoftGrip::slides;
+      const float sliding = row.dynamic_friction * normal;
+      const Vec3 speed = error_of(s, row);
+      const bool is_slow = length(speed - dot(row.normal, speed) * row.normal) <= slow;
+      // Friction between both bounds is static; beyond, a carried part has it, which the cone does not bind.
+      const bool is_static = across * kStickShare > sliding && across <= row.static_friction * normal;
+      const bool is_within = row.grip == SoftGrip::sticks
+                                 ? across <= row.static_friction * normal
+                                 : is_slow && (across <= kStickShare * sliding || is_static);
+      row.grip = !(normal > 0.0f) ? SoftGrip::open : is_within ? SoftGrip::sticks : SoftGrip::slides;
     }
     if (row.touched >= 0 && row.pushes && row.grip != SoftGrip::open) ++s.scratch->grips[row.touched];
   }

@@ -179,9 +179,9 @@ void add_rows(SoftSolve& s, std::uint32_t member) {
     row.carried = -1;
     if (row.grip == SoftGrip::open || p.loose[row.particle] == 0.0f) continue;
     row.carried = std::int32_t(work.first_row + work.carried++);
-    s.scratch->carried[row.carried] = {std::int32_t(row.particle),
-                                       gripped_inertia(s, row, p.mass[row.particle]),
-                                       velocity_of_body(s, row) - row.bias};
+    s.scratch->carried[row.carried] = {
+        std::int32_t(row.particle), gripped_inertia(s, row, p.mass[row.particle]),
+        velocity_of_body(s, row) - row.bias, row.grip == SoftGrip::slides ? row.normal : Vec3{}};
   }
 }
 // Contacts that pull open, those that stick beyond their cones slide. True if there are any.
@@ -243,7 +243,7 @@ void find_carried_steps(SoftSolve& s, std::uint32_t member) {
     row.carried_step = {};
     if (row.carried < 0) continue;
     const CarriedInertia& carried = s.scratch->carried[row.carried];
-    row.carried_step = carried.inertia * (carried.target - p.velocity(carried.particle));
+    row.carried_step = momentum_to_target(carried, p.velocity(carried.particle));
   }
 }
 

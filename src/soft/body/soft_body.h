@@ -46,7 +46,16 @@ struct CarriedInertia {
   std::int32_t particle = 0;
   Sym3 inertia{};  // kg
   Vec3 target{};   // m/s
+  Vec3 axis{};     // a unit vector if the inertia is along it alone; else zero
 };
+
+// The momentum that brings it from a velocity to its own. A matrix along an axis would turn the rounding of a large velocity across the axis into a
+// drag: a thousand times the mass of a particle may be carried.
+inline Vec3 momentum_to_target(const CarriedInertia& one, Vec3 velocity) {
+  const Vec3 off = one.target - velocity;
+  if (one.axis == Vec3{}) return one.inertia * off;
+  return (dot(one.axis, off) * dot(one.axis, one.inertia * one.axis)) * one.axis;
+}
 
 // The spring of two particles, as the builders give it.
 struct Spring {

@@ -23,6 +23,7 @@ struct Grid {
 // the sheet has C11 = K1 + G a^2, C22 = K2 + G / a^2, C12 = G with a = dx / dy, and a strip that is free to contract has C11 - C12^2 / C22.
 struct LinkStiffness {
   double x, y, across;
+  bool is_stable;  // false in long cells: see below
 };
 
 LinkStiffness link_stiffness(const Grid& grid, const ClothMaterial& material) {
@@ -30,12 +31,16 @@ LinkStiffness link_stiffness(const Grid& grid, const ClothMaterial& material) {
   const double a = grid.dx / grid.dy;
   const double c = 0.5 * (stretch + std::sqrt(stretch * stretch + 4.0 * shear * shear));
   const double diagonal = grid.dx * grid.dx + grid.dy * grid.dy;
-  return {max(c - shear * a * a, 0.0), max(c - shear / (a * a), 0.0),
-          shear * diagonal / (2.0 * grid.dx * grid.dy)};
+  const double x = max(c - shear * a * a, 0.0), y = max(c - shear / (a * a), 0.0);
+  // A strip that is pulled along y contracts along x by the ratio G / C, which presses the links along x. Particles that leave the plane by turns
+  // turn these by an angle / dx, and the links along y, which hold them, by one / dy; links across a cell do not turn. So with K1 (G / C) / a
+  // above K2 a the sheet folds at once, and a strip along x likewise.
+  const double contraction = shear / c;
+  const bool is_stable = contraction * x <= y * a * a && contraction * y * a * a <= x;
+  return {x, y, shear * diagonal / (2.0 * grid.dx * grid.dy), is_stable};
 }
 
-void add_links(const Grid& grid, const ClothMaterial& material, Array<Spring>& springs) {
-  const LinkStiffness k = link_stiffness(grid, material);
+void add_links(const Grid& grid, const LinkStiffness& k, Array<Spring>& springs) {
   const float across = float(std::sqrt(grid.dx * grid.dx + grid.dy * grid.dy));
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
@@ -140,8 +145,16 @@ SoftBody grid_cloth(const float (&size)[2], const int (&cells)[2], const Pose& p
     add_sheet(grid, triangles);
     set_membrane(body, triangles, double(material.stretch_stiffness), 0.0, double(material.shear_stiffness));
   } else {
+    const double stretch = double(material.stretch_stiffness), shear = double(material.shear_stiffness);
+    LinkStiffness k = link_stiffness(grid, material);
+    if (!k.is_stable && !material.is_visual) {
+      Array<SheetTriangle> triangles;
+      add_sheet(grid, triangles);
+      set_membrane(body, triangles, 0.0, 0.0, shear);
+      k = {stretch, stretch, 0.0, true};
+    }
     Array<Spring> springs;
-    add_links(grid, material, springs);
+    add_links(grid, k, springs);
     set_springs(body, springs);
   }
   if (material.bend_stiffness > 0.0f) {

@@ -14,13 +14,15 @@ struct ClothMaterial {
   float shear_stiffness = 200.0f;     // N/m: force per width and angle
   float bend_stiffness = 1.0e-4f;     // N m: moment per width and curvature
   float damping = 0.0f;               // s
+  bool is_visual = false;             // links alone
 };
 
 // A rectangle of size[0] x size[1] in the x-z plane of `pose`, its middle there, flat and at rest, in cells[0] x cells[1] cells. Particle
 // i + j (cells[0] + 1) is corner i, j.
 //
 // Links springs: springs along the lines of the grid carry stretch, springs across the cells shear; where both are there the ones along the lines are
-// softer by what the others carry, so that a strip pulled along a line has the stretch stiffness. Bending is that of a plate
+// softer by what the others carry, so that a strip pulled along a line has the stretch stiffness. In long cells springs across would carry so much
+// that the sheet folds; there the triangles of a membrane without stretch stiffness shear. Bending is that of a plate
 // without lateral contraction, 1/2 B (kxx^2 + kyy^2 + 2 kxy^2), with curvatures by central differences. Links membrane: triangles
 // with the stretch stiffness along both lines, the shear stiffness, and no lateral contraction.
 SoftBody grid_cloth(const float (&size)[2], const int (&cells)[2], const Pose& pose,

@@ -95,7 +95,7 @@ ImplicitReport solve(SoftBody& body, const SoftPass& pass, const ImplicitSetting
   const double start = error;
   guess_direction(body, settings, pass);
   error = go_along_direction(solver, kernels, error);
-  const double fall = double(settings.step) * double(length(settings.gravity));
+  const double fall = double(settings.rest_share) * double(settings.step) * double(length(settings.gravity));
   const double reference = start + mass * fall * fall;
   const double wanted = double(settings.tolerance) * double(settings.tolerance) * reference;
   ImplicitReport report;
@@ -112,7 +112,7 @@ void add_carried(SoftBody& body, const ImplicitSettings& settings, const SoftPas
     const Sym3& m = one.inertia;
     const float parts[6] = {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz};
     for (int k = 0; k < 6; ++k) pass.diagonal[k][i] += parts[k];
-    const Vec3 force = (1.0f / settings.step) * (m * (one.target - p.velocity(i)));
+    const Vec3 force = (1.0f / settings.step) * momentum_to_target(one, p.velocity(i));
     p.fx[i] += force.x, p.fy[i] += force.y, p.fz[i] += force.z;
   }
 }

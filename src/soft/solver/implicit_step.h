@@ -35,6 +35,8 @@ struct ImplicitSettings {
   float tolerance = 1.0e-2f;
   int least_iterations = 3;
   int most_iterations = 50;
+  // Errors are measured against at least this share of the change that gravity makes in the sub-step.
+  float rest_share = 1.0f;
   std::span<const CarriedInertia> carried{};
   // A stage of a scheme of several (soft/solver/sdirk_step.h): the elements give no moment where the stage ends, as they do in truth, so that the scheme keeps
   // its order. Else the moment where the sub-step begins is none, with which backward Euler keeps angular momentum.

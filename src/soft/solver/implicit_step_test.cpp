@@ -49,6 +49,28 @@ TEST(ClothSprings, HangsFromAnEdgeWithTheStrainOfItsWeight) {
   }
 }
 
+// Long cells too: a strip of 0.5 m x 1 m whose cells are 0.3 to 8 times as long as wide.
+TEST(ClothSprings, LongCellsHaveTheStiffnessOfTheMaterial) {
+  const int kCells[4][2] = {{10, 20}, {20, 20}, {20, 12}, {40, 5}};
+  for (const auto& cells : kCells) {
+    ClothMaterial material;
+    material.area_density = 2.0f;
+    material.bend_stiffness = 1.0e-6f;
+    const Pose upright{{0, 0, 0}, from_rotation_vector({0.5f * kPi, 0, 0})};
+    SoftBody sheet = grid_cloth({0.5f, 1.0f}, cells, upright, material);
+    const double top = sheet.particles.y[0];
+    const Vec3 down{0.0f, top > 0.0 ? -9.81f : 9.81f, 0.0f};
+    for (int i = 0; i <= cells[0]; ++i) hold(sheet, i, sheet.particles.place(i));
+    Bench bench;
+    bench.settle(sheet, down, 0.5f, 40);
+    double mean = 0.0;
+    for (int i = 0; i <= cells[0]; ++i)
+      mean += (absolute(sheet.particles.y[i + cells[1] * (cells[0] + 1)] - top) - 1.0) / (cells[0] + 1);
+    const double strain = 2.0 * 9.81 / (2.0 * 1000.0);
+    EXPECT_NEAR(mean, strain, 0.02 * strain) << cells[0] << ' ' << cells[1];
+  }
+}
+
 TEST(ClothSprings, MeanStretchDoesNotDependOnTheCells) {
   double first = 0.0;
   for (const int cells : {12, 24, 48}) {

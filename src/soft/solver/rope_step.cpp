@@ -198,12 +198,9 @@ class RopeSolver {
   }
   void add_carried(const CarriedInertia& one) {
     add_inertia(one);
-    const DVec3 off = DVec3(one.target) - at(speed_, one.particle);
-    const Sym3& m = one.inertia;
+    const DVec3 push(momentum_to_target(one, to_float(at(speed_, one.particle))));
     double* const right = &right_[std::size_t(kUnknowns * one.particle)];
-    right[0] += double(m.xx) * off.x + double(m.xy) * off.y + double(m.xz) * off.z;
-    right[1] += double(m.xy) * off.x + double(m.yy) * off.y + double(m.yz) * off.z;
-    right[2] += double(m.xz) * off.x + double(m.yz) * off.y + double(m.zz) * off.z;
+    right[0] += push.x, right[1] += push.y, right[2] += push.z;
   }
 
   // The direction of a segment, which its tension acts along.

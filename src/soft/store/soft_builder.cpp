@@ -92,7 +92,8 @@ ClothMaterial material_of(const ClothDef& def) {
           .stretch_stiffness = def.stretch_stiffness,
           .shear_stiffness = def.shear_stiffness,
           .bend_stiffness = def.bend_stiffness,
-          .damping = def.settings.damping};
+          .damping = def.settings.damping,
+          .is_visual = def.settings.integrator == SoftIntegrator::visual};
 }
 SolidMaterial material_of(const SolidDef& def) {
   return {.density = def.density,
