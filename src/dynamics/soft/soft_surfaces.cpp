@@ -1,5 +1,6 @@
 #include "dynamics/soft/soft_surfaces.h"
 
+#include "dynamics/soft/soft_groups.h"
 #include "dynamics/soft/soft_rounds.h"
 #include "dynamics/soft/soft_solve.h"
 #include "soft/contact/surface_crossings.h"
@@ -14,6 +15,8 @@ namespace {
 // that the bounds have to cut stretch a stiff body.
 constexpr int kMaxSurfaceRounds = 12;
 constexpr float kMaxClosing = 0.1f;
+// A solid is stiff if the blocks of its vertices have more than so many times their mass: a vertex that the bounds stop gives the solid so many times the energy that it had.
+constexpr double kStiffShare = 100.0;
 
 SoftWork& work_at(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
 SoftEntry& entry_at(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
@@ -30,7 +33,9 @@ SurfaceContactSettings settings_of(const SoftSolve& s) {
   settings.gravity = reference_gravity(s.w->settings);
   return settings;
 }
-SurfaceVertices vertices_of(SoftSurfaces& all) { return {all.positions, all.velocities, all.inverse_mass}; }
+SurfaceVertices vertices_of(SoftSurfaces& all) {
+  return {all.positions, all.velocities, all.inverse_mass, all.own_response, all.bodies, all.body_of};
+}
 
 void gather_velocities(SoftSolve& s) {
   SoftSurfaces& all = s.scratch->surfaces;
@@ -40,58 +45,95 @@ void gather_velocities(SoftSolve& s) {
   });
 }
 
-// The momentum that the parts carried by a member's vertices gain from the change of its velocities.
-void add_carried_change(SoftSolve& s, std::uint32_t member) {
-  const SoftWork& work = work_at(s, member);
-  for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
-    SoftRow& row = s.scratch->rows[k];
-    if (row.carried >= 0)
-      row.carried_step += -(s.scratch->carried[row.carried].inertia * work.change[row.particle]);
+bool answers(const SoftEntry& entry) {
+  const SoftIntegrator scheme = entry.settings().integrator;
+  return scheme == SoftIntegrator::implicit || scheme == SoftIntegrator::sdirk2;
+}
+
+// How vertices answer impulses in the rows: those of solids by the motion of the solid as a whole and by their own block beside that.
+void find_responses(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  all.bodies.clear();
+  for (std::size_t k = 0; k < all.placed.size(); ++k) {
+    const std::uint32_t member = all.member[k], first = all.placed[k].first;
+    const SoftEntry& entry = entry_at(s, member);
+    const SoftWork& work = work_at(s, member);
+    const Particles& p = entry.body.particles;
+    const bool is_whole = entry.kind == SoftKind::solid && answers(entry) && entry.body.held.empty();
+    const std::uint32_t first_piece = std::uint32_t(all.bodies.size());
+    if (is_whole) {
+      const ByPiece<RigidResponse> responses = rigid_responses(entry.body, work.step.carried);
+      for (std::size_t piece = 0; piece < responses.size(); ++piece) all.bodies.push_back(responses[piece]);
+    }
+    double bare = 0.0, own = 0.0;
+    for (int i = 0; i < p.count; ++i) {
+      const std::uint32_t v = first + std::uint32_t(i);
+      all.body_of[v] = is_whole ? first_piece + std::uint32_t(entry.body.piece_of(i)) : kNoRigidBody;
+      all.inverse_mass[v] = p.loose[i] == 0.0f ? 0.0f : 1.0f / p.mass[i];
+      all.own_response[v] = all.inverse_mass[v];
+      if (!is_whole) continue;
+      const Sym3 block = inverse_mass(entry, work.step, std::uint32_t(i));
+      all.own_response[v] = (1.0f / 3.0f) * (block.xx + block.yy + block.zz);
+      bare += double(all.inverse_mass[v]), own += double(all.own_response[v]);
+    }
+    for (std::size_t body = first_piece; body < all.bodies.size(); ++body)
+      all.bodies[body].is_stiff = bare > kStiffShare * own;
   }
 }
 
-// Gives all members what they are owed. `find_steps(member)` finds what the parts that their vertices carry gain by it.
-template <class FindSteps>
-void give_owed(SoftSolve& s, FindSteps&& find_steps) {
+// Finds how members answer what they are owed.
+void find_answers(SoftSolve& s) {
   SoftSurfaces& all = s.scratch->surfaces;
+  all.changes.assign(all.positions.size(), Vec3{});
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     SoftEntry& entry = entry_at(s, member);
     SoftWork& work = work_at(s, member);
     bool any = false;
     for (Vec3& impulse : work.impulses) impulse = {};
+    for (Vec3& change : work.change) change = {};
     for (int i = 0; i < entry.body.particles.count; ++i) {
-      Vec3& owed = all.contacts.owed[first + std::uint32_t(i)];
+      const Vec3 owed = all.contacts.owed[first + std::uint32_t(i)];
       any |= !(owed == Vec3{});
       work.impulses[i] = owed;
-      owed = {};
     }
-    const SoftIntegrator scheme = entry_at(s, member).settings().integrator;
-    if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
+    if (!any || !answers(entry)) return;
     respond(entry, work.step, work.impulses.view(), work.change.view(), *s.kernels, work.arena, *s.tasks);
-    add_change(entry, work.step, work.change.view(), 1.0f);
-    find_steps(member);
+    for (int i = 0; i < entry.body.particles.count; ++i)
+      all.changes[first + std::uint32_t(i)] = work.change[i];
   });
 }
 
-// Solves the contacts of surfaces and gives what they find, in so many rounds at least, and in more while pairs close too fast.
-template <class FindSteps>
-void solve_in_rounds(SoftSolve& s, int least_rounds, FindSteps&& find_steps) {
+// Takes a share of the answers, and of the momentum that the parts carried by vertices gain by them.
+void take_answers(SoftSolve& s, float share) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t) {
+    SoftEntry& entry = entry_at(s, member);
+    SoftWork& work = work_at(s, member);
+    if (!answers(entry)) return;
+    add_change(entry, work.step, work.change.view(), share);
+    for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+      SoftRow& row = s.scratch->rows[k];
+      if (row.carried >= 0)
+        row.carried_step += -share * (s.scratch->carried[row.carried].inertia * work.change[row.particle]);
+    }
+  });
+  gather_velocities(s);
+}
+
+// Solves the contacts of surfaces and takes the best share of what they find, in so many rounds at least, and in more while pairs close too fast.
+void solve_in_rounds(SoftSolve& s, int least_rounds) {
   SoftSurfaces& all = s.scratch->surfaces;
   const SurfaceVertices vertices = vertices_of(all);
   const SurfaceContactSettings settings = settings_of(s);
   for (int round = 1; round <= kMaxSurfaceRounds; ++round) {
     all.impulses_before.assign(all.contacts.impulses.view());
-    all.velocities_before.assign(all.velocities.view());
     solve_surface_contacts(vertices, settings, all.arena, all.contacts);
-    give_owed(s, find_steps);
-    gather_velocities(s);
-    if (round < least_rounds) continue;
-    if (worst_closing(vertices, settings, all.contacts) < kMaxClosing) return;
-    if (!extend_impulses(all.impulses_before.view(), all.velocities_before.view(), vertices, settings,
-                         all.contacts))
-      continue;
-    give_owed(s, find_steps);
-    gather_velocities(s);
+    find_answers(s);
+    // More than all of it only where it is missing.
+    const float most = round > least_rounds ? kAnyShare : 1.0f;
+    take_answers(
+        s, take_best_share(all.impulses_before.view(), vertices, all.changes.view(), most, all.contacts));
+    if (round >= least_rounds && worst_closing(vertices, settings, all.contacts) < kMaxClosing) return;
   }
   all.unmet = true;
 }
@@ -108,7 +150,7 @@ void place_vertices(SoftSolve& s, std::uint32_t member, std::uint32_t first) {
     change.x[i] = change.y[i] = change.z[i] = none.x[i] = none.y[i] = none.z[i] = 0.0f;
   }
   bool any = false;
-  DVec3 moment;  // of the displacements, at the velocities of the vertices
+  ByPiece<DVec3> moments(body.pieces());  // of the displacements, at the velocities of the vertices
   for (int i = 0; i < p.count; ++i) {
     const std::uint32_t v = first + std::uint32_t(i);
     p.set_place(i, all.positions[v]);
@@ -116,13 +158,13 @@ void place_vertices(SoftSolve& s, std::uint32_t member, std::uint32_t first) {
     const DVec3 moved = all.positions[v] - all.targets[v], held_back = moved - DVec3(all.contacts.pushes[v]);
     if (moved == DVec3{}) continue;
     any = true;
-    moment += double(p.mass[i]) * cross(DVec3(p.velocity(i)), moved);
+    moments[body.piece_of(i)] += double(p.mass[i]) * cross(DVec3(p.velocity(i)), moved);
     change.x[i] = float(rate * held_back.x), change.y[i] = float(rate * held_back.y),
     change.z[i] = float(rate * held_back.z);
   }
   const SoftIntegrator scheme = entry_at(s, member).settings().integrator;
   if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
-  if (body.held.empty()) keep_momentum(p, none, change, 0.0, moment);
+  if (body.held.empty()) keep_momentum(body, none, change, 0.0, moments);
   for (int i = 0; i < p.count; ++i) {
     if (p.loose[i] != 0.0f) p.set_velocity(i, p.velocity(i) + Vec3{change.x[i], change.y[i], change.z[i]});
   }
@@ -147,6 +189,22 @@ void find_crossings(SoftSolve& s) {
     for (const std::uint32_t v : one.vertex) moves = moves || all.inverse_mass[v] > 0.0f;
     if (!moves) continue;
     for (const std::uint32_t v : {one.vertex[0], one.vertex[2]}) crossings_of(tangle.surface[v]).moves = true;
+  }
+}
+
+void find_near(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  all.arena.reset();
+  const float seconds = s.h * float(s.w->settings.substeps);
+  const std::span<const std::uint32_t> group =
+      group_soft(*s.store, length(s.w->settings.gravity), seconds, all.arena);
+  const std::span<std::uint32_t> sizes = all.arena.make<std::uint32_t>(group.size());
+  for (std::uint32_t& size : sizes) size = 0;
+  for (const std::uint32_t one : group) ++sizes[one];
+  all.near.assign(s.members.size(), std::uint8_t(0));
+  for (std::size_t m = 0; m < s.members.size(); ++m) {
+    const bool is_broken = entry_at(s, std::uint32_t(m)).body.pieces() > 1;
+    all.near[m] = is_broken || sizes[group[s.members[m]]] > 1;
   }
 }
 
@@ -175,9 +233,11 @@ void begin_soft_surfaces(SoftSolve& s) {
     all.may_cross = true;
   }
   for (const std::uint32_t slot : s.members) s.store->entries[slot].crossings = {};
+  find_near(s);
   if (!all.active) return all.left.clear();
   all.positions.resize(vertices), all.targets.resize(vertices);
   all.velocities.resize(vertices), all.inverse_mass.resize(vertices);
+  all.own_response.resize(vertices), all.body_of.resize(vertices);
   all.contacts.clear(vertices);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     const Particles& p = entry_at(s, member).body.particles;
@@ -217,16 +277,16 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
   if (!all.active) return;
   all.arena.reset();
   gather_velocities(s);
-  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
-    const Particles& p = entry_at(s, member).body.particles;
-    for (int i = 0; i < p.count; ++i)
-      all.inverse_mass[first + std::uint32_t(i)] = p.loose[i] == 0.0f ? 0.0f : 1.0f / p.mass[i];
-  });
+  find_responses(s);
   const SurfaceVertices vertices = vertices_of(all);
   const SurfaceContactSettings settings = settings_of(s);
   find_crossings(s);
   find_surface_contacts(all.placed, vertices, settings, all.arena, *s.tasks, all.contacts);
-  solve_in_rounds(s, 2, [&](std::uint32_t member) { find_carried_steps(s, member); });
+  // What pairs that are gone, and normals that turn, change.
+  find_answers(s);
+  for (Vec3& owed : all.contacts.owed) owed = {};
+  take_answers(s, 1.0f);
+  solve_in_rounds(s, 2);
   push_surfaces(vertices, settings, all.arena, all.contacts);
 }
 
@@ -242,7 +302,7 @@ bool solve_soft_surfaces_again(SoftSolve& s) {
   gather_velocities(s);
   // Bodies have what their parts gained before.
   for (SoftRow& row : s.scratch->rows) row.carried_step = {};
-  solve_in_rounds(s, 1, [&](std::uint32_t member) { add_carried_change(s, member); });
+  solve_in_rounds(s, 1);
   give_to_bodies(s);
   return true;
 }

@@ -25,14 +25,17 @@ struct SoftSurfaces {
   std::vector<std::shared_ptr<const SoftSurface>> surfaces;
   Array<std::uint32_t> member;    // of each placed surface: its index in SoftSolve::members
   Array<std::int32_t> placed_of;  // by member; -1: it has no surface
+  Array<std::uint8_t>
+      near;  // by member: 1 if its surface may touch another one in the step, or pieces of its own
   // By vertex; positions are those at the start of the sub-step.
   Array<DVec3> positions, targets;
   Array<Vec3> velocities;
-  Array<float> inverse_mass;
+  Array<float> inverse_mass, own_response;
+  Array<RigidResponse> bodies;   // of each piece of a solid
+  Array<std::uint32_t> body_of;  // by vertex: its piece
   SurfaceContacts contacts;
-  // When a round of contacts began: impulses by pair, velocities by vertex.
-  Array<SurfaceImpulse> impulses_before;
-  Array<Vec3> velocities_before;
+  Array<SurfaceImpulse> impulses_before;  // by pair, when a round of contacts began
+  Array<Vec3> changes;                    // m/s, by vertex: the answer to what a round found
   BoundReport report;
   // True if pairs close however often they are solved, as between vertices that are held: their impulses are not remembered, which would grow without bound.
   bool unmet = false;

@@ -19,9 +19,8 @@ constexpr float kMaxPushOfThickness = 0.25f;
 // The speed with which crossed surfaces part, as a share of the speed of a fall from the length of an edge: as for vertices in shapes. It bounds the energy
 // that untangling gives: half the mass times its square.
 constexpr float kUntangleShare = 0.4f;
-// An extension of impulses by less than this share of their change is not worth its solve.
-constexpr float kMinExtension = 0.1f;
-constexpr float kNoLimit = 1.0e30f;  // more than any extension
+// The edges that cross part by no more force than so many times the weight of their vertices. More would press stiff solids out of shape where the ways out of their edges differ.
+constexpr float kUntangleWeights = 10.0f;
 
 // Takes the mean from the moves: surfaces that fly together do not look far. Returns it.
 DVec3 take_mean(std::span<const PlacedSurface> surfaces, std::span<DVec3> moves) {
@@ -119,14 +118,88 @@ void sum_impulses(const SurfaceVertices& vertices, SurfaceContacts& contacts) {
   for (std::size_t v = 0; v < contacts.totals.size(); ++v) contacts.owed[v] += contacts.totals[v];
 }
 
+// Velocities, or displacements, in the sweeps: those of the vertices, and what their bodies add as a whole.
+struct Motions {
+  std::span<Vec3> own;
+  std::span<RigidVelocity> bodies;
+  std::span<const RigidResponse> responses;
+
+  Motions(const SurfaceVertices& vertices, Arena& arena)
+      : own(arena.make<Vec3>(vertices.positions.size())),
+        bodies(arena.make<RigidVelocity>(vertices.bodies.size())),
+        responses(vertices.bodies) {
+    for (RigidVelocity& body : bodies) body = {};
+  }
+};
+
+constexpr int kMaxPointVertices = 5;
+
+// Two points of features A and B, each a mean of vertices.
+struct TouchingPoints {
+  int count = 0;
+  std::uint32_t vertex[kMaxPointVertices];
+  float weight[kMaxPointVertices];                       // positive on A, negative on B
+  float change[kMaxPointVertices];                       // 1/kg: weight times the vertex's own response
+  std::uint32_t body[2] = {kNoRigidBody, kNoRigidBody};  // of A and B
+  Vec3 arm[2] = {};                                      // m, from their centres
+  float own = 0.0f;                                      // 1/kg: the own response of all vertices together
+  Sym3 whole{};                                          // 1/kg: that of the bodies as a whole
+
+  Vec3 velocity(const Motions& motions) const {
+    Vec3 sum{};
+    for (int k = 0; k < count; ++k) sum += weight[k] * motions.own[vertex[k]];
+    if (body[0] != kNoRigidBody) sum += motions.bodies[body[0]].at(arm[0]);
+    if (body[1] != kNoRigidBody) sum -= motions.bodies[body[1]].at(arm[1]);
+    return sum;
+  }
+  void push(const Motions& motions, Vec3 impulse) const {
+    for (int k = 0; k < count; ++k) motions.own[vertex[k]] += change[k] * impulse;
+    for (int side = 0; side < 2; ++side) {
+      if (body[side] != kNoRigidBody)
+        motions.bodies[body[side]] +=
+            motions.responses[body[side]].of(side == 0 ? impulse : -impulse, arm[side]);
+    }
+  }
+};
+
+// `on_a`: how many of the vertices are A's.
+TouchingPoints touching_points(const SurfaceVertices& vertices, std::span<const std::uint32_t> vertex,
+                               std::span<const float> weight, int on_a) {
+  TouchingPoints points;
+  points.count = int(vertex.size());
+  for (int k = 0; k < points.count; ++k) {
+    const std::uint32_t v = vertex[std::size_t(k)];
+    points.vertex[k] = v, points.weight[k] = weight[std::size_t(k)];
+    points.change[k] = points.weight[k] * vertices.own(v);
+    points.own += points.weight[k] * points.change[k];
+  }
+  if (vertices.bodies.empty()) return points;
+  const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int side = 0; side < 2; ++side) {
+    const int first = side == 0 ? 0 : on_a, last = side == 0 ? on_a : points.count;
+    const std::uint32_t body = vertices.body_of[vertex[std::size_t(first)]];
+    if (body == kNoRigidBody) continue;
+    const RigidResponse& response = vertices.bodies[body];
+    points.body[side] = body;
+    for (int k = first; k < last; ++k)
+      points.arm[side] +=
+          absolute(points.weight[k]) * difference(vertices.positions[points.vertex[k]], response.center);
+    const Vec3 arm = points.arm[side];
+    const Vec3 x = response.of(axes[0], arm).at(arm), y = response.of(axes[1], arm).at(arm),
+               z = response.of(axes[2], arm).at(arm);
+    points.whole = points.whole + Sym3{x.x, y.y, z.z, x.y, x.z, y.z};
+  }
+  return points;
+}
+
 // One contact, with all that a sweep reads.
 struct Row {
-  std::uint32_t vertex[4];
-  float weight[4];
-  float change[4];  // 1/kg: weight times inverse mass
+  TouchingPoints points;
   Vec3 normal;
-  float mass;    // kg: impulse for a change of the relative velocity
-  float target;  // m/s: least normal velocity
+  Vec3 turned;     // 1/kg: the change of the velocity by an impulse of 1 along the normal
+  float stiff;     // 1/kg: its part along the normal
+  float sideways;  // 1/kg: no less than any response across the normal
+  float target;    // m/s: least normal velocity
   float static_friction, dynamic_friction;
   SurfaceImpulse impulse;
   std::uint32_t pair;
@@ -136,23 +209,30 @@ Vec3 sum_of(std::span<const Vec3> values, const std::uint32_t (&vertex)[4], cons
   return weight[0] * values[vertex[0]] + weight[1] * values[vertex[1]] + weight[2] * values[vertex[2]] +
          weight[3] * values[vertex[3]];
 }
-void add_to(std::span<Vec3> values, const Row& row, Vec3 impulse) {
-  for (int k = 0; k < 4; ++k) values[row.vertex[k]] += row.change[k] * impulse;
+// True for vertices of one piece that is rigid within a sub-step. Such a piece does not meet itself, but planes between its features would stop it from turning.
+bool is_within_stiff(const SurfacePair& pair, const SurfaceVertices& vertices) {
+  if (vertices.bodies.empty()) return false;
+  const std::uint32_t a = vertices.body_of[pair.vertex[0]], b = vertices.body_of[pair.vertex[pair.on_a]];
+  return a == b && a != kNoRigidBody && vertices.bodies[a].is_stiff;
 }
+void leave_out_stiff(const SurfaceVertices& vertices, Array<SurfacePair>& pairs) {
+  std::size_t kept = 0;
+  for (const SurfacePair& pair : pairs)
+    if (!is_within_stiff(pair, vertices)) pairs[kept++] = pair;
+  pairs.resize(kept);
+}
+
 float gap_of(const SurfacePair& pair) { return float(pair.distance - double(pair.thickness)); }
 
 Row make_row(const SurfacePair& pair, std::uint32_t number, const SurfaceVertices& vertices,
              const SurfaceImpulse& impulse) {
   Row row;
-  float mobility = 0.0f;
-  for (int k = 0; k < 4; ++k) {
-    row.vertex[k] = pair.vertex[k];
-    row.weight[k] = pair.weight[k];
-    row.change[k] = pair.weight[k] * vertices.inverse_mass[pair.vertex[k]];
-    mobility += row.weight[k] * row.change[k];
-  }
+  row.points = touching_points(vertices, pair.vertex, pair.weight, pair.on_a);
   row.normal = to_float(pair.normal);
-  row.mass = mobility > 0.0f ? 1.0f / mobility : 0.0f;
+  row.turned = row.points.own * row.normal + row.points.whole * row.normal;
+  row.stiff = dot(row.normal, row.turned);
+  const Sym3& whole = row.points.whole;
+  row.sideways = row.points.own + (whole.xx + whole.yy + whole.zz - dot(row.normal, whole * row.normal));
   row.target = 0.0f;
   row.static_friction = pair.friction[0], row.dynamic_friction = pair.friction[1];
   row.impulse = impulse;
@@ -167,62 +247,77 @@ bool may_touch(const SurfacePair& pair, const SurfaceVertices& vertices, float s
   return gap - near < -kMoveAhead * step * dot(to_float(pair.normal), velocity);
 }
 
-void solve_row(Row& row, std::span<Vec3> velocities) {
-  const Vec3 velocity = sum_of(velocities, row.vertex, row.weight);
-  const float along = dot(row.normal, velocity);
-  const float normal = max(0.0f, row.impulse.normal - (along - row.target) * row.mass);
+void solve_row(Row& row, const Motions& motions) {
+  if (!(row.stiff > 0.0f)) return;
+  const Vec3 velocity = row.points.velocity(motions);
+  const float normal = max(0.0f, row.impulse.normal - (dot(row.normal, velocity) - row.target) / row.stiff);
   if (normal == 0.0f && row.impulse.normal == 0.0f) return;
-  // Inverse masses are scalars: normal and friction do not act on each other within a row.
-  Vec3 friction = row.impulse.friction - row.mass * (velocity - along * row.normal);
+  // The normal impulse turns the bodies, which slide by that.
+  const Vec3 slide = velocity + (normal - row.impulse.normal) * row.turned;
+  Vec3 friction =
+      row.impulse.friction - (1.0f / row.sideways) * (slide - dot(row.normal, slide) * row.normal);
   const float size = length(friction);
   if (size > row.static_friction * normal) friction = (row.dynamic_friction * normal / size) * friction;
-  add_to(velocities, row, (normal - row.impulse.normal) * row.normal + (friction - row.impulse.friction));
+  row.points.push(motions, (normal - row.impulse.normal) * row.normal + (friction - row.impulse.friction));
   row.impulse = {normal, friction};
 }
 
 // An edge that passes through a triangle moves along its way out, at a given speed or faster.
 struct TangleRow {
+  TouchingPoints points;
   const TangledEdge* edge;
-  float change[5];  // 1/kg: weight times inverse mass
-  float mass;       // kg
-  float target;     // m/s: least speed along the way
+  float mass;    // kg
+  float target;  // m/s: least speed along the way
+  float most;    // N s
   float impulse;
 };
 
 std::span<TangleRow> make_tangle_rows(const SurfaceTangle& tangle, const SurfaceVertices& vertices,
-                                      Arena& arena) {
+                                      const SurfaceContactSettings& settings, Arena& arena) {
   const std::span<TangleRow> rows = arena.make<TangleRow>(tangle.edges.size());
   std::size_t used = 0;
   for (const TangledEdge& edge : tangle.edges) {
     TangleRow& row = rows[used];
-    float mobility = 0.0f;
-    for (int k = 0; k < 5; ++k) {
-      row.change[k] = edge.weight[k] * vertices.inverse_mass[edge.vertex[k]];
-      mobility += edge.weight[k] * row.change[k];
-    }
-    if (!(mobility > 0.0f)) continue;
-    row.edge = &edge, row.mass = 1.0f / mobility, row.target = row.impulse = 0.0f;
+    row.points = touching_points(vertices, edge.vertex, edge.weight, 2);
+    const float stiff = row.points.own + dot(edge.way, row.points.whole * edge.way);
+    if (!(stiff > 0.0f)) continue;
+    float mobility = 0.0f;  // 1/kg, of the vertices alone
+    for (int k = 0; k < 5; ++k)
+      mobility += edge.weight[k] * edge.weight[k] * vertices.inverse_mass[edge.vertex[k]];
+    row.edge = &edge, row.mass = 1.0f / stiff, row.target = row.impulse = 0.0f;
+    row.most = kUntangleWeights * settings.step * settings.gravity / mobility;
     ++used;
   }
   return rows.first(used);
 }
 
-void solve_tangle_row(TangleRow& row, std::span<Vec3> velocities) {
-  const TangledEdge& edge = *row.edge;
-  Vec3 relative{};
-  for (int k = 0; k < 5; ++k) relative += edge.weight[k] * velocities[edge.vertex[k]];
-  const float impulse = max(0.0f, row.impulse + (row.target - dot(edge.way, relative)) * row.mass);
+void solve_tangle_row(TangleRow& row, const Motions& motions) {
+  const Vec3 way = row.edge->way;
+  const float impulse = min(
+      max(0.0f, row.impulse + (row.target - dot(way, row.points.velocity(motions))) * row.mass), row.most);
   if (impulse == row.impulse) return;
-  const Vec3 change = (impulse - row.impulse) * edge.way;
-  for (int k = 0; k < 5; ++k) velocities[edge.vertex[k]] += row.change[k] * change;
+  row.points.push(motions, (impulse - row.impulse) * way);
   row.impulse = impulse;
 }
 
-void solve_push(Row& row, std::span<Vec3> pushes) {
-  const float now = dot(row.normal, sum_of(pushes, row.vertex, row.weight));
-  const float push = max(0.0f, row.impulse.normal + (row.target - now) * row.mass);
-  add_to(pushes, row, (push - row.impulse.normal) * row.normal);
+void solve_push(Row& row, const Motions& pushes) {
+  if (!(row.stiff > 0.0f)) return;
+  const float now = dot(row.normal, row.points.velocity(pushes));
+  const float push = max(0.0f, row.impulse.normal + (row.target - now) / row.stiff);
+  row.points.push(pushes, (push - row.impulse.normal) * row.normal);
   row.impulse.normal = push;
+}
+
+// Adds a change of the impulse at two points to what vertices are owed. `totals`: and to their totals.
+void owe(const TouchingPoints& points, Vec3 impulse, const SurfaceVertices& vertices, bool totals,
+         SurfaceContacts& contacts) {
+  for (int k = 0; k < points.count; ++k) {
+    const std::uint32_t v = points.vertex[k];
+    if (!(vertices.inverse_mass[v] > 0.0f)) continue;
+    const Vec3 given = points.weight[k] * impulse;
+    contacts.owed[v] += given;
+    if (totals) contacts.totals[v] += given;
+  }
 }
 
 }  // namespace
@@ -247,6 +342,7 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
   find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
                      float(settings.bounds.least_gap), arena, tasks, contacts.search, contacts.pairs);
   leave_out(contacts.tangle, contacts.pairs);
+  leave_out_stiff(vertices, contacts.pairs);
   keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
   sum_impulses(vertices, contacts);
 }
@@ -254,10 +350,8 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
 void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
                             Arena& arena, SurfaceContacts& contacts) {
   const ArenaScope scope(arena);
-  const std::size_t count = vertices.positions.size();
-  const std::span<Vec3> velocities = arena.make<Vec3>(count), start = arena.make<Vec3>(count);
-  for (std::size_t v = 0; v < count; ++v)
-    velocities[v] = start[v] = vertices.velocities[v] + vertices.inverse_mass[v] * contacts.owed[v];
+  const Motions motions(vertices, arena);
+  for (std::size_t v = 0; v < motions.own.size(); ++v) motions.own[v] = vertices.velocities[v];
   std::span<Row> rows = arena.make<Row>(contacts.pairs.size());
   std::size_t used = 0;
   for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
@@ -270,32 +364,29 @@ void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContac
     if (gap > 0.0f) row.target = -gap / settings.step;
   }
   rows = rows.first(used);
-  const std::span<TangleRow> tangled = make_tangle_rows(contacts.tangle, vertices, arena);
+  const std::span<TangleRow> tangled = make_tangle_rows(contacts.tangle, vertices, settings, arena);
   for (TangleRow& row : tangled)
     row.target = row.edge->share * kUntangleShare * std::sqrt(settings.gravity * row.edge->edge);
   for (int n = 0; n < settings.iterations; ++n) {
-    for (std::size_t i = 0; i < used; ++i) solve_row(rows[n % 2 == 0 ? i : used - 1 - i], velocities);
-    for (TangleRow& row : tangled) solve_tangle_row(row, velocities);
+    for (std::size_t i = 0; i < used; ++i) solve_row(rows[n % 2 == 0 ? i : used - 1 - i], motions);
+    for (TangleRow& row : tangled) solve_tangle_row(row, motions);
   }
   contacts.touching = 0;
+  contacts.aimed = 0.0;
   for (const Row& row : rows) {
-    contacts.impulses[row.pair] = row.impulse;
+    SurfaceImpulse& before = contacts.impulses[row.pair];
+    const float normal = row.impulse.normal - before.normal;
+    owe(row.points, normal * row.normal + (row.impulse.friction - before.friction), vertices, true, contacts);
+    contacts.aimed += double(normal) * double(row.target);
+    before = row.impulse;
     contacts.touching += row.impulse.normal > 0.0f;
   }
-  for (std::size_t v = 0; v < count; ++v) {
-    const float w = vertices.inverse_mass[v];
-    if (!(w > 0.0f)) continue;
-    const Vec3 change = (velocities[v] - start[v]) / w;
-    contacts.owed[v] += change;
-    contacts.totals[v] += change;
-  }
   // Impulses that untangle do not act again in the next sub-step: other edges cross then.
+  contacts.most_share = kAnyShare;
   for (const TangleRow& row : tangled) {
-    for (int k = 0; k < 5; ++k) {
-      const std::uint32_t v = row.edge->vertex[k];
-      if (vertices.inverse_mass[v] > 0.0f)
-        contacts.totals[v] += -(row.edge->weight[k] * row.impulse) * row.edge->way;
-    }
+    if (row.impulse > 0.0f) contacts.most_share = min(contacts.most_share, row.most / row.impulse);
+    owe(row.points, row.impulse * row.edge->way, vertices, false, contacts);
+    contacts.aimed += double(row.impulse) * double(row.target);
   }
 }
 
@@ -310,49 +401,44 @@ float worst_closing(const SurfaceVertices& vertices, const SurfaceContactSetting
   return worst;
 }
 
-bool extend_impulses(std::span<const SurfaceImpulse> before, std::span<const Vec3> start,
-                     const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
-                     SurfaceContacts& contacts) {
-  double missing = 0.0, gained = 0.0;
-  float most = kNoLimit;  // by which no normal impulse becomes negative
-  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
-    const SurfacePair& pair = contacts.pairs[i];
-    const float change = contacts.impulses[i].normal - before[i].normal;
-    const Vec3 normal = to_float(pair.normal);
-    const Vec3 way = change * normal + (contacts.impulses[i].friction - before[i].friction);
-    if (way == Vec3{}) continue;
-    const Vec3 now = sum_of(vertices.velocities, pair.vertex, pair.weight),
-               was = sum_of(start, pair.vertex, pair.weight);
-    const float gap = gap_of(pair);
-    const Vec3 target = gap > 0.0f ? (-gap / settings.step) * normal : Vec3{};
-    missing += double(dot(way, target - now));
-    gained += double(dot(way, now - was));
-    if (change < 0.0f) most = min(most, contacts.impulses[i].normal / -change);
+float take_best_share(std::span<const SurfaceImpulse> before, const SurfaceVertices& vertices,
+                      std::span<const Vec3> change, float most_share, SurfaceContacts& contacts) {
+  double slope = contacts.aimed, curvature = 0.0;
+  for (std::size_t v = 0; v < contacts.owed.size(); ++v) {
+    slope -= double(dot(contacts.owed[v], vertices.velocities[v]));
+    curvature += double(dot(contacts.owed[v], change[v]));
   }
-  if (!(missing > 0.0) || !(gained > 0.0)) return false;
-  const float more = min(float(missing / gained), most);
-  if (!(more > kMinExtension)) return false;
-  for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
+  float most = min(most_share, contacts.most_share);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const float less = before[i].normal - contacts.impulses[i].normal;
+    if (less > 0.0f) most = min(most, before[i].normal / less);
+  }
+  if (!(slope > 0.0) || !(curvature > 0.0)) most = 0.0f;
+  const float share = most > 0.0f ? min(float(slope / curvature), most) : 0.0f;
+  for (std::size_t i = 0; i < before.size(); ++i) {
     const SurfacePair& pair = contacts.pairs[i];
     SurfaceImpulse& impulse = contacts.impulses[i];
-    const float normal = more * (impulse.normal - before[i].normal);
-    const Vec3 friction = more * (impulse.friction - before[i].friction);
+    const float normal = impulse.normal - before[i].normal;
+    const Vec3 friction = impulse.friction - before[i].friction;
     if (normal == 0.0f && friction == Vec3{}) continue;
-    impulse.normal += normal, impulse.friction += friction;
+    impulse.normal = before[i].normal + share * normal,
+    impulse.friction = before[i].friction + share * friction;
+    const Vec3 more = (share - 1.0f) * (normal * to_float(pair.normal) + friction);
     for (int k = 0; k < 4; ++k) {
       const std::uint32_t v = pair.vertex[k];
-      if (!(vertices.inverse_mass[v] > 0.0f)) continue;
-      const Vec3 given = pair.weight[k] * (normal * to_float(pair.normal) + friction);
-      contacts.totals[v] += given, contacts.owed[v] += given;
+      if (vertices.inverse_mass[v] > 0.0f) contacts.totals[v] += pair.weight[k] * more;
     }
   }
-  return true;
+  for (Vec3& owed : contacts.owed) owed = {};
+  return share;
 }
 
 void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
                    SurfaceContacts& contacts) {
   const ArenaScope scope(arena);
   contacts.pushes.assign(vertices.positions.size(), Vec3{});
+  const Motions pushes(vertices, arena);
+  for (Vec3& own : pushes.own) own = {};
   std::span<Row> rows = arena.make<Row>(contacts.pairs.size());
   std::size_t used = 0;
   for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
@@ -363,8 +449,16 @@ void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings
     row = make_row(pair, i, vertices, {});
     row.target = min(settings.pushout * overlap, kMaxPushOfThickness * pair.thickness);
   }
+  if (used == 0) return;
   for (int n = 0; n < settings.push_iterations; ++n) {
-    for (Row& row : rows.first(used)) solve_push(row, contacts.pushes);
+    for (Row& row : rows.first(used)) solve_push(row, pushes);
+  }
+  for (std::size_t v = 0; v < contacts.pushes.size(); ++v) {
+    contacts.pushes[v] = pushes.own[v];
+    if (vertices.bodies.empty() || vertices.body_of[v] == kNoRigidBody) continue;
+    const std::uint32_t body = vertices.body_of[v];
+    contacts.pushes[v] +=
+        pushes.bodies[body].at(difference(vertices.positions[v], vertices.bodies[body].center));
   }
 }
 
@@ -384,6 +478,11 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
   const DVec3 mean = take_mean(surfaces, whole);
   for (std::size_t v = 0; v < count; ++v) asked[v] = whole[v];
   cut_moves(surfaces, vertices.inverse_mass, asked);
+  const std::span<std::uint32_t> stiff = arena.make<std::uint32_t>(vertices.bodies.empty() ? 0 : count);
+  for (std::size_t v = 0; v < stiff.size(); ++v) {
+    const std::uint32_t body = vertices.body_of[v];
+    stiff[v] = body != kNoRigidBody && vertices.bodies[body].is_stiff ? body : kNoRigidBody;
+  }
   BoundReport report;
   Array<SurfacePair> found;
   std::span<const SurfacePair> pairs = contacts.pairs;
@@ -392,7 +491,7 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     for (std::size_t v = 0; v < count; ++v) moves[v] = asked[v];
     // The last round is for pairs that are found for any moves no longer than those that are asked for.
     report = bound_moves(pairs, vertices.positions, last ? contacts.limits.view() : std::span<const float>(),
-                         held, settings.bounds, moves, arena, tasks);
+                         held, stiff, settings.bounds, moves, arena, tasks);
     if (last || keeps_plan(surfaces, vertices.inverse_mass, moves, contacts, arena)) break;
     if (contacts.rounds == settings.most_rounds) {
       for (std::size_t v = 0; v < count; ++v) {
@@ -403,6 +502,7 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
                        float(settings.bounds.least_gap), arena, tasks, contacts.search, found);
     leave_out(contacts.tangle, found);
+    leave_out_stiff(vertices, found);
     pairs = found;
   }
   contacts.search.candidates.advance();

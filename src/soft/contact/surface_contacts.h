@@ -14,13 +14,14 @@
 // The impulse of a pair, equal and opposite on its two closest points, keeps linear momentum exactly, and angular momentum up to the friction times the
 // gap. No impulse adds kinetic energy, but for untangling: contacts are inelastic.
 //
-// W_i is the bare inverse mass, while the bodies answer impulses through their stiffness, with A^-1, A = M + s K (soft/solver/implicit_step.h). Since A - M
-// is positive semi-definite, the rows see vertices as more mobile than they are, so that no solve goes too far: each lowers the energy of the
-// coupled system, and it is exact where a surface moves as a whole (docs/decisions/soft-contact.md).
+// The bodies answer impulses through their stiffness, with A^-1, A = M + s K (soft/solver/implicit_step.h). In the rows a solid answers by its rigid motion, and each of its vertices
+// by the inverse of its own block of A beside that: exact for a stiff solid and for a very soft one. A vertex of a cloth answers by its bare inverse mass. Of what the rows find, the share is
+// taken that is best with the true answer of the bodies, so that each round lowers the energy of the coupled system (docs/decisions/soft-contact.md).
 #pragma once
 
 #include "base/arena/arena.h"
 #include "base/container/array.h"
+#include "soft/body/rigid_response.h"
 #include "soft/contact/displacement_bounds.h"
 #include "soft/contact/soft_surface.h"
 #include "soft/contact/surface_pairs.h"
@@ -38,6 +39,12 @@ struct SurfaceVertices {
   std::span<DVec3> positions;
   std::span<const Vec3> velocities;
   std::span<const float> inverse_mass;  // 1/kg, 0: held, it goes where it is told
+  // How a vertex answers an impulse beside what its body does as a whole, 1/kg. None: by the inverse mass.
+  std::span<const float> own_response{};
+  std::span<const RigidResponse> bodies{};   // none: no body answers as a whole
+  std::span<const std::uint32_t> body_of{};  // by vertex
+
+  float own(std::uint32_t v) const { return own_response.empty() ? inverse_mass[v] : own_response[v]; }
 };
 
 struct SurfaceContactSettings {
@@ -56,6 +63,8 @@ struct SurfaceImpulse {
   Vec3 friction{};
 };
 
+constexpr float kAnyShare = 1.0e30f;  // of a change, as a bound that none reaches
+
 // State between sub-steps; it may be cleared between any two.
 struct SurfaceContacts {
   Array<SurfacePair> pairs;
@@ -64,12 +73,15 @@ struct SurfaceContacts {
   // body spreads them exactly. And the part of them that the velocities do not have yet.
   Array<Vec3> totals, owed;
   PairSearch search;
-  SurfaceTangle tangle;  // when the sub-step began
-  Array<DVec3> plan;     // m, by vertex: the moves for which pairs were found, against the mean of all
-  Array<float> limits;   // m, by vertex: how far it may end from its plan, or pairs are found again
-  Array<Vec3> pushes;    // m, by vertex
-  int rounds = 0;        // of finding pairs, in the last sub-step
-  int touching = 0;      // pairs with an impulse
+  double aimed =
+      0.0;  // J: the work of the change of the impulses in the last solve at the velocities that the rows want
+  float most_share = 0.0f;  // of this change, by which no impulse that untangles is more than it may be
+  SurfaceTangle tangle;     // when the sub-step began
+  Array<DVec3> plan;        // m, by vertex: the moves for which pairs were found, against the mean of all
+  Array<float> limits;      // m, by vertex: how far it may end from its plan, or pairs are found again
+  Array<Vec3> pushes;       // m, by vertex
+  int rounds = 0;           // of finding pairs, in the last sub-step
+  int touching = 0;         // pairs with an impulse
 
   void clear(std::size_t vertices) {
     pairs.clear(), impulses.clear();
@@ -82,19 +94,17 @@ struct SurfaceContacts {
 void find_surface_contacts(std::span<const PlacedSurface> surfaces, const SurfaceVertices& vertices,
                            const SurfaceContactSettings& settings, Arena& arena, TaskSystem& tasks,
                            SurfaceContacts& contacts);
-// Solves the rows at the present velocities and what is owed; then all changes are owed. The caller gives what is owed to the bodies, each
-// through its stiffness, and may call this again at the velocities that this makes.
+// Solves the rows at the present velocities, when nothing is owed; then all changes are owed. The caller finds what the bodies answer, each through its stiffness, takes the best share of
+// it, and may call this again at the velocities that this makes.
 void solve_surface_contacts(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
                             Arena& arena, SurfaceContacts& contacts);
 // By how much pairs would come into each other in the step at the present velocities, at most, as a share of their thickness.
 float worst_closing(const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
                     const SurfaceContacts& contacts);
-// Goes on along the change of the impulses since `before`, which changed the velocities from `start`: an exact line search of the dual, to where the work of the
-// change on what the pairs still miss is zero. A stiff body answers an impulse with more of its mass than one vertex has, so that the rows alone would take
-// many rounds. The extension is owed. False if it is too short to matter.
-bool extend_impulses(std::span<const SurfaceImpulse> before, std::span<const Vec3> start,
-                     const SurfaceVertices& vertices, const SurfaceContactSettings& settings,
-                     SurfaceContacts& contacts);
+// How much of the last change of the impulses, since `before`, is best: an exact line search of the dual, whose slope is `aimed` less the work of the change at the velocities before, and whose
+// curvature is its work on the `change` of the velocities that it makes. No impulse leaves its bounds, and the share is at most `most_share`. The change of the impulses is then taken by this share.
+float take_best_share(std::span<const SurfaceImpulse> before, const SurfaceVertices& vertices,
+                      std::span<const Vec3> change, float most_share, SurfaceContacts& contacts);
 // Sets the pushes.
 void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings& settings, Arena& arena,
                    SurfaceContacts& contacts);

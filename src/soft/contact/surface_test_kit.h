@@ -114,20 +114,44 @@ struct SoftScene {
     }
     const SurfaceVertices vertices{all.positions, velocities, inverse_mass};
     find_surface_contacts(all.placed, vertices, settings, contact_arena, bench.tasks, contacts);
-    for (int n = 0; n < outer; ++n) {
-      solve_surface_contacts(vertices, settings, contact_arena, contacts);
+    Array<Vec3> changes;
+    // How bodies answer what they are owed.
+    const auto find_answers = [&] {
+      changes.clear();
+      at = 0;
+      for (std::size_t k = 0; k < bodies.size(); ++k) {
+        const Particles& p = bodies[k].particles;
+        const VectorRows given = make_vectors(bench.arena, p.x.size()),
+                         change = make_vectors(bench.arena, p.x.size());
+        for (std::size_t i = 0; i < p.x.size(); ++i) {
+          const Vec3 one = int(i) < p.count ? contacts.owed[at + i] : Vec3{};
+          given.x[i] = one.x, given.y[i] = one.y, given.z[i] = one.z;
+        }
+        at += std::size_t(p.count);
+        find_response(bodies[k], steps[k], given, change, spread, 0.0, bench.kernels, bench.arena,
+                      bench.tasks);
+        for (int i = 0; i < p.count; ++i) changes.push_back({change.x[i], change.y[i], change.z[i]});
+      }
+    };
+    const auto take_answers = [&](float share) {
       at = 0;
       for (std::size_t k = 0; k < bodies.size(); ++k) {
         Particles& p = bodies[k].particles;
-        const VectorRows rows = make_vectors(bench.arena, p.x.size());
-        for (std::size_t i = 0; i < p.x.size(); ++i) {
-          Vec3 one{};
-          if (int(i) < p.count) std::swap(one, contacts.owed[at + i]);
-          rows.x[i] = one.x, rows.y[i] = one.y, rows.z[i] = one.z;
+        for (int i = 0; i < p.count; ++i) {
+          p.set_velocity(i, p.velocity(i) + share * changes[at]);
+          velocities[at++] = p.velocity(i);
         }
-        add_impulses(bodies[k], steps[k], rows, spread, bench.kernels, bench.arena, bench.tasks);
-        for (int i = 0; i < p.count; ++i) velocities[at++] = p.velocity(i);
       }
+    };
+    find_answers();
+    for (Vec3& owed : contacts.owed) owed = {};
+    take_answers(1.0f);
+    for (int n = 0; n < outer; ++n) {
+      Array<SurfaceImpulse> before;
+      before.assign(contacts.impulses.view());
+      solve_surface_contacts(vertices, settings, contact_arena, contacts);
+      find_answers();
+      take_answers(take_best_share(before.view(), vertices, changes.view(), 1.0f, contacts));
     }
     push_surfaces(vertices, settings, contact_arena, contacts);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
