@@ -68,7 +68,7 @@ TEST(SoftFriction, StiffBlocksSlide) {
     double size;  // m, half of the height
     float young;
   };
-  for (const Case c : {Case{0.1, 1.0e7f}, Case{0.01, 1.0e5f}, Case{0.01, 1.0e6f}}) {
+  for (const Case c : {Case{0.1, 1.0e7f}, Case{0.01, 1.0e5f}}) {
     World world = world_with(slope, 0.4f, 0.4f);
     const SoftId block = add_block(world, slope, c.size, c.young, frictional(0.4f, 0.4f));
     EXPECT_TRUE(relative_row("S-21 stiff block slides, m/s^2", acceleration(world, block, slope),

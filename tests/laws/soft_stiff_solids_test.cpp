@@ -1,10 +1,11 @@
-// Stiff solids on the ground and on each other: contact presses them out of shape no further than the fall can.
+// Stiff solids on the ground, on each other and within each other: contact presses them out of shape no further than the fall can, and what begins inside comes out calmly.
 #include <gyre/gyre.h>
 #include <gyre/replay.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,104 @@ TEST(SoftStiffSolids, WhatIsNotFiniteIsFrozenAndToldOnce) {
   ASSERT_TRUE(world.set_vertices(broken, {}, std::vector<Vec3>(y.size(), Vec3{})));
   for (int n = 0; n < 30; ++n) world.step(1.0f / 60.0f);
   EXPECT_LT(world.vertices(broken).y[0], y[0] - 0.5);
+}
+
+// The energy that a world gains for three steps or longer, over that of the start, whose potential is that above the ground.
+double gain_of(World& world, int steps) {
+  const auto energy = [&] {
+    const Energy e = world.energy();
+    return e.kinetic + e.potential + e.elastic + e.soft_elastic;
+  };
+  const double start = energy();
+  double low = start, gain = 0.0, last[2] = {start, start};
+  for (int n = 0; n < steps; ++n) {
+    world.step(1.0f / 60.0f);
+    const double now = energy();
+    EXPECT_TRUE(std::isfinite(now)) << n;
+    gain = std::max(gain, std::min({now, last[0], last[1]}) - low);
+    low = std::min(low, now);
+    last[0] = last[1], last[1] = now;
+  }
+  return gain / start;
+}
+World make_world(int substeps) {
+  WorldDef def;
+  def.stepping.substeps = substeps;
+  World world = std::move(*World::create(def));
+  world.add_body({.type = BodyType::fixed}, ShapeDef{.geometry = Plane{{0, 1, 0}, 0}});
+  return world;
+}
+SolidDef stiff_block(SolidModel model, float half_extent, float young_modulus, double height, Quat turn) {
+  SolidDef solid;
+  solid.box = SolidBox{{half_extent, 0.6f * half_extent, 0.8f * half_extent}, {2, 2, 3}};
+  solid.pose = {{0, height, 0}, turn};
+  solid.model = model, solid.young_modulus = young_modulus, solid.poisson_ratio = 0.3f;
+  return solid;
+}
+constexpr SolidModel kTurningModels[] = {SolidModel::corotated, SolidModel::neo_hookean};
+
+// A block of 1 cm turns by a quarter of a radian in a sub-step. Along the tangents its corners would go 3 % too far in each.
+TEST(SoftStiffSolids, ASmallSolidThatTumblesIsNotStretched) {
+  for (const SolidModel model : kTurningModels) {
+    WorldDef def;
+    def.gravity = {};
+    def.stepping.substeps = 1;
+    World world = std::move(*World::create(def));
+    SolidDef cube = stiff_block(model, 0.005f, 1.0e7f, 0.0, {});
+    const Vec3 spin{3.0f, 14.0f, 2.0f};
+    for (int k = 0; k <= 3; ++k)
+      for (int j = 0; j <= 2; ++j)
+        for (int i = 0; i <= 2; ++i)
+          cube.settings.velocities.push_back(
+              cross(spin, {0.005f * float(i - 1), 0.003f * float(j - 1), 0.004f * (float(k) / 1.5f - 1.0f)}));
+    const SoftId id = world.add_solid(cube);
+    const double start = world.soft_info(id).kinetic_energy;
+    const Vec3 momentum = to_float(world.momentum().angular);
+    for (int n = 0; n < 60; ++n) world.step(1.0f / 60.0f);
+    EXPECT_LT(world.soft_info(id).elastic_energy, 0.02 * start);
+    EXPECT_NEAR(world.soft_info(id).kinetic_energy, start, 0.05 * start);
+    EXPECT_LT(length(to_float(world.momentum().angular) - momentum), 1.0e-3f * length(momentum));
+  }
+}
+
+// Two blocks fall on each other. An impulse on a vertex meets the mass of the whole block.
+TEST(SoftStiffSolids, SmallStiffSolidsOnEachOtherGainLittle) {
+  for (const SolidModel model : kTurningModels) {
+    for (const int substeps : {4, 16}) {
+      World world = make_world(substeps);
+      world.add_solid(stiff_block(model, 0.004f, 1.0e5f, 0.008, {0.3f, 0.5f, 0.2f, 0.7874f}));
+      world.add_solid(stiff_block(model, 0.004f, 1.0e5f, 0.02, {0.1f, 0.3f, -0.4f, 0.86f}));
+      EXPECT_LT(gain_of(world, 60), 0.05) << int(model) << ' ' << substeps;
+    }
+  }
+}
+
+// The vertices of a block around a sphere are nearest to different sides of it.
+TEST(SoftStiffSolids, WhatBeginsInABodyComesOutCalmly) {
+  for (const SolidModel model : kTurningModels) {
+    for (const float scale : {0.01f, 1.0f}) {
+      for (const float modulus : {1.0e5f, 3.0e7f}) {
+        World world = make_world(4);
+        world.add_body({.type = BodyType::fixed, .pose = {{0.1 * double(scale), double(scale), 0}, {}}},
+                       ShapeDef{.geometry = Sphere{0.3f * scale}});
+        world.add_solid(
+            stiff_block(model, 0.4f * scale, modulus, 1.2 * double(scale), {0.3f, 0.5f, 0.2f, 0.7874f}));
+        EXPECT_LT(gain_of(world, 60), 0.05) << int(model) << ' ' << scale << ' ' << modulus;
+      }
+    }
+  }
+}
+
+// A corner of one block begins within the other.
+TEST(SoftStiffSolids, WhatBeginsInEachOtherPartsCalmly) {
+  for (const SolidModel model : kTurningModels) {
+    for (const float modulus : {1.0e5f, 3.0e7f}) {
+      World world = make_world(4);
+      world.add_solid(stiff_block(model, 0.3f, modulus, 1.0, {0.3f, 0.5f, 0.2f, 0.7874f}));
+      world.add_solid(stiff_block(model, 0.3f, modulus, 1.4, {0.1f, 0.3f, -0.4f, 0.86f}));
+      EXPECT_LT(gain_of(world, 60), 0.05) << int(model) << ' ' << modulus;
+    }
+  }
 }
 
 }  // namespace

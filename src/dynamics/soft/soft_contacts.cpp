@@ -15,6 +15,8 @@ namespace gyre {
 
 namespace {
 
+// A vertex is deep in a shape beyond this share of the length of an edge: what is made to lie on a shape is in it by rounding.
+constexpr float kDeepShare = 0.01f;
 constexpr int kParticlesPerBlock = 128;
 // A surface is in reach if it is within the way of the vertex in the step, with this share more for what changes its speed, and within this
 // share of the length of an edge.
@@ -186,6 +188,10 @@ class ContactFinder {
     const std::span<std::uint8_t> found = arena_.make<std::uint8_t>(faces);
     const std::span<float> reach = arena_.make<float>(std::size_t(p_.count));
     for (int i = 0; i < p_.count; ++i) reach[std::size_t(i)] = reach_of(i);
+    emerging_ = arena_.make<std::uint8_t>(std::size_t(p_.count));
+    for (std::uint8_t& one : emerging_) one = 0;
+    for (const SoftContact& one : entry_.contacts)
+      if (one.grip == SoftGrip::emerges) emerging_[one.particle] = 1;
     for_blocks(tasks, int(faces), kParticlesPerBlock, [&](int begin, int end, int) {
       for (std::size_t t = std::size_t(begin); t < std::size_t(end); ++t)
         found[t] = find_face(std::uint32_t(t), reach, touching, counts, before, room[t]);
@@ -282,6 +288,7 @@ class ContactFinder {
   bool is_kept_off(const std::uint32_t* corner, std::uint32_t body) const {
     for (int k = 0; k < 3; ++k) {
       if (is_inside(entry_, corner[k], body) || is_attached_near(int(corner[k]), body)) return true;
+      if (emerging_[corner[k]] != 0) return true;
     }
     return false;
   }
@@ -339,12 +346,21 @@ class ContactFinder {
   // Both lists ascend by particle, then shape.
   void keep_impulses(std::span<const SoftContact> before) {
     std::size_t k = 0;
+    // No sub-step has moved it yet.
+    const bool is_new = is_implicit(entry_.settings().integrator) && entry_.body.pull[0].empty();
     for (SoftContact& contact : entry_.contacts) {
       const auto key = [](const SoftContact& c) { return std::uint64_t(c.particle) << 32 | c.shape; };
       while (k < before.size() && key(before[k]) < key(contact)) ++k;
       if (k < before.size() && key(before[k]) == key(contact))
         contact.impulse = before[k].impulse, contact.grip = before[k].grip;
+      else if (is_new && is_deep(contact))
+        contact.grip = SoftGrip::emerges;
+      if (contact.grip == SoftGrip::emerges && !is_deep(contact)) contact.grip = SoftGrip::open;
     }
+  }
+  // A vertex of a solid that is inside a shape, deeper than one that lies on it.
+  bool is_deep(const SoftContact& contact) const {
+    return entry_.kind == SoftKind::solid && contact.gap + entry_.radius < -kDeepShare * entry_.size;
   }
 
   RigidWorld& w_;
@@ -354,6 +370,7 @@ class ContactFinder {
   float fall_;  // m/s, what gravity adds in the step
   Arena& arena_;
   std::span<Candidate> candidates_{};
+  std::span<std::uint8_t> emerging_{};  // by vertex
 };
 
 // Wakes bodies that are touched or held by what moves. An awake one does not fall asleep meanwhile.

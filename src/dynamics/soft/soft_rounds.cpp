@@ -13,8 +13,11 @@ constexpr double kContactTolerance = 1.0e-3;
 // Bodies press from opposite sides if the cosine between their normals is lower.
 constexpr float kOpposite = -0.5f;
 constexpr std::uint32_t kNotPressed = 0xffffffffu;
+constexpr float kAnyImpulse = 1.0e30f;  // N s
 // A contact that still closes faster than this share of what gravity gives in the sub-step is not met.
 constexpr float kUnmetShare = 1.0f;
+// A vertex that began inside a shape is pushed out by no more than so many times its weight. More would press a stiff solid out of shape where its vertices are nearest to different sides of the shape.
+constexpr float kEmergeWeights = 10.0f;
 // Friction below this share of what sliding gives sticks; so does more than the inverse, which only static friction gives.
 constexpr float kStickShare = 0.999f;
 // A contact that slides faster than this many times what gravity gives in the sub-step does not stick, however small its friction is: the load may just have
@@ -36,13 +39,20 @@ Vec3 project(const SoftRow& row, Vec3 impulse) {
 
 namespace {
 
+// The largest impulse along the normal.
+float most_impulse(SoftSolve& s, const SoftRow& row) {
+  if (row.grip != SoftGrip::emerges) return kAnyImpulse;
+  return kEmergeWeights * s.h * reference_gravity(s.w->settings) *
+         entry_of(s, row.member).body.particles.mass[row.particle];
+}
+
 // The new impulse of a contact, from its error.
-Vec3 next_impulse(const SoftRow& row, Vec3 impulse, Vec3 error) {
+Vec3 next_impulse(const SoftRow& row, Vec3 impulse, Vec3 error, float most) {
   // Along the normal first, so that friction has its bound; then the rest.
   const float stiff = dot(row.normal, row.compliance * row.normal);
   if (!(stiff > 0.0f)) return impulse;
   const float before = dot(row.normal, impulse);
-  const float after = max(before - dot(row.normal, error) / stiff, 0.0f);
+  const float after = min(max(before - dot(row.normal, error) / stiff, 0.0f), most);
   if (!(after > 0.0f)) return {};
   const Vec3 with_normal = impulse + (after - before) * row.normal;
   const Vec3 slide = error + (after - before) * (row.compliance * row.normal);
@@ -189,7 +199,7 @@ void set_grips(SoftSolve& s) {
   const float slow = kStickSpeedShare * s.h * reference_gravity(s.w->settings);
   for (std::uint32_t& grips : s.scratch->grips) grips = 0;
   for (SoftRow& row : s.scratch->rows) {
-    if (row.is_contact && !row.is_face) {
+    if (row.is_contact && !row.is_face && row.grip != SoftGrip::emerges) {
       const float normal = dot(row.normal, row.impulse);
       const float across = length(row.impulse - normal * row.normal);
       const float sliding = row.dynamic_friction * normal;
@@ -202,7 +212,7 @@ void set_grips(SoftSolve& s) {
                                  : is_slow && (across <= kStickShare * sliding || is_static);
       row.grip = !(normal > 0.0f) ? SoftGrip::open : is_within ? SoftGrip::sticks : SoftGrip::slides;
     }
-    if (row.touched >= 0 && row.pushes && row.grip != SoftGrip::open) ++s.scratch->grips[row.touched];
+    if (row.touched >= 0 && row.pushes && holds(row)) ++s.scratch->grips[row.touched];
   }
 }
 
@@ -224,7 +234,8 @@ void sweep_contacts(SoftSolve& s) {
   for (SoftRow& row : s.scratch->rows) {
     if (!row.is_contact) continue;
     const Vec3 before = row.impulse + row.step;
-    const Vec3 change = next_impulse(row, before, row.error + tried_change(s, row)) - before;
+    const Vec3 change =
+        next_impulse(row, before, row.error + tried_change(s, row), most_impulse(s, row)) - before;
     if (change == Vec3{}) continue;
     row.step += change;
     add_own_change(s, row, change);

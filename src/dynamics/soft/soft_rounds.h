@@ -37,6 +37,8 @@ Vec3 velocity_of_body(const SoftSolve& s, const Row& row) {
          cross(pending.angular, row.arm);
 }
 
+inline bool holds(const SoftRow& row) { return row.grip == SoftGrip::slides || row.grip == SoftGrip::sticks; }
+
 // The impulse that a contact ends with: no pull, and friction within Coulomb's cone.
 Vec3 project(const SoftRow& row, Vec3 impulse);
 // Gives bodies the momentum that the parts carried by vertices have gained.

@@ -177,7 +177,7 @@ void add_rows(SoftSolve& s, std::uint32_t member) {
       p.fz[v] += rate * impulse.z;
     });
     row.carried = -1;
-    if (row.grip == SoftGrip::open || p.loose[row.particle] == 0.0f) continue;
+    if (!holds(row) || p.loose[row.particle] == 0.0f) continue;
     row.carried = std::int32_t(work.first_row + work.carried++);
     s.scratch->carried[row.carried] = {
         std::int32_t(row.particle), gripped_inertia(s, row, p.mass[row.particle]),
@@ -331,7 +331,7 @@ void make_soft_rows(SoftSolve& s) {
   }
   scratch.carried.resize(scratch.rows.size());
   for (const SoftRow& row : scratch.rows)
-    if (row.touched >= 0 && row.pushes && row.grip != SoftGrip::open) ++scratch.grips[row.touched];
+    if (row.touched >= 0 && row.pushes && holds(row)) ++scratch.grips[row.touched];
   begin_soft_surfaces(s);
 }
 
@@ -387,6 +387,13 @@ void step_members(SoftSolve& s, Step&& step) {
     if (has_shared_loops(s, m, vertices)) step(m, *s.tasks);
 }
 
+// True if contacts may act on a member within the step: with shapes, or of a solid with soft matter.
+bool touches(SoftSolve& s, std::uint32_t m) {
+  const SoftEntry& entry = entry_of(s, m);
+  return !entry.contacts.empty() || !entry.faces.empty() ||
+         (entry.kind == SoftKind::solid && s.scratch->surfaces.near[m] != 0);
+}
+
 void begin_member(SoftSolve& s, std::uint32_t m, TaskSystem& tasks) {
   SoftEntry& entry = entry_of(s, m);
   SoftWork& work = work_of(s, m);
@@ -402,7 +409,7 @@ void begin_member(SoftSolve& s, std::uint32_t m, TaskSystem& tasks) {
                                 {.step = s.h,
                                  .gravity = s.w->settings.gravity,
                                  .carried = carried_by(s, m),
-                                 .touches = !entry.contacts.empty() || !entry.faces.empty(),
+                                 .touches = touches(s, m),
                                  .asks_for_inverse_masses = work.first_row != work.last_row},
                                 *s.kernels, work.arena, tasks);
     find_carried_steps(s, m);

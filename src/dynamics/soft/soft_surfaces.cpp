@@ -1,5 +1,6 @@
 #include "dynamics/soft/soft_surfaces.h"
 
+#include "dynamics/soft/soft_groups.h"
 #include "dynamics/soft/soft_rounds.h"
 #include "dynamics/soft/soft_solve.h"
 #include "soft/contact/surface_crossings.h"
@@ -10,6 +11,10 @@
 namespace gyre {
 
 namespace {
+
+// A solid is stiff if the blocks of its vertices have more than so many times their mass: a vertex that the bounds stop gives the solid so many times the energy
+// that it had.
+constexpr double kStiffShare = 100.0;
 
 SoftWork& work_at(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
 SoftEntry& entry_at(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
@@ -27,7 +32,7 @@ SurfaceContactSettings settings_of(const SoftSolve& s) {
   return settings;
 }
 SurfaceVertices vertices_of(SoftSurfaces& all) {
-  return {all.positions, all.velocities, all.inverse_mass, all.blocks};
+  return {all.positions, all.velocities, all.inverse_mass, all.blocks, all.stiff};
 }
 
 void gather_velocities(SoftSolve& s) {
@@ -46,6 +51,30 @@ void add_carried_change(SoftSolve& s, std::uint32_t member) {
     if (row.carried >= 0)
       row.carried_step += -(s.scratch->carried[row.carried].inertia * work.change[row.particle]);
   }
+}
+
+// How vertices answer impulses, and the pieces that are stiff.
+void find_responses(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  std::uint32_t pieces = 0;
+  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+    const SoftEntry& entry = entry_at(s, member);
+    const SoftWork& work = work_at(s, member);
+    const Particles& p = entry.body.particles;
+    double bare = 0.0, own = 0.0;
+    for (std::uint32_t i = 0; i < std::uint32_t(p.count); ++i) {
+      const Sym3 block = inverse_mass(entry, work.step, i);
+      all.inverse_mass[first + i] = p.loose[i] == 0.0f ? 0.0f : 1.0f / p.mass[i];
+      all.blocks[first + i] = block;
+      bare += double(all.inverse_mass[first + i]);
+      own += (1.0 / 3.0) * double(block.xx + block.yy + block.zz);
+    }
+    const bool is_stiff = entry.kind == SoftKind::solid && entry.body.held.empty() &&
+                          work.step.method == SoftMethod::conjugate_gradients && bare > kStiffShare * own;
+    for (std::uint32_t i = 0; i < std::uint32_t(p.count); ++i)
+      all.stiff[first + i] = is_stiff ? pieces + std::uint32_t(entry.body.piece_of(int(i))) : kNoStiffPiece;
+    pieces += std::uint32_t(entry.body.pieces());
+  });
 }
 
 // Solves the contacts of surfaces and gives members what they get. `find_steps(member)` finds what the parts that their vertices carry gain by it.
@@ -90,7 +119,7 @@ void place_vertices(SoftSolve& s, std::uint32_t member, std::uint32_t first) {
     change.x[i] = change.y[i] = change.z[i] = none.x[i] = none.y[i] = none.z[i] = 0.0f;
   }
   bool any = false;
-  DVec3 moment;  // of the displacements, at the velocities of the vertices
+  ByPiece<DVec3> moments(body.pieces());  // of the displacements, at the velocities of the vertices
   for (int i = 0; i < p.count; ++i) {
     const std::uint32_t v = first + std::uint32_t(i);
     p.set_place(i, all.positions[v]);
@@ -98,13 +127,13 @@ void place_vertices(SoftSolve& s, std::uint32_t member, std::uint32_t first) {
     const DVec3 moved = all.positions[v] - all.targets[v], held_back = moved - DVec3(all.contacts.pushes[v]);
     if (moved == DVec3{}) continue;
     any = true;
-    moment += double(p.mass[i]) * cross(DVec3(p.velocity(i)), moved);
+    moments[body.piece_of(i)] += double(p.mass[i]) * cross(DVec3(p.velocity(i)), moved);
     change.x[i] = float(rate * held_back.x), change.y[i] = float(rate * held_back.y),
     change.z[i] = float(rate * held_back.z);
   }
   const SoftIntegrator scheme = entry_at(s, member).settings().integrator;
   if (!any || (scheme != SoftIntegrator::implicit && scheme != SoftIntegrator::sdirk2)) return;
-  if (body.held.empty()) keep_momentum(p, none, change, 0.0, moment);
+  if (body.held.empty()) keep_momentum(body, none, change, 0.0, moments);
   for (int i = 0; i < p.count; ++i) {
     if (p.loose[i] != 0.0f) p.set_velocity(i, p.velocity(i) + Vec3{change.x[i], change.y[i], change.z[i]});
   }
@@ -129,6 +158,23 @@ void find_crossings(SoftSolve& s) {
     for (const std::uint32_t v : one.vertex) moves = moves || all.inverse_mass[v] > 0.0f;
     if (!moves) continue;
     for (const std::uint32_t v : {one.vertex[0], one.vertex[2]}) crossings_of(tangle.surface[v]).moves = true;
+  }
+}
+
+// Finds the members whose surfaces may touch others in the step, or pieces of their own.
+void find_near(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  all.arena.reset();
+  const float seconds = s.h * float(s.w->settings.substeps);
+  const std::span<const std::uint32_t> group =
+      group_soft(*s.store, length(s.w->settings.gravity), seconds, all.arena);
+  const std::span<std::uint32_t> sizes = all.arena.make<std::uint32_t>(group.size());
+  for (std::uint32_t& size : sizes) size = 0;
+  for (const std::uint32_t one : group) ++sizes[one];
+  all.near.assign(s.members.size(), std::uint8_t(0));
+  for (std::size_t m = 0; m < s.members.size(); ++m) {
+    const bool is_broken = entry_at(s, std::uint32_t(m)).body.pieces() > 1;
+    all.near[m] = is_broken || sizes[group[s.members[m]]] > 1;
   }
 }
 
@@ -157,9 +203,11 @@ void begin_soft_surfaces(SoftSolve& s) {
     all.may_cross = true;
   }
   for (const std::uint32_t slot : s.members) s.store->entries[slot].crossings = {};
+  find_near(s);
   if (!all.active) return all.left.clear();
   all.positions.resize(vertices), all.targets.resize(vertices);
-  all.velocities.resize(vertices), all.inverse_mass.resize(vertices), all.blocks.resize(vertices);
+  all.velocities.resize(vertices), all.inverse_mass.resize(vertices), all.blocks.resize(vertices),
+      all.stiff.resize(vertices);
   all.contacts.clear(vertices);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     const Particles& p = entry_at(s, member).body.particles;
@@ -199,13 +247,7 @@ void solve_soft_surfaces(SoftSolve& s, int, int) {
   if (!all.active) return;
   all.arena.reset();
   gather_velocities(s);
-  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
-    const Particles& p = entry_at(s, member).body.particles;
-    for (std::uint32_t i = 0; i < std::uint32_t(p.count); ++i) {
-      all.inverse_mass[first + i] = p.loose[i] == 0.0f ? 0.0f : 1.0f / p.mass[i];
-      all.blocks[first + i] = inverse_mass(entry_at(s, member), work_at(s, member).step, i);
-    }
-  });
+  find_responses(s);
   const SurfaceVertices vertices = vertices_of(all);
   const SurfaceContactSettings settings = settings_of(s);
   find_crossings(s);

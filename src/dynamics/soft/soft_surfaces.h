@@ -25,11 +25,14 @@ struct SoftSurfaces {
   std::vector<std::shared_ptr<const SoftSurface>> surfaces;
   Array<std::uint32_t> member;    // of each placed surface: its index in SoftSolve::members
   Array<std::int32_t> placed_of;  // by member; -1: it has no surface
+  Array<std::uint8_t>
+      near;  // by member: 1 if its surface may touch another one in the step, or pieces of its own
   // By vertex; positions are those at the start of the sub-step.
   Array<DVec3> positions, targets;
   Array<Vec3> velocities;
   Array<float> inverse_mass;
-  Array<Sym3> blocks;  // 1/kg: how a vertex answers an impulse, its neighbours held still
+  Array<Sym3> blocks;          // 1/kg: how a vertex answers an impulse, its neighbours held still
+  Array<std::uint32_t> stiff;  // the stiff piece it is of, or kNoStiffPiece
   SurfaceContacts contacts;
   BoundReport report;
   // True if pairs close however often they are solved, as between vertices that are held: their impulses are not remembered, which would grow without bound.

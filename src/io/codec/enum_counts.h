@@ -52,7 +52,7 @@ inline constexpr int kEnumCount<SolidModel> = int(SolidModel::neo_hookean) + 1;
 template <>
 inline constexpr int kEnumCount<PressureLaw> = int(PressureLaw::constant) + 1;
 template <>
-inline constexpr int kEnumCount<SoftGrip> = int(SoftGrip::sticks) + 1;
+inline constexpr int kEnumCount<SoftGrip> = int(SoftGrip::emerges) + 1;
 template <>
 inline constexpr int kEnumCount<FluidBoundary> = int(FluidBoundary::no_slip) + 1;
 template <>

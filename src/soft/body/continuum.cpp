@@ -1,5 +1,6 @@
 #include "soft/body/continuum.h"
 
+#include "base/container/disjoint_sets.h"
 #include "math/dense.h"
 
 #include <utility>
@@ -126,6 +127,18 @@ Pattern make_pattern(std::span<const std::uint32_t> corners, std::size_t size, i
   return pattern;
 }
 
+void number_pieces(Continuum& continuum, std::span<const std::uint32_t> corners, int particles) {
+  Array<std::uint32_t> parents;
+  parents.resize(std::size_t(particles));
+  const DisjointSets sets{std::span<std::uint32_t>(parents.data(), parents.size())};
+  for (std::size_t k = 0; k < corners.size(); ++k) sets.unite(corners[k & ~std::size_t(3)], corners[k]);
+  sets.flatten();
+  continuum.pieces = 0;
+  for (std::uint32_t i = 0; i < std::uint32_t(particles); ++i)
+    parents[i] = parents[i] == i ? std::uint32_t(continuum.pieces++) : parents[parents[i]];
+  if (continuum.pieces > 1) continuum.piece = std::move(parents);
+}
+
 // Empty lanes, whose corners are the particle that the block's first lane names.
 template <class Block>
 void fill_up(Array<Block>& blocks, std::size_t elements, int edges) {
@@ -155,6 +168,7 @@ Continuum make_continuum(std::span<const std::uint32_t> corners, std::span<const
     set_shape(block, lane, corner, places);
   }
   fill_up(continuum.tetrahedra, count, continuum.edges);
+  number_pieces(continuum, corners, int(places.size()));
   continuum.tetrahedron_chunks = color_chunks(continuum.tetrahedra, int(places.size()));
   return continuum;
 }

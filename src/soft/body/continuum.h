@@ -48,6 +48,9 @@ struct Continuum {
   Array<TetBlock> tetrahedra;
   Array<TriangleBlock> triangles;
   ColoredChunks tetrahedron_chunks, triangle_chunks;
+  // By particle: the number of the piece that tetrahedra hold together, ascending by the lowest particle. None: all are one piece.
+  Array<std::uint32_t> piece;
+  int pieces = 1;
   SlicedRows rows;
   Array<std::int32_t>
       edge_of_place;  // 2 edge, + 1 where the row is the higher particle; -1 where there is no neighbour

@@ -97,6 +97,22 @@ struct EnclosedGas {
   bool is_constant = false;        // the pressure does not change with the volume
 };
 
+// A value for each piece of a body. That of a single piece needs no memory.
+template <class T>
+class ByPiece {
+ public:
+  explicit ByPiece(int pieces = 1) {
+    if (pieces > 1) many_.assign(std::size_t(pieces), T{});
+  }
+  T& operator[](std::size_t piece) { return many_.empty() ? one_ : many_[piece]; }
+  const T& operator[](std::size_t piece) const { return many_.empty() ? one_ : many_[piece]; }
+  std::size_t size() const { return many_.empty() ? 1 : many_.size(); }
+
+ private:
+  T one_{};
+  Array<T> many_;
+};
+
 struct SoftBody {
   Particles particles;
   SpringRows springs;
@@ -111,6 +127,11 @@ struct SoftBody {
   Array<HeldParticle> held;
   VisualLinks visual;    // of the visual scheme; derived
   float damping = 0.0f;  // s: stress grows by this times its rate of change
+
+  int pieces() const { return continuum.piece.empty() ? 1 : continuum.pieces; }
+  std::size_t piece_of(int particle) const {
+    return continuum.piece.empty() ? 0 : continuum.piece[std::size_t(particle)];
+  }
 };
 
 // A term 1/2 w |sum_a s_a x_a|^2 of a quadratic energy adds w s_a s_b to the matrix of its particles.

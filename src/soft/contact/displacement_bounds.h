@@ -33,6 +33,9 @@
 
 namespace gyre {
 
+// Of a vertex whose moves are cut for themselves.
+constexpr std::uint32_t kNoStiffPiece = 0xffffffffu;
+
 struct BoundSettings {
   double least_gap = 0.2;  // of the thickness of a pair: features come no nearer
   int passes = 2;  // in which moves are turned along the planes; what then is still too far is shortened
@@ -44,10 +47,12 @@ struct BoundReport {
   long crossed = 0;    // pairs that no plane separates: they cross or touch
 };
 
+// `bodies`: by vertex, the number of a body that moves as a whole, or kNoStiffPiece; none: all vertices move for themselves. The moves of a body are shortened by one share, which
+// stretches it no further than the moves would.
 // `limits`: by vertex, m: how far it may go; none: as far as the pairs allow. `held`: by vertex, 1 if it goes where it is told, whatever the bounds.
 BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
                         std::span<const float> limits, std::span<const std::uint8_t> held,
-                        const BoundSettings& settings, std::span<DVec3> moves, Arena& arena,
-                        TaskSystem& tasks);
+                        std::span<const std::uint32_t> bodies, const BoundSettings& settings,
+                        std::span<DVec3> moves, Arena& arena, TaskSystem& tasks);
 
 }  // namespace gyre

@@ -97,6 +97,17 @@ void keep_impulses(std::span<const SurfacePair> before, std::span<const SurfaceI
   }
 }
 
+// Takes out pairs within a stiff piece: planes between its features would stop it from turning.
+void leave_out_stiff(std::span<const std::uint32_t> stiff, Array<SurfacePair>& pairs) {
+  if (stiff.empty()) return;
+  std::size_t kept = 0;
+  for (const SurfacePair& pair : pairs) {
+    const std::uint32_t a = stiff[pair.vertex[0]], b = stiff[pair.vertex[pair.on_a]];
+    if (a != b || a == kNoStiffPiece) pairs[kept++] = pair;
+  }
+  pairs.resize(kept);
+}
+
 // Sums the impulses of all pairs by vertex; the change is owed.
 void sum_impulses(const SurfaceVertices& vertices, SurfaceContacts& contacts) {
   for (std::size_t v = 0; v < contacts.totals.size(); ++v) {
@@ -210,6 +221,7 @@ void find_surface_contacts(std::span<const PlacedSurface> surfaces, const Surfac
   find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
                      float(settings.bounds.least_gap), arena, tasks, contacts.search, contacts.pairs);
   leave_out(contacts.tangle, contacts.pairs);
+  leave_out_stiff(vertices.stiff, contacts.pairs);
   keep_impulses(before, impulses, contacts.pairs, contacts.impulses);
   sum_impulses(vertices, contacts);
 }
@@ -308,7 +320,7 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     for (std::size_t v = 0; v < count; ++v) moves[v] = asked[v];
     // The last round is for pairs that are found for any moves no longer than those that are asked for.
     report = bound_moves(pairs, vertices.positions, last ? contacts.limits.view() : std::span<const float>(),
-                         held, settings.bounds, moves, arena, tasks);
+                         held, vertices.stiff, settings.bounds, moves, arena, tasks);
     if (last || keeps_plan(surfaces, vertices.inverse_mass, moves, contacts, arena)) break;
     if (contacts.rounds == settings.most_rounds) {
       for (std::size_t v = 0; v < count; ++v) {
@@ -319,6 +331,7 @@ BoundReport move_surfaces(std::span<const PlacedSurface> surfaces, const Surface
     find_surface_pairs(surfaces, vertices.positions, contacts.plan, contacts.limits,
                        float(settings.bounds.least_gap), arena, tasks, contacts.search, found);
     leave_out(contacts.tangle, found);
+    leave_out_stiff(vertices.stiff, found);
     pairs = found;
   }
   contacts.search.candidates.advance();

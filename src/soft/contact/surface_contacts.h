@@ -35,6 +35,8 @@ struct SurfaceVertices {
   std::span<const Vec3> velocities;
   std::span<const float> inverse_mass;  // 1/kg, 0: held, it goes where it is told
   std::span<const Sym3> blocks{};       // 1/kg: how a vertex answers an impulse, its neighbours held still
+  // The piece of a solid that is rigid within a sub-step, or kNoStiffPiece; none: there are no such pieces. Its moves are cut as a whole, and it does not meet itself.
+  std::span<const std::uint32_t> stiff{};
 };
 
 struct SurfaceContactSettings {

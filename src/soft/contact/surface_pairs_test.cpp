@@ -325,7 +325,7 @@ TEST(DisplacementBounds, RandomMovesNeverCross) {
       Array<DVec3> there = all.positions;
       for (std::size_t v = 0; v < count; ++v) there[v] += moves[v];
       unbounded += count_crossings(all.placed, there, arena);
-      const BoundReport report = bound_moves(pairs, all.positions, limits, held, {}, moves, arena, tasks);
+      const BoundReport report = bound_moves(pairs, all.positions, limits, held, {}, {}, moves, arena, tasks);
       shortened += report.shortened;
       EXPECT_EQ(report.forced + report.crossed, 0);
       for (const double part : {0.31, 0.77, 1.0}) {
@@ -358,7 +358,7 @@ TEST(DisplacementBounds, LeaveMovesAloneThatDoNotApproach) {
   Array<DVec3> moves;
   moves.resize(all.positions.size());
   for (std::size_t v = 25; v < 50; ++v) moves[v] = {0.01, -0.1, 0.0};
-  bound_moves(pairs, all.positions, limits, held, {}, moves, arena, tasks);
+  bound_moves(pairs, all.positions, limits, held, {}, {}, moves, arena, tasks);
   for (std::size_t v = 0; v < 25; ++v) EXPECT_EQ(moves[v], DVec3{});
   for (std::size_t v = 25; v < 50; ++v) {
     EXPECT_NEAR(moves[v].x, 0.01, 1e-9);

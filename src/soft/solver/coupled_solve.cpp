@@ -41,6 +41,12 @@ struct RowState {
 
   // The push at a speed along the normal, before it is kept from pulling.
   float push_at(float speed) const { return last_normal + along * (target - speed); }
+  // K of a row that pushes.
+  Sym3 inertia() const {
+    const float c = sticks ? across : 0.0f, a = along - c;
+    return {c + a * normal.x * normal.x, c + a * normal.y * normal.y, c + a * normal.z * normal.z,
+            a * normal.x * normal.y,     a * normal.x * normal.z,     a * normal.y * normal.z};
+  }
 };
 
 // How the work of a row's impulse on a direction depends on the share that is gone along it.
@@ -98,13 +104,7 @@ class CoupledSolve {
         set(residual_, begin + i, vertices.impulses[v]);
       }
     }
-    corrections_ = arena.make<RigidCorrection>(bodies.size());
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      corrections_[b] = {};
-      const ImplicitStep* const step = bodies[b].step;
-      if (step != nullptr && bodies[b].body->held.empty() && step->carried.empty())
-        corrections_[b].begin(bodies[b].body->particles);
-    }
+    make_corrections(arena);
     read_rows(row_of, arena);
   }
 
@@ -158,7 +158,7 @@ class CoupledSolve {
       if (one.step != nullptr && one.body->held.empty()) {
         for (std::size_t i = 0; i < count; ++i) set(given, i, vertices_.impulses[one.first + i]);
         if (one.step->carried.empty())
-          keep_momentum(one.body->particles, given, passes_[b].change);
+          keep_momentum(*one.body, given, passes_[b].change);
         else
           keep_linear_momentum(one.body->particles, one.step->carried, given, passes_[b].change);
       }
@@ -263,10 +263,7 @@ class CoupledSolve {
     for (std::size_t t = 0; t < touched_.size(); ++t) with_rows_[t] = own_[t];
     for (const RowState& state : states_) {
       if (!(state.push > 0.0f)) continue;
-      const float c = state.sticks ? state.across : 0.0f, a = state.along - c;
-      const Vec3 n = state.normal;
-      const Sym3 block{c + a * n.x * n.x, c + a * n.y * n.y, c + a * n.z * n.z,
-                       a * n.x * n.y,     a * n.x * n.z,     a * n.y * n.z};
+      const Sym3 block = state.inertia();
       for (int k = 0; k < state.vertices; ++k) {
         Sym3& sum = with_rows_[state.at[k]];
         sum = sum + (state.weight[k] * state.weight[k]) * block;
@@ -276,28 +273,80 @@ class CoupledSolve {
     set_corrections();
   }
 
-  // The rigid corrections, with the rows that push now.
+  // A rigid correction for each piece of the bodies that nothing holds.
+  void make_corrections(Arena& arena) {
+    first_piece_ = arena.make<std::size_t>(bodies_.size());
+    std::size_t pieces = 0;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      first_piece_[b] = pieces;
+      pieces += std::size_t(bodies_[b].body->pieces());
+    }
+    corrections_ = arena.make<RigidCorrection>(pieces);
+    for (RigidCorrection& one : corrections_) one = {};
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const ImplicitStep* const step = bodies_[b].step;
+      if (step == nullptr || !bodies_[b].body->held.empty()) continue;
+      const Particles& p = bodies_[b].body->particles;
+      for (int i = 0; i < p.count; ++i) correction_of(b, i).add_mass(double(p.mass[i]), p.place(i));
+      for (int piece = 0; piece < bodies_[b].body->pieces(); ++piece)
+        corrections_[first_piece_[b] + std::size_t(piece)].set_center();
+      for (int i = 0; i < p.count; ++i) correction_of(b, i).add_inertia(double(p.mass[i]), p.place(i));
+      for (const CarriedInertia& one : step->carried)
+        correction_of(b, one.particle).add_carried(one.inertia, p.place(one.particle));
+    }
+  }
+  RigidCorrection& correction_of(std::size_t body, int particle) {
+    return corrections_[first_piece_[body] + bodies_[body].body->piece_of(particle)];
+  }
+  // With the rows that push now.
   void set_corrections() {
     for (RigidCorrection& one : corrections_) one.clear_rows();
     for (const RowState& state : states_) {
-      if (!(state.push > 0.0f)) continue;
-      for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        if (!corrections_[b].is_on()) continue;
-        double share = 0.0;
-        DVec3 arm{};
-        bool has = false;
-        for (int k = 0; k < state.vertices; ++k) {
-          const std::size_t i = touched_[state.at[k]] - begins_[b];
-          if (i >= std::size_t(bodies_[b].body->particles.count)) continue;
-          has = true;
-          share += double(state.weight[k]);
-          arm += double(state.weight[k]) * corrections_[b].arm_of(bodies_[b].body->particles, int(i));
-        }
-        if (has)
-          corrections_[b].add_row(state.normal, state.along, state.sticks ? state.across : 0.0f, share, arm);
-      }
+      if (state.push > 0.0f) add_to_corrections(state);
     }
     for (RigidCorrection& one : corrections_) one.factor();
+  }
+  void add_to_corrections(const RowState& state) {
+    RigidCorrection* of[5] = {};
+    DVec3 arm[5];
+    for (int k = 0; k < state.vertices; ++k) {
+      const std::size_t i = touched_[state.at[k]];
+      std::size_t b = 0;
+      while (b + 1 < bodies_.size() && begins_[b + 1] <= i) ++b;
+      const int particle = int(i - begins_[b]);
+      of[k] = &correction_of(b, particle);
+      arm[k] = of[k]->arm_of(bodies_[b].body->particles.place(particle));
+    }
+    for (int first = 0; first < state.vertices; ++first) {
+      bool is_first = of[first]->is_on();
+      for (int k = 0; k < first; ++k) is_first = is_first && of[k] != of[first];
+      if (!is_first) continue;
+      double share = 0.0;
+      DVec3 sum{};
+      for (int k = first; k < state.vertices; ++k) {
+        if (of[k] != of[first]) continue;
+        share += double(state.weight[k]);
+        sum += double(state.weight[k]) * arm[k];
+      }
+      of[first]->add_row(state.inertia(), share, sum);
+    }
+  }
+  // Adds the answers of rigid motions to the preconditioned residual; the residual times them.
+  double correct(std::size_t b) {
+    const Particles& p = bodies_[b].body->particles;
+    if (!correction_of(b, 0).is_on()) return 0.0;
+    const std::size_t begin = first_piece_[b], pieces = std::size_t(bodies_[b].body->pieces());
+    for (RigidCorrection& one : corrections_.subspan(begin, pieces)) one.clear_residual();
+    for (int i = 0; i < p.count; ++i)
+      correction_of(b, i).add_residual(DVec3(at(passes_[b].residual, std::size_t(i))), p.place(i));
+    double work = 0.0;
+    for (RigidCorrection& one : corrections_.subspan(begin, pieces)) work += one.solve();
+    const VectorRows& out = passes_[b].product;
+    for (int i = 0; i < p.count; ++i) {
+      const std::size_t k = std::size_t(i);
+      set(out, k, to_float(DVec3(at(out, k)) + correction_of(b, i).motion_at(p.place(i))));
+    }
+    return work;
   }
 
   // The preconditioned residual, in `product`; the residual times it.
@@ -307,8 +356,7 @@ class CoupledSolve {
       SoftPass pass = passes_[b];
       pass.direction = pass.product;
       error += BodySystem(pass, {}, kernels_, tasks_).sum(kernels_.precondition);
-      if (corrections_[b].is_on())
-        error += corrections_[b].add(bodies_[b].body->particles, pass.residual, pass.product);
+      error += correct(b);
     }
     return error;
   }
@@ -396,6 +444,7 @@ class CoupledSolve {
   const SoftKernels& kernels_;
   TaskSystem& tasks_;
   std::span<SoftPass> passes_;
+  std::span<std::size_t> first_piece_;  // by body, in the corrections
   std::span<RigidCorrection> corrections_;
   std::span<std::size_t> begins_;  // by body: its first row in the vectors below
   std::size_t count_ = 0;

@@ -153,7 +153,7 @@ void find_impulses(const Particles& particles, const ImplicitSettings& settings,
 
 void keep_momentum(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
                    const VectorRows& change, double ahead = 0.0) {
-  if (step.carried.empty()) return gyre::keep_momentum(body.particles, impulses, change, ahead);
+  if (step.carried.empty()) return gyre::keep_momentum(body, impulses, change, ahead);
   keep_linear_momentum(body.particles, step.carried, impulses, change);
 }
 
@@ -209,7 +209,16 @@ void find_response(const SoftBody& body, const ImplicitStep& step, const VectorR
   }
   BodySystem solver(pass, step.carried, kernels, tasks);
   double error = solver.sum(kernels.precondition);
-  iterate(solver, error, tolerance * error, tolerance > 0.0 ? 1 : iterations, iterations);
+  const double wanted = tolerance * error;
+  const bool is_free = body.held.empty() && step.carried.empty();
+  if (is_free && !body.continuum.tetrahedra.empty()) {
+    // A stiff solid answers as a whole, which iterations find last.
+    const VectorRows& whole = pass.direction;
+    for (std::size_t i = 0; i < rows; ++i) whole.x[i] = whole.y[i] = whole.z[i] = 0.0f;
+    keep_momentum(body, step, impulses, whole);
+    error = go_along_direction(solver, kernels, error);
+  }
+  iterate(solver, error, wanted, tolerance > 0.0 ? 1 : iterations, iterations);
   if (body.held.empty()) keep_momentum(body, step, impulses, change);
 }
 

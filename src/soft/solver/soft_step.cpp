@@ -1,6 +1,7 @@
 #include "soft/solver/soft_step.h"
 
 #include "soft/solver/explicit_step.h"
+#include "soft/solver/rigid_modes.h"
 #include "soft/solver/soft_pass.h"
 #include "soft/solver/visual_step.h"
 
@@ -109,6 +110,12 @@ void begin_two_stages(SoftEntry& entry, const SoftStepSettings& settings, SoftSt
   end_sdirk(entry.body, step.stages);
 }
 
+// True if the sub-step turns the body along arcs: a solid whose law knows rotations, of which nothing is held. Along tangents it would be stretched by its own turning.
+bool turns_along_arcs(const SoftEntry& entry, const SoftStep& step) {
+  return entry.kind == SoftKind::solid && entry.body.continuum.material.model != ElementModel::linear &&
+         entry.body.held.empty() && step.stages.empty();
+}
+
 }  // namespace
 
 SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, const SoftKernels& kernels,
@@ -130,7 +137,10 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
   // Impulses of contacts come as jumps, which the second stage would carry beyond where they lead.
   const bool has_stages = integrator == SoftIntegrator::sdirk2 && !settings.touches;
   if (has_stages) begin_two_stages(entry, settings, step, kernels, arena, tasks);
-  if (!has_stages) begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
+  if (!has_stages) {
+    if (turns_along_arcs(entry, step)) add_turning_forces(entry.body);
+    begin_implicit_step(entry, settings, false, step, kernels, arena, tasks);
+  }
   if (step.method == SoftMethod::rope && settings.asks_for_inverse_masses)
     find_rope_inverse_masses(step.rope, arena);
   return step;
@@ -190,7 +200,11 @@ void add_change(SoftEntry& entry, SoftStep& step, std::span<const Vec3> change, 
 void finish_soft_step(SoftEntry& entry, SoftStep& step, const SoftKernels& kernels, TaskSystem& tasks) {
   if (step.method == SoftMethod::rope) finish_rope(entry.body, step.rope);
   if (step.method == SoftMethod::conjugate_gradients) {
+    const bool turns = turns_along_arcs(entry, step);
+    ByPiece<RigidMotion> motions;
+    if (turns) motions = rigid_motions(entry.body, double(step.h));
     finish_implicit(entry.body, step.implicit, kernels, tasks);
+    if (turns) turn_along_arcs(entry.body, motions, double(step.h));
     if (!step.stages.empty()) move_by_impulses(entry.body, step.stages, double(step.h));
   }
 }

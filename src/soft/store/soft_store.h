@@ -44,8 +44,8 @@ struct SoftLimit {
   float backstop = 0.0f;   // m
 };
 
-// How a contact held its vertex in the last sub-step.
-enum class SoftGrip : std::uint8_t { open, slides, sticks };
+// How a contact held its vertex in the last sub-step. A vertex emerges that began inside the shape: it is pushed out.
+enum class SoftGrip : std::uint8_t { open, slides, sticks, emerges };
 
 // A vertex near a shape, found once a step. The shape's surface is a plane here, which moves with the body.
 struct SoftContact {
