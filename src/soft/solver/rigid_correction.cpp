@@ -5,7 +5,7 @@ namespace gyre {
 namespace {
 
 // A direction of rotation in which all mass lies on a line has no inertia; it is left out.
-constexpr double kLeastPivot = 1.0e-9;
+constexpr double kMinPivot = 1.0e-9;
 
 }  // namespace
 
@@ -63,7 +63,7 @@ void RigidCorrection::add_carried(const Sym3& inertia, DVec3 place) {
   add_at_point(inertia, 1.0, arm_of(place), own_);
 }
 
-void RigidCorrection::factor() { factors_ = factor_ldlt(sum_, kLeastPivot); }
+void RigidCorrection::factor() { factors_ = factor_ldlt(sum_, kMinPivot); }
 
 double RigidCorrection::solve() {
   double x[6] = {push_.x, push_.y, push_.z, moment_.x, moment_.y, moment_.z};
