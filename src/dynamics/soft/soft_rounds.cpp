@@ -17,7 +17,7 @@ constexpr float kAnyImpulse = 1.0e30f;  // N s
 // A contact that still closes faster than this share of what gravity gives in the sub-step is not met.
 constexpr float kUnmetShare = 1.0f;
 // A vertex that began inside a shape is pushed out by no more than so many times its weight. More would press a stiff solid out of shape where its vertices are nearest to different sides of the shape.
-constexpr float kEmergeWeights = 10.0f;
+constexpr float kEmergeWeights = 5.0f;
 // Friction below this share of what sliding gives sticks; so does more than the inverse, which only static friction gives.
 constexpr float kStickShare = 0.999f;
 // A contact that slides faster than this many times what gravity gives in the sub-step does not stick, however small its friction is: the load may just have

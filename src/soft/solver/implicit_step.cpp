@@ -209,16 +209,7 @@ void find_response(const SoftBody& body, const ImplicitStep& step, const VectorR
   }
   BodySystem solver(pass, step.carried, kernels, tasks);
   double error = solver.sum(kernels.precondition);
-  const double wanted = tolerance * error;
-  const bool is_free = body.held.empty() && step.carried.empty();
-  if (is_free && !body.continuum.tetrahedra.empty()) {
-    // A stiff solid answers as a whole, which iterations find last.
-    const VectorRows& whole = pass.direction;
-    for (std::size_t i = 0; i < rows; ++i) whole.x[i] = whole.y[i] = whole.z[i] = 0.0f;
-    keep_momentum(body, step, impulses, whole);
-    error = go_along_direction(solver, kernels, error);
-  }
-  iterate(solver, error, wanted, tolerance > 0.0 ? 1 : iterations, iterations);
+  iterate(solver, error, tolerance * error, tolerance > 0.0 ? 1 : iterations, iterations);
   if (body.held.empty()) keep_momentum(body, step, impulses, change);
 }
 
