@@ -200,7 +200,7 @@ Error rebuild_derived(RigidWorld& w);
 // 64-bit hash of all columns.
 std::uint64_t hash_state(const WorldState& state);
 
-// What a problem is about: a body, soft matter, or neither.
+// The subject of a problem: a body, soft matter, or neither.
 struct ProblemSubject {
   BodyId body{};
   SoftId soft{};

@@ -6,15 +6,15 @@
 // No call draws two of its arguments from the dice: compilers take arguments in any order.
 #pragma once
 
-#include "scenes.h"
+#include "random_choices.h"
 
 #include <array>
 
 namespace gyre::scenes {
 
-class RandomMatter {
+class RandomMatter : public RandomChoices {
  public:
-  explicit RandomMatter(std::uint32_t number) : number_(number) {
+  explicit RandomMatter(std::uint32_t number) : RandomChoices(number) {
     Random random = dice(0, 1);
     const double far[] = {0, 0, 640, 1.0e5};
     origin_ = {far[pick(random, 4)], 0, -far[pick(random, 4)]};
@@ -55,28 +55,12 @@ class RandomMatter {
     if (wild_ && pick(random, 24) == 0) wild_command(world, random);
   }
 
-  float seconds(int step) const {
-    if (!uneven_steps_) return kStepSeconds;
-    Random random = dice(step, 5);
-    const float lengths[] = {kStepSeconds, 2 * kStepSeconds, 0.5f * kStepSeconds, 0.25f * kStepSeconds};
-    return lengths[pick(random, 4)];
-  }
-
   void step(World& world, int step) const {
     drive(world, step);
     world.step(seconds(step));
   }
 
  private:
-  static std::uint32_t pick(Random& random, std::uint32_t count) {
-    return std::uint32_t(random.next(0, 65536)) % count;
-  }
-  static bool coin(Random& random) { return pick(random, 2) == 0; }
-  Random dice(int step, std::uint32_t purpose) const {
-    std::uint32_t seed = number_ * 0x9e3779b9u + std::uint32_t(step) * 0x85ebca6bu + purpose * 0xc2b2ae35u;
-    seed = (seed ^ seed >> 16) * 0x7feb352du;
-    return Random(seed ^ seed >> 15);
-  }
   DVec3 at(double x, double y, double z) const { return origin_ + DVec3{x, y, z}; }
 
   // A place above the ground, within a metre or so of the origin.
@@ -454,8 +438,7 @@ class RandomMatter {
     }
   }
 
-  std::uint32_t number_;
-  bool weightless_ = false, uneven_steps_ = false, wild_ = false;
+  bool weightless_ = false, wild_ = false;
   std::uint32_t busy_ = 0;  // 0: left alone, 3: commands in most steps
   DVec3 origin_;
 };

@@ -27,7 +27,7 @@ TEST_P(RandomMatterWorlds, AreTheSameInEveryWay) {
   expect_same_when_played(reference, {2, 16});
 }
 
-// Those that are quick. World 8 throws a cloth 1e24 m away, where candidates of folds may not be kept.
+// Quick worlds. World 8 throws a cloth 1e24 m away, where candidates of folds may not be kept.
 INSTANTIATE_TEST_SUITE_P(Numbers, RandomMatterWorlds, testing::Values(1, 4, 5, 7, 8, 9));
 
 class LongRandomMatterWorlds : public testing::TestWithParam<int> {};

@@ -7,13 +7,13 @@
 // No call draws two of its arguments from the dice: compilers take arguments in any order.
 #pragma once
 
-#include "scenes.h"
+#include "random_choices.h"
 
 namespace gyre::scenes {
 
-class RandomWorld {
+class RandomWorld : public RandomChoices {
  public:
-  explicit RandomWorld(std::uint32_t number) : number_(number) {
+  explicit RandomWorld(std::uint32_t number) : RandomChoices(number) {
     Random random = dice(0, 1);
     weightless_ = pick(random, 8) == 0;
     uneven_steps_ = pick(random, 3) == 0;
@@ -63,31 +63,12 @@ class RandomWorld {
     if (wild_ && pick(random, 64) == 0) wild_command(world, random);
   }
 
-  float seconds(int step) const {
-    if (!uneven_steps_) return kStepSeconds;
-    Random random = dice(step, 5);
-    const float lengths[] = {kStepSeconds, 2 * kStepSeconds, 0.5f * kStepSeconds, 0.25f * kStepSeconds};
-    return lengths[pick(random, 4)];
-  }
-
   void step(World& world, int step) {
     drive(world, step);
     world.step(seconds(step));
   }
 
  private:
-  static std::uint32_t pick(Random& random, std::uint32_t count) {
-    return std::uint32_t(random.next(0, 65536)) % count;
-  }
-  static bool coin(Random& random) { return pick(random, 2) == 0; }
-
-  // A stream of numbers of its own for every step and purpose.
-  Random dice(int step, std::uint32_t purpose) const {
-    std::uint32_t seed = number_ * 0x9e3779b9u + std::uint32_t(step) * 0x85ebca6bu + purpose * 0xc2b2ae35u;
-    seed = (seed ^ seed >> 16) * 0x7feb352du;
-    return Random(seed ^ seed >> 15);
-  }
-
   void add_ground(World& world, Random& random) {
     const std::uint32_t kind = pick(random, 5);
     if (weightless_) return;
@@ -364,8 +345,7 @@ class RandomWorld {
     return false;
   }
 
-  std::uint32_t number_;
-  bool weightless_ = false, uneven_steps_ = false, wild_ = false;
+  bool weightless_ = false, wild_ = false;
   std::uint32_t busy_ = 0;  // 0: left alone, 3: commands in most steps
   DVec3 origin_;
   std::vector<JointId> joints_;

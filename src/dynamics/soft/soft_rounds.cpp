@@ -13,9 +13,10 @@ constexpr double kContactTolerance = 1.0e-3;
 // Bodies press from opposite sides if the cosine between their normals is lower.
 constexpr float kOpposite = -0.5f;
 constexpr std::uint32_t kNotPressed = 0xffffffffu;
-constexpr float kAnyImpulse = 1.0e30f;  // N s
 // A contact that still closes faster than this share of what gravity gives in the sub-step is not met.
 constexpr float kUnmetShare = 1.0f;
+// The bound of an impulse that has none, N s.
+constexpr float kAnyImpulse = 1.0e30f;
 // A vertex that began inside a shape is pushed out by no more than so many times its weight. More would press a stiff solid out of shape where its vertices are nearest to different sides of the shape.
 constexpr float kEmergeWeights = 5.0f;
 // Friction below this share of what sliding gives sticks; so does more than the inverse, which only static friction gives.

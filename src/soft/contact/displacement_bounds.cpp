@@ -45,13 +45,13 @@ double approach_of(const SurfacePair& pair, int k, std::span<const DVec3> moves)
 class MoveBounds {
  public:
   MoveBounds(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
-             std::span<const std::uint8_t> held, std::span<const std::uint32_t> bodies, double least_gap,
+             std::span<const std::uint8_t> held, std::span<const std::uint32_t> stiff, double least_gap,
              Arena& arena, TaskSystem& tasks)
       : tasks_(tasks),
         pairs_(pairs),
         held_(held),
-        bodies_(bodies),
-        body_shares_(arena.make<double>(bodies.empty() ? 0 : positions.size())),
+        stiff_(stiff),
+        piece_shares_(arena.make<double>(stiff.empty() ? 0 : positions.size())),
         at_(arena.make<DVec3>(positions.size())),
         moves_(arena.make<DVec3>(positions.size())),
         shares_(arena.make<double>(positions.size())),
@@ -104,7 +104,7 @@ class MoveBounds {
   // Turns moves that go too far along the plane.
   void turn() {
     for_each_bound([&](std::uint32_t v, DVec3 toward, double approach, double room) {
-      if (!is_whole(v)) moves_[v] += -(approach - room) * toward;
+      if (!is_of_stiff_piece(v)) moves_[v] += -(approach - room) * toward;
     });
   }
 
@@ -114,16 +114,18 @@ class MoveBounds {
     for_each_bound([&](std::uint32_t v, DVec3, double approach, double room) {
       shares_[v] = min(shares_[v], kSafe * room / approach);
     });
-    for (double& share : body_shares_) share = 1.0;
+    for (double& share : piece_shares_) share = 1.0;
     for (std::size_t v = 0; v < shares_.size(); ++v)
-      if (is_whole(v)) body_shares_[bodies_[v]] = min(body_shares_[bodies_[v]], shares_[v]);
+      if (is_of_stiff_piece(v)) piece_shares_[stiff_[v]] = min(piece_shares_[stiff_[v]], shares_[v]);
     for (std::size_t v = 0; v < shares_.size(); ++v) {
-      if (is_whole(v)) shares_[v] = body_shares_[bodies_[v]];
+      if (is_of_stiff_piece(v)) shares_[v] = piece_shares_[stiff_[v]];
       if (shares_[v] < 1.0) moves_[v] = shares_[v] * moves_[v];
     }
   }
 
-  bool is_whole(std::size_t vertex) const { return !bodies_.empty() && bodies_[vertex] != kNoStiffPiece; }
+  bool is_of_stiff_piece(std::size_t vertex) const {
+    return !stiff_.empty() && stiff_[vertex] != kNoStiffPiece;
+  }
 
   // Sets the rooms of a pair. True if its held vertices take more than there is.
   bool give_room(std::size_t number) {
@@ -172,8 +174,8 @@ class MoveBounds {
   TaskSystem& tasks_;
   std::span<const SurfacePair> pairs_;
   std::span<const std::uint8_t> held_;
-  std::span<const std::uint32_t> bodies_;
-  std::span<double> body_shares_;
+  std::span<const std::uint32_t> stiff_;
+  std::span<double> piece_shares_;
   std::span<DVec3> at_, moves_;  // where vertices are, and how they would go on
   std::span<double> shares_;
   std::span<PairRoom> rooms_;
@@ -185,7 +187,7 @@ class MoveBounds {
 
 BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
                         std::span<const float> limits, std::span<const std::uint8_t> held,
-                        std::span<const std::uint32_t> bodies, const BoundSettings& settings,
+                        std::span<const std::uint32_t> stiff, const BoundSettings& settings,
                         std::span<DVec3> moves, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   BoundReport report;
@@ -201,7 +203,7 @@ BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec
     goals[v] = moves[v];
     moves[v] = {};
   }
-  MoveBounds bounds(pairs, positions, held, bodies, settings.least_gap, arena, tasks);
+  MoveBounds bounds(pairs, positions, held, stiff, settings.least_gap, arena, tasks);
   report.crossed = bounds.crossed();
   for (int n = 0; n < kAdvances; ++n) {
     if (!bounds.advance(goals, limits, settings.passes, moves, report)) break;

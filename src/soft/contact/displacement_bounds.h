@@ -47,12 +47,12 @@ struct BoundReport {
   long crossed = 0;    // pairs that no plane separates: they cross or touch
 };
 
-// `bodies`: by vertex, the number of a body that moves as a whole, or kNoStiffPiece; none: all vertices move for themselves. The moves of a body are shortened by one share, which
-// stretches it no further than the moves would.
+// `stiff`: by vertex, the number of its stiff piece, or kNoStiffPiece; none: there are no such pieces. The moves of a stiff piece are shortened by one share, so that
+// bounds do not stretch it.
 // `limits`: by vertex, m: how far it may go; none: as far as the pairs allow. `held`: by vertex, 1 if it goes where it is told, whatever the bounds.
 BoundReport bound_moves(std::span<const SurfacePair> pairs, std::span<const DVec3> positions,
                         std::span<const float> limits, std::span<const std::uint8_t> held,
-                        std::span<const std::uint32_t> bodies, const BoundSettings& settings,
+                        std::span<const std::uint32_t> stiff, const BoundSettings& settings,
                         std::span<DVec3> moves, Arena& arena, TaskSystem& tasks);
 
 }  // namespace gyre

@@ -99,7 +99,7 @@ TEST(CoupledSolve, RowsMeetTheConditionsOfContactAndFriction) {
         if (!(normal > 1.0e-4f)) continue;
         ++pushing;
         EXPECT_NEAR(missing, 0.0f, 1.0e-3f);
-        // What slides is held back with all of its friction, against its motion.
+        // A row that slides is held back with all of its friction, against its motion.
         if (!(length(slide) > 2.0e-2f)) continue;
         ++sliding;
         EXPECT_GE(length(friction), 0.399f * normal);

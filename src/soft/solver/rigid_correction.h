@@ -24,9 +24,9 @@ class RigidCorrection {
 
   // Only the piece's own mass and inertia from now on, then those of rows, then the factors.
   void clear_rows();
-  // What resists by `inertia`, kg, at a point that moves by `share` times the piece's translation and by its rotation times `arm`.
+  // A row resists by `inertia`, kg, at a point that moves by `share` times the piece's translation and by its rotation times `arm`.
   void add_row(const Sym3& inertia, double share, DVec3 arm);
-  // What a particle carries; it counts as the piece's own.
+  // The inertia that a particle carries counts as the piece's own.
   void add_carried(const Sym3& inertia, DVec3 place);
   void factor();
 
