@@ -1,4 +1,4 @@
-// Solids against closed forms: modes of a bar, a hanging bar, a patch of irregular tetrahedra, the neo-Hookean law in pressure and tension.
+// Solids follow closed forms: modes of a bar, a hanging bar, a patch of irregular tetrahedra, the neo-Hookean law in pressure and tension.
 // Sources: S. Timoshenko, "On the Correction for Shear of the Differential Equation for Transverse Vibrations of Prismatic Bars", 1921; B. Irons, 1966
 // (patch test).
 #include "laws/kit.h"
@@ -19,8 +19,8 @@ void add_brake(World& world, double rate) {
   world.add_field(brake);
 }
 
-// The angular frequency of a mode of a clamped beam of 1 m with shear and rotary inertia, near that of E. Bernoulli: the root of the
-// determinant of force and moment at the free end (S. Timoshenko, 1921). Unit density and area; `inertia` is I / A in m^2, `bending` EI / rho A, `shear` k G / rho.
+// Returns the angular frequency of a mode of a clamped beam of 1 m with shear and rotary inertia (S. Timoshenko, 1921). It is the root of the determinant of
+// force and moment at the free end, and lies below `near`, that of D. Bernoulli. `inertia` is I / A in m^2, `bending` EI / rho A, `shear` k G / rho.
 double timoshenko_frequency(double near, double inertia, double bending, double shear) {
   const auto determinant = [&](double w) {
     double end[2][2];  // force and moment at the free end for unit ones at the clamp
@@ -52,8 +52,8 @@ double timoshenko_frequency(double near, double inertia, double bending, double 
   return low;
 }
 
-// The frequency of a mode of the reference bar of 1 m that bends along a diagonal of its section, with this many cells through its depth of 10 cm. All
-// cells are cut along the same diagonals, so these are the main axes of the section.
+// Returns the frequency of a mode of the reference bar of 1 m, with this many cells through its depth of 10 cm. The bar bends along a diagonal of its
+// section: all cells are cut along the same diagonals, so these are the main axes.
 double bar_frequency(double beta, int across, double expected, DVec3 axis) {
   World world = make_world({.gravity = {}, .stepping = {.substeps = 2}, .sleeping = false});
   const int along = 10 * across, columns = along + 1;
@@ -83,7 +83,7 @@ double bar_frequency(double beta, int across, double expected, DVec3 axis) {
   }
   const SoftId bar = world.add_solid(def);
   for (int v = 0; v < world.soft_info(bar).vertices; v += columns) world.pin(bar, v);
-  // The share of the mode in the deflection of the middle line.
+  // Returns the share of the mode in the deflection of the middle line.
   const auto share = [&] {
     const SoftVertices v = world.vertices(bar);
     double sum = 0.0;
@@ -104,7 +104,7 @@ double bar_frequency(double beta, int across, double expected, DVec3 axis) {
 
 TEST(SolidMotion, ModesOfABar) {
   for (const double beta : {1.875104, 4.694091, 7.854757}) {
-    // The reference bar: 1 MPa, 1000 kg/m^3, Poisson's ratio 0.3, 10 cm square.
+    // The reference bar has 1 MPa, 1000 kg/m^3, Poisson's ratio 0.3 and a section of 10 cm x 10 cm.
     const double inertia = 0.01 / 12.0, bending = 1000.0 * inertia, shear = 5.0 / 6.0 * 1000.0 / 2.6;
     const double exact =
         timoshenko_frequency(beta * beta * std::sqrt(bending), inertia, bending, shear) / (2.0 * kPiDouble);
@@ -147,7 +147,7 @@ TEST(SolidRest, TheStretchOfAHangingBarIsAParabola) {
   }
 }
 
-// A cube of irregular tetrahedra, whose surface is held: its vertices and elements at rest.
+// A cube of irregular tetrahedra has its inner vertices scattered by a fourth of a cell at most.
 struct PatchCube {
   static constexpr int kCells = 4;
   std::vector<Vec3> vertices{};
@@ -156,7 +156,7 @@ struct PatchCube {
 
   PatchCube() {
     std::uint32_t state = 7;
-    const auto scatter = [&] {  // m; a fourth of a cell at most
+    const auto scatter = [&] {  // m
       state = state * 1664525u + 1013904223u;
       return 0.0625f * (float(state >> 8) / 8388608.0f - 1.0f);
     };
@@ -173,13 +173,13 @@ struct PatchCube {
   }
 };
 
-// Displacement gradients of an element that moved from `rest` to `now`.
+// Returns the displacement gradient of an element that moved from `rest` to `now`, column by column.
 std::array<DVec3, 3> gradient_of(const std::array<DVec3, 4>& rest, const std::array<DVec3, 4>& now) {
   const DVec3 a = rest[1] - rest[0], b = rest[2] - rest[0], c = rest[3] - rest[0];
   const double volume = dot(a, cross(b, c));
   const DVec3 along[3] = {(1.0 / volume) * cross(b, c), (1.0 / volume) * cross(c, a),
                           (1.0 / volume) * cross(a, b)};
-  std::array<DVec3, 3> columns{};  // of the displacement by x, y and z
+  std::array<DVec3, 3> columns{};
   for (int n = 0; n < 3; ++n) {
     const DVec3 moved = (now[std::size_t(n + 1)] - rest[std::size_t(n + 1)]) - (now[0] - rest[0]);
     columns[0] += along[n].x * moved, columns[1] += along[n].y * moved, columns[2] += along[n].z * moved;
@@ -247,7 +247,7 @@ TEST(SolidRest, ATurnGivesNoForce) {
   }
 }
 
-// The neo-Hookean law at a stretch: how far a bar of it contracts across, and its force over the area at rest. It solves
+// The neo-Hookean law tells at a stretch how far a bar contracts across, and its force over the area at rest. The side t across solves
 // mu t + stiff (stretch t^2 - a) stretch t = 0.
 struct Uniaxial {
   double stretch, young, ratio;
@@ -286,7 +286,7 @@ TEST(SolidRest, PressureFollowsTheLaw) {
     EXPECT_TRUE(relative_row("S-50 its width", width / 0.2, law.across, 1e-2, 1e-3)) << stretch;
   }
 }
-// The middle of a long bar whose one end is held, and whose other end a body pulls along.
+// A body pulls a long bar along, whose other end is held. The middle of the bar stretches by the law.
 TEST(SolidRest, TensionFollowsTheLaw) {
   for (const double stretch : {1.2, 2.0}) {
     const Uniaxial law{stretch, 1.0e5, 0.3};

@@ -1,4 +1,4 @@
-// Bodies with soft matter: forces that bodies at rest and impacts pass on, extreme ratios of masses, a bag, a pendulum, drag of sheets.
+// Bodies and soft matter pass on forces at rest and impulses, at extreme ratios of masses; a bag, a pendulum, drag of sheets.
 // Sources: G. Galilei, 1638, C. Huygens, 1673 (pendulum); J. d'Alembert, 1743 (moments of impulse); L. D. Landau, E. M. Lifshitz, "Fluid Mechanics" (drag).
 #include "laws/kit.h"
 
@@ -22,7 +22,7 @@ std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
   for (int i = 0; i <= segments; ++i) points.push_back(from + (double(i) / segments) * (to - from));
   return points;
 }
-// A body that a joint holds to the world: the joint tells the force that it bears.
+// A scale is a body that a joint holds to the world. The joint tells the force that it bears.
 struct Scale {
   BodyId body;
   JointId joint;
@@ -40,7 +40,7 @@ BodyId add_ball(World& world, DVec3 place, float radius, double mass) {
   def.mass = float(mass);
   return world.add_body(def, ShapeDef{.geometry = Sphere{radius}});
 }
-// A sheet of 1 m whose border a scale holds.
+// Returns a sheet of 1 m whose border a scale holds.
 SoftId add_trampoline(World& world, const Scale& scale, int cells, double density) {
   const SoftId sheet = world.add_cloth({.grid = ClothGrid{{1, 1}, {cells, cells}},
                                         .area_density = float(density),
@@ -52,7 +52,7 @@ SoftId add_trampoline(World& world, const Scale& scale, int cells, double densit
   return sheet;
 }
 
-// The mean load of a scale over a second.
+// Returns the mean load of a scale over a second.
 DVec3 mean_load(World& world, const Scale& scale) {
   DVec3 sum{};
   for (int i = 0; i < 60; ++i) {
@@ -62,7 +62,7 @@ DVec3 mean_load(World& world, const Scale& scale) {
   return sum;
 }
 
-// Balls of a thousandth to a thousand times the mass of the sheet.
+// Balls have a thousandth to a thousand times the mass of the sheet.
 TEST(SoftCoupling, ABallRestsOnASheetWithItsWeight) {
   struct Case {
     double ball, sheet;  // kg
@@ -142,8 +142,8 @@ TEST(SoftCoupling, APlateSinksByItsWeight) {
                            20.0 * kG * 0.4 / (1.0e5 * 0.16), 2e-2, 5e-3));
 }
 
-// A ball on a light rope of 1 m that holds it at its rim: the slower mode of rope and ball. With the angles t of the rope and p of the ball the kinetic energy is
-// m (L t' + a p')^2 / 2 + I p'^2 / 2, the potential energy m g (L t^2 + a p^2) / 2. The arc makes a period longer by 1 + t^2 / 16.
+// A light rope of 1 m holds a ball at its rim. Both swing in their slower mode. With the angles t of the rope and p of the ball the kinetic energy is
+// m (L t' + a p')^2 / 2 + I p'^2 / 2, the potential energy m g (L t^2 + a p^2) / 2. The arc makes the period longer by the factor 1 + t^2 / 16.
 TEST(SoftCoupling, ABodyOnARopeIsAPendulum) {
   for (const double radius : {0.05, 0.3}) {
     constexpr double kMass = 2.0, kLength = 1.0, kAngle = 0.1;
@@ -221,7 +221,7 @@ TEST(SoftCoupling, AFlagHangsInTheWindAtItsAngle) {
   }
 }
 
-// A bag of cloth, open above: a floor of kCells x kCells cells and as many rows around it.
+// A bag is a cloth that is open above. It has a floor of kCells x kCells cells, and kCells rows of cells around it.
 struct Bag {
   static constexpr int kCells = 6;
   static constexpr float kSize = 0.6f;  // m

@@ -1,4 +1,4 @@
-// Ropes and rods against closed forms: the elastica with all its angles, arcs, Euler's loads, modes, tensions and capstans.
+// Ropes and rods follow closed forms: the elastica with all its angles, arcs, Euler's loads, modes, tensions and capstans.
 // Sources: K. Mattiasson, "Numerical Results from Large Deflection Beam and Frame Problems Analysed by Means of Elliptic Integrals", 1981;
 // L. Euler, 1744 (buckling) and 1769 (capstan); D. Bernoulli, 1751 (modes of a bar).
 #include "laws/kit.h"
@@ -20,7 +20,7 @@ std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
   for (int i = 0; i <= segments; ++i) points.push_back(from + (double(i) / segments) * (to - from));
   return points;
 }
-// A rope from the origin to {1, 0, 0} whose segment before the origin is held: a rod of 1 m that is clamped.
+// Returns a rod of 1 m from the origin along x. The segment before the origin is to be held: it is the clamp.
 RopeDef clamped_rod(int segments, double density, double bending) {
   return {.points = line({-1.0 / segments, 0, 0}, {1, 0, 0}, segments + 1),
           .linear_density = float(density),
@@ -77,9 +77,9 @@ TEST(RopeBending, OwnWeightGivesTheShapesOfTheElastica) {
   }
 }
 
-// A body that cannot turn holds the last segment of a clamped rod, at an angle to the first, and moves freely: the rod bends to an arc, whose
-// moment the clamp bears. The rod starts bent unevenly. Bodies do not hold a segment as fixed points do, so the curvature at its end counts on half of it
-// too: the rod bends over half a segment more at both ends.
+// A body that cannot turn holds the last segment of a clamped rod at an angle to the first. The body moves freely, so the rod bends to an arc. The
+// clamp bears the moment of the arc. The rod starts bent unevenly. A segment that two points of a body hold bends over half of its length, unlike one of fixed
+// points: both ends add half a segment to the length.
 TEST(RopeBending, ATurnOfTheEndBendsItToAnArc) {
   constexpr int kSegments = 60;
   constexpr double kBentLength = 1.0 + 1.0 / kSegments;  // m
@@ -127,8 +127,8 @@ TEST(RopeBending, ATurnOfTheEndBendsItToAnArc) {
   }
 }
 
-// True if a rod of 1 m and EI = 1 N m^2 that stands with a load on its upper end, bent by a thousandth of its length, bends further. A clamped one is free above,
-// the other one has a hinge at both ends.
+// Returns true if a rod of 1 m and 1 N m^2 bends further under a load on its upper end. The rod starts bent by a thousandth of its length. A clamped
+// rod is free above, the other one has a hinge at both ends.
 bool buckles(bool is_clamped, double load) {
   constexpr int kSegments = 30;
   World world = make_world({.sleeping = false});
@@ -136,7 +136,7 @@ bool buckles(bool is_clamped, double load) {
   for (int i = is_clamped ? -1 : 0; i <= kSegments; ++i) {
     const double y = double(i) / kSegments;
     def.points.push_back({0, y, 0});
-    // The shape of the mode, which keeps the length to the first order.
+    // The shape of the mode keeps the length to the first order.
     const double off = is_clamped ? 1.0 - std::cos(0.5 * kPiDouble * y) : std::sin(kPiDouble * y);
     def.settings.positions.push_back({i < 0 ? 0.0 : 1.0e-3 * off, y, 0});
   }
@@ -169,7 +169,7 @@ TEST(RopeBending, ARodBucklesUnderEulersLoad) {
   }
 }
 
-// The first three modes of a clamped rod, without weight.
+// A clamped rod without weight swings in each of its first three modes.
 TEST(RopeMotion, ModesOfAClampedRod) {
   constexpr int kSegments = 60;
   for (const double beta : {1.875104, 4.694091, 7.854757}) {
@@ -229,7 +229,8 @@ TEST(RopeRest, CatenariesPullAtTheirEnds) {
   }
 }
 
-// True if a rope of 10 g/m around a fixed post slips: a weight of 1 kg hangs on one end, `ratio` kilograms hang or, after a whole turn, are lifted on the other.
+// Returns true if a rope of 10 g/m around a fixed post slips. A weight of 1 kg hangs on one end. The load of the other end has `ratio` kilograms; after
+// a whole turn it falls upwards.
 bool slips(double friction, int half_turns, double ratio) {
   World world = make_world({.sleeping = false});
   BodyDef post{.type = BodyType::fixed, .pose = {{}, {0.70710678f, 0, 0, 0.70710678f}}};

@@ -1,4 +1,4 @@
-// Soft matter of any stiffness, mass and size, from any shape, in long frames and after jumps.
+// Soft matter is stable at any stiffness, mass and size, from any shape, in long frames and after jumps.
 #include "laws/kit.h"
 
 #include <vector>
@@ -30,7 +30,7 @@ TEST(SoftRobustness, BlocksOfAnyStiffnessRest) {
   }
 }
 
-// The energy that a world gains within steps of `step` seconds, over that at the start, whose potential is that above the ground.
+// Returns the energy that a world gains from its lowest on, over that at the start. The potential is that above the ground.
 double gain_of(World& world, int steps, float step) {
   const auto energy = [&] {
     const Energy e = world.energy();
@@ -46,8 +46,8 @@ double gain_of(World& world, int steps, float step) {
   }
   return gain / start;
 }
-// A sheet that hangs from two corners, a rope that swings from one end, or a solid that falls on the ground, of vertices of a mass (kg). The speed of
-// waves in solids is 100 m/s.
+// A sheet hangs from two corners, a rope swings from one end, or a solid falls on the ground. Their vertices have a mass (kg). The speed of waves in solids
+// is 100 m/s.
 enum class Fall { sheet, rope, solid };
 constexpr Fall kFalls[] = {Fall::sheet, Fall::rope, Fall::solid};
 World falling(Fall fall, double mass) {
@@ -70,7 +70,7 @@ World falling(Fall fall, double mass) {
   return world;
 }
 
-// The farthest that a distance from vertex 0 is from that at rest.
+// Returns the largest change of a distance from vertex 0, m.
 double distortion(const World& world, SoftId solid, const std::vector<DVec3>& rest) {
   const SoftVertices v = world.vertices(solid);
   double worst = 0.0;
@@ -80,7 +80,7 @@ double distortion(const World& world, SoftId solid, const std::vector<DVec3>& re
   }
   return worst;
 }
-// Anywhere in their box, flat, or all but in a point: the vertices of a cube of 1 m come back. (A point is a minimum of the neo-Hookean energy.)
+// The vertices of a cube of 1 m come back from anywhere in their box, from a plane and, all but, from a point. A point is a minimum of the neo-Hookean energy, so that law is left out there.
 TEST(SoftRobustness, SolidsComeBackFromAnyShape) {
   enum class Start { scrambled, flat, point };
   for (const SolidModel model : {SolidModel::corotated, SolidModel::neo_hookean}) {
@@ -126,7 +126,7 @@ TEST(SoftRobustness, VerticesHaveAnyMass) {
   }
 }
 
-// A sheet falls over a ball, with lengths, times and moduli of the material in proportion. The place of its vertices over the size.
+// Returns the places of a sheet that falls over a ball, over the size of the scene. Times and moduli go with the size.
 std::vector<DVec3> draped(double scale) {
   World world = make_world({.sleeping = false});
   add_ground(world);
