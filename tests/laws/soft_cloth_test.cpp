@@ -210,8 +210,7 @@ TEST(ClothRest, StrainOfASheetByItsEdgeIsLinear) {
       worst = std::fmax(worst, std::fabs(strain / most - (1.0 - (j + 0.5) * cell)));
       mean += strain * cell;
     }
-    EXPECT_TRUE(
-        limit_row("S-72 sheet by its edge: strain beside a line, over the greatest", worst, 2e-2, 5e-3))
+    EXPECT_TRUE(limit_row("S-72 sheet by its edge: strain off a line, share", worst, 2e-2, 5e-3))
         << c.stiffness;
     EXPECT_TRUE(relative_row("S-72 its mean strain", mean, 0.5 * most, 2e-2, 5e-3)) << c.stiffness;
   }
@@ -361,9 +360,11 @@ TEST(ClothDrape, StifferClothCastsALargerShadow) {
   for (const double bending_length : {0.015, 0.02, 0.03, 0.045}) {
     const double stiffness = kWeight * std::pow(bending_length, 3);
     const Drape drawn = drape(stiffness, {});
-    EXPECT_TRUE(limit_row("S-74 drape: coefficient of what is limper, over this", before / drawn.coefficient,
-                          1.0, 0.95))
-        << bending_length;
+    if (before > 0.0) {
+      EXPECT_TRUE(limit_row("S-74 drape: coefficient of what is limper, over this",
+                            before / drawn.coefficient, 1.0, 0.95))
+          << bending_length;
+    }
     before = drawn.coefficient;
     if (bending_length != 0.02 && bending_length != 0.03) continue;
     EXPECT_TRUE(row("S-74 drape of cotton: folds", drawn.folds, 7.0, 2.0, 1.0)) << bending_length;
@@ -499,7 +500,7 @@ TEST(ClothMotion, FirstModesDieAsFastAsTheirDampingSays) {
             0.5 * w * w * double(damping) +
             (integrator == SoftIntegrator::implicit ? 0.5 * std::log1p(w * w * h * h) / h : 0.0);
         if (expected == 0.0) {
-          EXPECT_TRUE(limit_row("S-76 first mode with sdirk2, undamped: rate over backward Euler's",
+          EXPECT_TRUE(limit_row("S-76 first mode, sdirk2: rate over backward Euler's",
                                 std::fabs(found.rate) / (0.5 * w * w * h), 0.1, 0.01))
               << int(mode);
         } else {
@@ -542,20 +543,20 @@ double mean_stretch(int cells, int substeps, float stiffness = 1000.0f) {
 TEST(ClothRest, StretchDependsNeitherOnCellsNorOnSubsteps) {
   const double one = mean_stretch(24, 4);
   for (const int cells : {49, 99})
-    EXPECT_TRUE(relative_row("S-77 sheet of 50^2 and 100^2 vertices: mean stretch, that of 25^2",
+    EXPECT_TRUE(relative_row("S-77 stretch with 50^2 and 100^2 vertices, that with 25^2",
                              mean_stretch(cells, 4), one, 0.1, 0.03))
         << cells;
   for (const int substeps : {1, 16})
-    EXPECT_TRUE(relative_row("S-77 with 1 and 16 sub-steps: mean stretch, that with 4",
-                             mean_stretch(24, substeps), one, 0.1, 0.01))
+    EXPECT_TRUE(relative_row("S-77 stretch with 1 and 16 sub-steps, that with 4", mean_stretch(24, substeps),
+                             one, 0.1, 0.01))
         << substeps;
 }
 TEST(LongClothRest, StretchDependsNeitherOnCellsNorOnSubsteps) {
   const double one = mean_stretch(24, 4);
-  EXPECT_TRUE(relative_row("S-77 sheet of 200^2 vertices: mean stretch, that of 25^2", mean_stretch(199, 4),
-                           one, 0.1, 0.03));
+  EXPECT_TRUE(
+      relative_row("S-77 stretch with 200^2 vertices, that with 25^2", mean_stretch(199, 4), one, 0.1, 0.03));
   for (const int substeps : {1, 16})
-    EXPECT_TRUE(relative_row("S-77 of 100^2 with 1 and 16 sub-steps: mean stretch, that of 25^2",
+    EXPECT_TRUE(relative_row("S-77 of 100^2 with 1 and 16 sub-steps, that of 25^2",
                              mean_stretch(99, substeps), one, 0.1, 0.03))
         << substeps;
 }
