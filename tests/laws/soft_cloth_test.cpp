@@ -354,6 +354,12 @@ Drape drape(double stiffness, const Disc& disc) {
   return out;
 }
 
+void expect_alike(const Drape& drawn, double stiffness, const Disc& disc) {
+  EXPECT_TRUE(limit_row("S-74 drape of another mesh: coefficient differs by",
+                        std::fabs(drape(stiffness, disc).coefficient - drawn.coefficient), 0.05, 0.02))
+      << stiffness << ' ' << disc.sides << ' ' << disc.seed;
+}
+
 // Stiffness is given by the bending length (B / w)^(1/3): limp cloth has 1.5 cm, cotton 2 to 3 cm, canvas more.
 TEST(ClothDrape, StifferClothCastsALargerShadow) {
   double before = 0.0;
@@ -368,13 +374,17 @@ TEST(ClothDrape, StifferClothCastsALargerShadow) {
     before = drawn.coefficient;
     if (bending_length != 0.02 && bending_length != 0.03) continue;
     EXPECT_TRUE(row("S-74 drape of cotton: folds", drawn.folds, 7.0, 2.0, 1.0)) << bending_length;
-    for (const Disc& disc : {Disc{.mirrored = true, .seed = 2}, Disc{.rings = 5, .sides = 72},
-                             Disc{.rings = 10, .sides = 144}}) {
-      const Drape other = drape(stiffness, disc);
-      EXPECT_TRUE(limit_row("S-74 drape of another mesh: coefficient differs by",
-                            std::fabs(other.coefficient - drawn.coefficient), 0.05, 0.02))
-          << bending_length << ' ' << disc.sides;
-    }
+    expect_alike(drawn, stiffness, {.mirrored = true, .seed = 2});
+    expect_alike(drawn, stiffness, {.rings = 5, .sides = 72});
+  }
+}
+TEST(LongClothDrape, FinerMeshesCastTheSameShadow) {
+  for (const double bending_length : {0.02, 0.03}) {
+    const double stiffness = kWeight * std::pow(bending_length, 3);
+    const Drape drawn = drape(stiffness, {});
+    expect_alike(drawn, stiffness, {.seed = 3});
+    expect_alike(drawn, stiffness, {.rings = 10, .sides = 144});
+    expect_alike(drawn, stiffness, {.rings = 10, .sides = 144, .mirrored = true, .seed = 2});
   }
 }
 
@@ -422,16 +432,21 @@ double most_gain(Undriven kind, SoftIntegrator integrator, int cells, double sec
   return gain / (start - least);
 }
 
-TEST(ClothEnergy, NothingIsGainedInAMinute) {
+void expect_no_gain(int cells) {
   for (const SoftIntegrator integrator : {SoftIntegrator::implicit, SoftIntegrator::sdirk2}) {
     EXPECT_TRUE(limit_row("S-75 sheet by two corners, 60 s: gain of energy, share",
-                          most_gain(Undriven::hung, integrator, 10, 60.0), 1e-4, 1e-5));
+                          most_gain(Undriven::hung, integrator, cells, 60.0), 1e-4, 1e-5))
+        << cells;
     EXPECT_TRUE(limit_row("S-75 sheet that crumples and turns: gain, share",
-                          most_gain(Undriven::crumpled, integrator, 10, 60.0), 1e-4, 1e-5));
+                          most_gain(Undriven::crumpled, integrator, cells, 60.0), 1e-4, 1e-5))
+        << cells;
     EXPECT_TRUE(limit_row("S-75 sheet that slides off a smooth ball: gain, share",
-                          most_gain(Undriven::dropped, integrator, 10, 60.0), 1e-4, 1e-5));
+                          most_gain(Undriven::dropped, integrator, cells, 60.0), 1e-4, 1e-5))
+        << cells;
   }
 }
+TEST(ClothEnergy, NothingIsGainedInAMinute) { expect_no_gain(6); }
+TEST(LongClothEnergy, NothingIsGainedInAMinute) { expect_no_gain(12); }
 
 // ---------------------------------------------------------------------------------------------------------------- damping
 
