@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "bench/peers/soft/soft_scene.h"
+#include "bench/scenes/soft_judge.h"
 
 using namespace gyre;
 using namespace gyre::bench::soft;

@@ -4,7 +4,7 @@
 // the virtual calls around them: its layer of models wants two more libraries. STIFFNESS of the sheet that hangs, N/m: 1,000 if not given.
 // UNIT, in mm: 1000 if not given. Its elements drop corrections below 1e-6 in the units of its caller: in metres a beam of cells of 3 cm hardly
 // feels its own stress, in centimetres (10) it does. The core has no contacts.
-#include "bench/peers/soft/soft_scene.h"
+#include "bench/scenes/soft_judge.h"
 
 #include <cmath>
 

@@ -3,7 +3,7 @@
 // FREQUENCY is that of its solver, 1/s: 300 if not given, its default. `tethers`: those of its cooker, along edges. DISTANCE, mm: vertices keep
 // it from each other; without it the sheet does not touch itself. Constraints are those of its cooker for a mesh of quadrilaterals, all with
 // stiffness 1, as in its samples. It knows no stiffness in N/m: constraints are rigid, and give as far as they have not converged.
-#include "bench/peers/soft/soft_scene.h"
+#include "bench/scenes/soft_judge.h"
 
 #include <cstdio>
 #include <cstdlib>

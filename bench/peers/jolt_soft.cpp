@@ -5,7 +5,7 @@
 //
 // Jolt knows no Young's modulus. The beam has springs along the edges of its tetrahedra and a constraint on the volume of each; their
 // compliances are those of the material, see `make_beam_settings`. A sheet of Jolt does not touch itself.
-#include "bench/peers/soft/soft_scene.h"
+#include "bench/scenes/soft_judge.h"
 
 #include <algorithm>
 #include <cmath>

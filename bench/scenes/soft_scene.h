@@ -1,7 +1,5 @@
-// Scenes of soft matter that every engine gets alike, and the judge of their results.
+// Scenes of soft matter that every engine gets alike: hanging and folded (a sheet), beam, rope. bench/soft runs them.
 //
-// A driver builds one of the parts below in its engine and hands the judge two functions: one that steps, one that reads vertices. The judge
-// takes the processor time of each step and measures the vertices outside that time, so that time and error come from one run.
 // SI units; y is up; steps of 1/60 s; gravity of 9.81 m/s^2. What hangs starts at height 0: far from it, the floats of engines that move positions
 // in small sub-steps round gravity away (10 m high and 80 sub-steps a step, a rope never starts to fall).
 #pragma once
@@ -9,8 +7,8 @@
 #include <gyre/math.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -85,30 +83,5 @@ std::vector<std::array<std::uint32_t, N>> in_groups(const std::vector<std::array
   for (const auto& group : groups) ordered.insert(ordered.end(), group.begin(), group.end());
   return ordered;
 }
-
-struct Subject {
-  std::string engine, settings;
-  std::function<void()> step;                     // by kStep
-  std::function<void(std::vector<DVec3>&)> read;  // all vertices, in the order of the scene
-};
-
-// Runs 60 steps and then `frames` timed ones; prints a line of JSON. Returns what main returns.
-int judge(const std::string& scene, int frames, const Subject& subject);
-
-// The arguments of every driver: SCENE FRAMES, then its own words and numbers.
-struct Arguments {
-  std::string scene;
-  int frames = 0;
-  std::vector<std::string> rest;
-
-  int number(std::size_t i,
-             int otherwise) const;  // the number of this index; words between numbers do not count
-  bool has(const std::string& word) const;
-};
-Arguments read_arguments(int argc, char** argv);
-// "1 sub-step", "4 sub-steps".
-std::string count_of(int number, const std::string& thing);
-// For scenes that an engine does not have.
-int skip(const std::string& engine, const std::string& scene);
 
 }  // namespace gyre::bench::soft
