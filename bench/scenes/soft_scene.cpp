@@ -47,14 +47,14 @@ Beam make_beam() {
     }
   }
   // Six tetrahedra around the diagonal of each cell, one for each order of the axes.
-  constexpr int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+  constexpr std::size_t orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   for (std::uint32_t k = 0; k < cells[2]; ++k) {
     for (std::uint32_t j = 0; j < cells[1]; ++j) {
       for (std::uint32_t i = 0; i < cells[0]; ++i) {
         const std::uint32_t corner = i * stride[0] + j * stride[1] + k * stride[2];
         for (const auto& order : orders) {
           Tetrahedron t{corner};
-          for (int a = 0; a < 3; ++a) t[a + 1] = t[a] + stride[order[a]];
+          for (std::size_t a = 0; a < 3; ++a) t[a + 1] = t[a] + stride[order[a]];
           if (six_volumes(beam.vertices, t) < 0.0) std::swap(t[2], t[3]);
           beam.tetrahedra.push_back(t);
         }
