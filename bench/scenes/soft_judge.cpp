@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWarmUp = 60;      // steps: a second, in which sheets fall and beams reach their first extreme
 constexpr int kCountEvery = 20;  // steps between counts of crossings, which take longer than a step
-constexpr double kFar = 1.0e3;   // m: what is further away has exploded
+constexpr double kFar = 1.0e3;   // m: a vertex further away has exploded
 
 bool is_near(const std::vector<DVec3>& now) {
   return std::all_of(now.begin(), now.end(),

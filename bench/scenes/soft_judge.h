@@ -26,7 +26,7 @@ class SoftJudge {
   explicit SoftJudge(const std::string& scene);
   ~SoftJudge();
 
-  // The vertices after each step, from the first on.
+  // `now` holds the vertices after a step; every step is told, from the first on.
   void observe(const std::vector<DVec3>& now, bool timed);
   std::vector<SoftFigure> figures() const;
 
@@ -71,7 +71,7 @@ struct Arguments {
 Arguments read_arguments(int argc, char** argv);
 // "1 sub-step", "4 sub-steps".
 std::string count_of(int number, const std::string& thing);
-// For scenes that an engine does not have.
+// Says that the engine does not have the scene; returns what main returns.
 int skip(const std::string& engine, const std::string& scene);
 
 }  // namespace gyre::bench::soft

@@ -1,7 +1,7 @@
 // Scenes of soft matter that every engine gets alike: hanging and folded (a sheet), beam, rope. bench/soft runs them.
 //
-// SI units; y is up; steps of 1/60 s; gravity of 9.81 m/s^2. What hangs starts at height 0: far from it, the floats of engines that move positions
-// in small sub-steps round gravity away (10 m high and 80 sub-steps a step, a rope never starts to fall).
+// SI units; y is up; steps of 1/60 s; gravity of 9.81 m/s^2. Hanging things start at height 0.
+// Engines that move floats in small sub-steps lose gravity to rounding far from it: 10 m high and with 80 sub-steps a step, a rope never starts to fall.
 #pragma once
 
 #include <gyre/math.h>
