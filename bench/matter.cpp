@@ -1,9 +1,9 @@
 // Cloth, ropes, solids, smoke and water: time a step beside the error of the result, and the growth with size. One core unless --threads.
 //
-//   matter [--threads N] [--frames N] [NAME ...]      NAME: cloth, folded, beam, beam4, smoke, smoke128, water, rope; all if none is given
+//   matter [--threads N] [--frames N] [NAME ...]      NAME: cloth, visual, folded, beam, beam4, smoke, smoke128, water, rope; all if none is given
 //
 // Every scene steps by 1/60 s with the defaults that its users get; `growth` is the exponent of time over elements between half the size and
-// the whole. The cloth is the one that bench/peers/jolt_cloth.cpp hangs in Jolt.
+// the whole. bench/soft has scenes like these beside other engines.
 #include <gyre/gyre.h>
 
 #include <algorithm>
@@ -63,13 +63,14 @@ World make_world(const Options& options, int substeps = 4, Vec3 gravity = {0, -9
 
 // A square of 2 m and 0.8 kg, of springs, held at two corners. The error is the mean strain of its structural springs: of what is stiff
 // hardly any is right.
-SoftId hang_cloth(World& world, int side, float stiffness, bool self_collision) {
+SoftId hang_cloth(World& world, int side, float stiffness, SoftIntegrator integrator) {
   const SoftId cloth = world.add_cloth({.grid = ClothGrid{{2, 2}, {side - 1, side - 1}},
                                         .pose = {{0, 3, 0}, {}},
                                         .area_density = 0.2f,
                                         .stretch_stiffness = stiffness,
                                         .shear_stiffness = stiffness,
-                                        .self_collision = self_collision});
+                                        .self_collision = false,
+                                        .settings = {.integrator = integrator}});
   world.pin(cloth, 0);
   world.pin(cloth, std::uint32_t(side - 1));
   return cloth;
@@ -89,9 +90,9 @@ double mean_strain(World& world, SoftId cloth, int side) {
   }
   return 100.0 * sum / count;
 }
-Run cloth(const Options& options, int side) {
+Run cloth(const Options& options, int side, SoftIntegrator integrator) {
   World world = make_world(options);
-  const SoftId sheet = hang_cloth(world, side, 1000.0f, false);
+  const SoftId sheet = hang_cloth(world, side, 1000.0f, integrator);
   Run run;
   time_steps(world, options.frames, run);
   run.elements = std::size_t(side) * std::size_t(side);
@@ -208,7 +209,13 @@ struct Scene {
 
 const std::vector<Scene> kScenes = {
     {"cloth",
-     [](const Options& o, double share) { return cloth(o, int(std::lround(100.0 * std::sqrt(share)))); }},
+     [](const Options& o, double share) {
+       return cloth(o, int(std::lround(100.0 * std::sqrt(share))), SoftIntegrator::implicit);
+     }},
+    {"visual",
+     [](const Options& o, double share) {
+       return cloth(o, int(std::lround(100.0 * std::sqrt(share))), SoftIntegrator::visual);
+     }},
     {"folded",
      [](const Options& o, double share) { return folded(o, int(std::lround(100.0 * std::sqrt(share)))); }},
     {"beam",
