@@ -1,7 +1,7 @@
 // Solids follow closed forms: modes of a bar, a hanging bar, a patch of irregular tetrahedra, the neo-Hookean law in pressure and tension.
 // Sources: S. Timoshenko, "On the Correction for Shear of the Differential Equation for Transverse Vibrations of Prismatic Bars", 1921; B. Irons, 1966
 // (patch test).
-#include "laws/kit.h"
+#include "laws/soft_kit.h"
 
 #include <array>
 #include <vector>
@@ -10,14 +10,6 @@ namespace gyre::laws::soft_bars_test {
 namespace {
 
 constexpr double kG = kGravity;
-
-void add_brake(World& world, double rate) {
-  FieldDef brake;
-  brake.kind = FieldKind::drag;
-  brake.drag_coefficient = 0.0f;
-  brake.linear_drag = float(rate);
-  world.add_field(brake);
-}
 
 // Returns the angular frequency of a mode of a clamped beam of 1 m with shear and rotary inertia (S. Timoshenko, 1921). It is the root of the determinant of
 // force and moment at the free end, and lies below `near`, that of D. Bernoulli. `inertia` is I / A in m^2, `bending` EI / rho A, `shear` k G / rho.

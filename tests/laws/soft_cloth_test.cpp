@@ -2,7 +2,7 @@
 // modes, and stretch that does not depend on cells or sub-steps.
 // Sources: F. T. Peirce, "The Handle of Cloth as a Measurable Quantity", 1930; the elastica's own differential equation, by shooting; G. E. Cusick, "The Measurement of
 // Fabric Drape", 1968; L. Meirovitch, "Elements of Vibration Analysis", 1975 (modes of bars).
-#include "laws/kit.h"
+#include "laws/soft_kit.h"
 
 #include <array>
 
@@ -12,15 +12,6 @@ namespace {
 constexpr double kG = kGravity;
 constexpr float kHalfRoot = 0.70710678f;
 constexpr Quat kUpright{kHalfRoot, 0, 0, kHalfRoot};  // z of a grid points down
-
-// A medium at rest, in which motion dies away.
-void add_brake(World& world, double rate) {
-  FieldDef brake;
-  brake.kind = FieldKind::drag;
-  brake.drag_coefficient = 0.0f;
-  brake.linear_drag = float(rate);
-  world.add_field(brake);
-}
 
 // The end of a clamped elastica under its own weight, load = w L^3 / B, over L: along and down. The angle obeys a'' = -load (1 - s) cos a, a(0) = 0, a'(1) = 0.
 DVec3 elastica_end(double load) {
@@ -206,7 +197,7 @@ TEST(ClothRest, StrainOfASheetByItsEdgeIsLinear) {
     for (int j = 0; j < c.cells; ++j) {
       const std::size_t at = std::size_t(j * (columns + 1) + columns / 2);
       const double strain = (v.y[at] - v.y[at + std::size_t(columns) + 1]) / cell - 1.0;
-      // What hangs below the middle of these cells, with half of the mass of the lowest row in its vertices.
+      // The mass below the middle of these cells hangs on them, with half of the mass of the lowest row in its vertices.
       worst = std::fmax(worst, std::fabs(strain / most - (1.0 - (j + 0.5) * cell)));
       mean += strain * cell;
     }

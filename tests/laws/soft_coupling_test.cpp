@@ -1,6 +1,6 @@
 // Bodies and soft matter pass on forces at rest and impulses, at extreme ratios of masses; a bag, a pendulum, drag of sheets.
 // Sources: G. Galilei, 1638, C. Huygens, 1673 (pendulum); J. d'Alembert, 1743 (moments of impulse); L. D. Landau, E. M. Lifshitz, "Fluid Mechanics" (drag).
-#include "laws/kit.h"
+#include "laws/soft_kit.h"
 
 #include <array>
 #include <vector>
@@ -10,18 +10,6 @@ namespace {
 
 constexpr double kG = kGravity;
 
-void add_brake(World& world, double rate) {
-  FieldDef brake;
-  brake.kind = FieldKind::drag;
-  brake.drag_coefficient = 0.0f;
-  brake.linear_drag = float(rate);
-  world.add_field(brake);
-}
-std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
-  std::vector<DVec3> points;
-  for (int i = 0; i <= segments; ++i) points.push_back(from + (double(i) / segments) * (to - from));
-  return points;
-}
 // A scale is a body that a joint holds to the world. The joint tells the force that it bears.
 struct Scale {
   BodyId body;

@@ -441,7 +441,7 @@ TEST(ClothCrossings, WhatBeginsTangledPartsWithinASecond) {
   }
 }
 
-// What the slow ones vary.
+// The trials of the slow ones.
 std::vector<Trial> trials() {
   return {{.seed = 2},
           {.seed = 3},

@@ -1,25 +1,13 @@
 // Ropes and rods follow closed forms: the elastica with all its angles, arcs, Euler's loads, modes, tensions and capstans.
 // Sources: K. Mattiasson, "Numerical Results from Large Deflection Beam and Frame Problems Analysed by Means of Elliptic Integrals", 1981;
 // L. Euler, 1744 (buckling) and 1769 (capstan); D. Bernoulli, 1751 (modes of a bar).
-#include "laws/kit.h"
+#include "laws/soft_kit.h"
 
 namespace gyre::laws::soft_modes_test {
 namespace {
 
 constexpr double kG = kGravity;
 
-void add_brake(World& world, double rate) {
-  FieldDef brake;
-  brake.kind = FieldKind::drag;
-  brake.drag_coefficient = 0.0f;
-  brake.linear_drag = float(rate);
-  world.add_field(brake);
-}
-std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
-  std::vector<DVec3> points;
-  for (int i = 0; i <= segments; ++i) points.push_back(from + (double(i) / segments) * (to - from));
-  return points;
-}
 // Returns a rod of 1 m from the origin along x. The segment before the origin is to be held: it is the clamp.
 RopeDef clamped_rod(int segments, double density, double bending) {
   return {.points = line({-1.0 / segments, 0, 0}, {1, 0, 0}, segments + 1),

@@ -2,7 +2,7 @@
 // weight in cells of any shape, uniaxial tension, momentum, attachments, explicit schemes.
 // Sources: K. Mattiasson, "Numerical Results from Large Deflection Beam and Frame Problems Analysed by Means of Elliptic Integrals", 1981;
 // F. T. Peirce, "The Handle of Cloth as a Measurable Quantity", 1930; D. Bernoulli, 1733 (hanging chain); L. Euler, 1769 (capstan).
-#include "laws/kit.h"
+#include "laws/soft_kit.h"
 
 #include <array>
 
@@ -10,19 +10,6 @@ namespace gyre::laws::soft_statics_test {
 namespace {
 
 constexpr double kG = kGravity;
-
-void add_brake(World& world, double rate) {
-  FieldDef brake;
-  brake.kind = FieldKind::drag;
-  brake.drag_coefficient = 0.0f;
-  brake.linear_drag = float(rate);
-  world.add_field(brake);
-}
-std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
-  std::vector<DVec3> points;
-  for (int i = 0; i <= segments; ++i) points.push_back(from + (double(i) / segments) * (to - from));
-  return points;
-}
 
 TEST(RopeRest, TipLoadsBendItToTheElastica) {
   struct Case {

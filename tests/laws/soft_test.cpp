@@ -1,27 +1,12 @@
 // Ropes, cloth and solids against closed forms: catenary, hanging chain, capstan, elastica, bars and strips under their own weight.
 // Sources: J. P. Den Hartog, "Mechanics" (catenary, capstan); D. Bernoulli, 1733 (chain); the elastica's own differential equation,
 // solved by shooting, for a cantilever under its own weight; S. Timoshenko, J. Goodier, "Theory of Elasticity" (bars).
-#include "laws/kit.h"
+#include "laws/soft_kit.h"
 
 namespace gyre::laws::soft_test {
 namespace {
 
 constexpr double kG = kGravity;
-
-// A medium at rest, in which motion dies away, so that what hangs comes to rest.
-void add_brake(World& world, float rate) {
-  FieldDef brake;
-  brake.kind = FieldKind::drag;
-  brake.drag_coefficient = 0.0f;
-  brake.linear_drag = rate;
-  world.add_field(brake);
-}
-
-std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
-  std::vector<DVec3> points;
-  for (int i = 0; i <= segments; ++i) points.push_back(from + (double(i) / segments) * (to - from));
-  return points;
-}
 
 TEST(Rope, HangsAsACatenary) {
   struct Case {
@@ -91,9 +76,11 @@ double share_after_ten_periods(SoftIntegrator integrator) {
 }
 TEST(Rope, SwingsOnWithTheSchemeOfTwoStages) {
   const double wh = 1.20241 * std::sqrt(kG) / 240.0, steps = 9.0 * 2.0 * kPiDouble / wh;
-  EXPECT_TRUE(relative_row("S-9 backward Euler, amplitude after 9 periods", share_after_ten_periods(SoftIntegrator::implicit),
+  EXPECT_TRUE(relative_row("S-9 backward Euler, amplitude after 9 periods",
+                           share_after_ten_periods(SoftIntegrator::implicit),
                            std::pow(1.0 + wh * wh, -0.5 * steps), 5e-2, 1e-2));
-  EXPECT_TRUE(relative_row("S-10 sdirk2, amplitude after 9 periods", share_after_ten_periods(SoftIntegrator::sdirk2), 1.0, 2e-2, 5e-3));
+  EXPECT_TRUE(relative_row("S-10 sdirk2, amplitude after 9 periods",
+                           share_after_ten_periods(SoftIntegrator::sdirk2), 1.0, 2e-2, 5e-3));
 }
 
 // Where the corner of a swinging sheet, or the end of a rope of springs, is after 0.4 s, with this many sub-steps.
@@ -103,12 +90,14 @@ DVec3 swung(SoftIntegrator integrator, bool is_cloth, int substeps) {
   if (is_cloth) {
     ClothDef def;
     def.grid = ClothGrid{{0.5f, 1.0f}, {3, 6}};
-    def.stretch_stiffness = 15.0f, def.shear_stiffness = 5.0f, def.bend_stiffness = 0.0f, def.self_collision = false;
+    def.stretch_stiffness = 15.0f, def.shear_stiffness = 5.0f, def.bend_stiffness = 0.0f,
+    def.self_collision = false;
     def.settings.integrator = integrator;
     soft = world.add_cloth(def);
     for (int i = 0; i <= 3; ++i) world.pin(soft, i);
   } else {
-    RopeDef def{.points = line({0, 0, 0}, {1, 0, 0}, 6), .links = RopeLinks::springs, .stretch_stiffness = 10.0f};
+    RopeDef def{
+        .points = line({0, 0, 0}, {1, 0, 0}, 6), .links = RopeLinks::springs, .stretch_stiffness = 10.0f};
     def.settings.integrator = integrator;
     soft = world.add_rope(def);
     world.pin(soft, 0);
@@ -122,12 +111,14 @@ TEST(Soft, TheSchemeOfTwoStagesIsOfSecondOrder) {
   for (const bool is_cloth : {false, true}) {
     const DVec3 exact = swung(SoftIntegrator::sdirk2, is_cloth, 64);
     const auto order = [&](SoftIntegrator integrator) {
-      const double coarse = length(swung(integrator, is_cloth, 1) - exact), fine = length(swung(integrator, is_cloth, 2) - exact);
+      const double coarse = length(swung(integrator, is_cloth, 1) - exact),
+                   fine = length(swung(integrator, is_cloth, 2) - exact);
       return std::log2(coarse / fine);
     };
     EXPECT_NEAR(order(SoftIntegrator::sdirk2), 2.0, 0.3) << is_cloth;
     EXPECT_NEAR(order(SoftIntegrator::implicit), 1.0, 0.2) << is_cloth;
-    EXPECT_LT(length(swung(SoftIntegrator::sdirk2, is_cloth, 2) - exact), 0.1 * length(swung(SoftIntegrator::implicit, is_cloth, 2) - exact));
+    EXPECT_LT(length(swung(SoftIntegrator::sdirk2, is_cloth, 2) - exact),
+              0.1 * length(swung(SoftIntegrator::implicit, is_cloth, 2) - exact));
   }
 }
 
