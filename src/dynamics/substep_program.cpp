@@ -108,7 +108,7 @@ void add_half_step(ProgramBuilder& p, int half_step, int count) {
   // Soft matter, with bodies as joints and contacts leave them.
   if (p.begins_soft(half_step)) p.soft<turn_soft_rows>();
   if (p.begins_soft(half_step)) p.soft<begin_soft_members>();
-  if (p.begins_soft(half_step)) p.soft<solve_soft_surfaces>();
+  if (p.begins_soft(half_step)) p.soft<solve_soft_contacts>();
   if (p.begins_soft(half_step)) p.soft<solve_soft_rows>();
   if (first || last) p.resting_trees<solve_resting_trees>();
   if (first) p.resting_structures<solve_resting_structures_first>();

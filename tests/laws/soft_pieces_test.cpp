@@ -53,14 +53,38 @@ TEST(SoftPieces, APlateThatBreaksOverARodLiesInAHeap) {
     gained += std::max(0.0, now - before);
     before = now;
   }
-  EXPECT_GT(world.vertices(plate).size(), whole + 50);
+  EXPECT_GT(world.vertices(plate).size(), whole + 30);
   // Contacts give back nothing, but parts that are moved apart stretch what is around them.
-  EXPECT_LT(gained, 5.0e-3 * start);
+  EXPECT_LT(gained, 5.0e-4 * start);
   EXPECT_EQ(world.soft_info(plate).mass, mass);
   // The heap rests: less than 0.01 J of 750 J are left in motion, and nothing is in the ground.
   EXPECT_LT(world.energy().kinetic, 0.01);
   const SoftVertices v = world.vertices(plate);
   for (std::size_t i = 0; i < v.size(); ++i) EXPECT_GT(v.y[i], -1.0e-3);
+}
+
+// Bars that are held at an end break under their weight, and their pieces fall. What is still in a crack lies in each other, and flies on as it is.
+TEST(SoftPieces, PiecesThatFallGainNoEnergy) {
+  for (int k = 0; k < 12; ++k) {
+    WorldDef def;
+    def.gravity = {0, -30, 0};
+    World world = std::move(*World::create(def));
+    SolidDef bar;
+    bar.box = SolidBox{{0.5f, 0.1f, 0.1f}, {8, 2, 2}};
+    bar.pose = {{0, 5, 0}, {}};
+    bar.young_modulus = 2.0e4f * (1.0f + 0.05f * float(k));
+    bar.fracture_stress = 1000.0f - 20.0f * float(k);
+    const SoftId id = world.add_solid(bar);
+    const std::size_t whole = world.vertices(id).size();
+    for (int v = 0; v < int(whole); ++v)
+      if (world.vertices(id).x[v] < -0.3) world.pin(id, v);
+    const double start = energy_of(world);
+    for (int n = 0; n < 60; ++n) {
+      world.step(kStep);
+      ASSERT_LT(energy_of(world), 1.0001 * start) << k << " " << n;
+    }
+    EXPECT_GT(world.vertices(id).size(), whole + 30);
+  }
 }
 
 TEST(SoftPieces, SnapshotsThreadsAndWidthsDoNotChangeABit) {

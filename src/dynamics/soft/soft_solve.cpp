@@ -14,8 +14,6 @@ namespace gyre {
 
 namespace {
 
-// In which contacts of surfaces and those with shapes are solved again: what a shape stops, the layer above it runs into.
-constexpr int kTurns = 2;
 // The inertia of a fixed body that a vertex carries, in its own masses: beyond what hangs on it, below what rounding would show.
 constexpr float kGripShare = 1.0e3f;
 // How often a sub-step is solved because contacts open or begin to slide.
@@ -25,7 +23,7 @@ constexpr int kGripPasses = 3;
 constexpr float kErrorRate = 48.0f, kErrorShare = 0.2f;
 // Faces come out of shapes at this share of the rate: a sheet of coarse cells that falls on a ball is deep in it between its vertices, and must not be thrown
 // back.
-constexpr float kFaceRate = 0.125f;
+constexpr float kFaceRate = 0.2f;
 // Largest speed of removal of penetration, as a share of the speed of a fall from the length of an edge: as for contacts of bodies.
 constexpr float kSoftPushShare = 0.4f;
 
@@ -138,7 +136,7 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     const float gap = dot(row.normal, difference(place, point)) - entry.radius;
     const float most = kSoftPushShare * std::sqrt(reference_gravity(w.settings) * entry.size);
     // A vertex that is free may come as near as it likes; one that is held goes to the surface from either side.
-    const bool is_free = row.grip == SoftGrip::open && gap > 0.0f;
+    const bool is_free = (row.coupled || row.grip == SoftGrip::open) && gap > 0.0f;
     const float wanted =
         is_free ? gap / s.h : clamp((row.is_face ? kFaceRate : 1.0f) * error_rate(s) * gap, -most, most);
     row.bias = wanted * row.normal - contact.surface_velocity;
@@ -222,13 +220,6 @@ std::span<const CarriedInertia> carried_by(SoftSolve& s, std::uint32_t member) {
 
 void prepare_row(SoftSolve& s, SoftRow& row) {
   row.particle_inverse = inverse_mass(entry_of(s, row.member), work_of(s, row.member).step, row.particle);
-  if (row.is_face) {
-    Sym3 sum{};
-    for_each_vertex(row, [&](std::uint32_t v, float weight) {
-      sum = sum + (weight * weight) * inverse_mass(entry_of(s, row.member), work_of(s, row.member).step, v);
-    });
-    row.particle_inverse = sum;
-  }
   row.compliance = row.particle_inverse + row.body_compliance;
 }
 
@@ -313,6 +304,7 @@ void make_soft_rows(SoftSolve& s) {
     const auto add_contact = [&](const SoftContact& one, std::uint32_t source) -> SoftRow& {
       SoftRow& row = add(one.particle, one.body, source);
       row.is_contact = true;
+      row.coupled = !is_exact_rope(entry);
       row.static_friction = one.static_friction, row.dynamic_friction = one.dynamic_friction;
       row.normal = one.normal, row.arm = one.from_body;
       row.grip = one.grip;
@@ -438,18 +430,14 @@ void warm_start_soft_rows(SoftSolve& s, int, int) {
 }
 
 void solve_soft_rows(SoftSolve& s, int, int) {
-  give_to_bodies(s);
   bool any_contact = false;
   for (SoftRow& row : s.scratch->rows) {
+    if (row.coupled || !row.is_contact) continue;
     prepare_row(s, row);
-    any_contact = any_contact || row.is_contact;
+    any_contact = true;
   }
-  if (any_contact) {
-    solve_contacts_in_rounds(s);
-    for (int turn = 0; turn < kTurns && solve_soft_surfaces_again(s); ++turn) solve_contacts_in_rounds(s);
-  }
+  if (any_contact) solve_contacts_in_rounds(s);
   set_grips(s);
-  forget_squeezes(s);
   for (VelocityChange& pending : s.scratch->pending) pending = {};
 }
 

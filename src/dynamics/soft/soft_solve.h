@@ -1,16 +1,16 @@
 // Ropes, cloths and solids within the sub-steps of a batch: their own step, and the rows that couple them with bodies and with each other.
 //
-// A row is a vertex against a point of a body: an attachment, or a contact with friction; or a point of a face, the mean of its corners, which carries nothing. A row that grips (an attachment; a contact that bore
-// load in the last sub-step) lets its vertex carry inertia of the body: K^-1 / n, with K the compliance of the point and n the number of rows
-// that grip the body; of a fixed body kGripShare times its own mass. A contact that sticks does so in all directions, one that slides
+// A row is a vertex against a point of a body: an attachment, or a contact with friction; or a point of a face, the mean of its corners.
+//
+// Contacts of cloths and solids are solved in one system with the stiffness of soft bodies and the inertia of rigid ones, and with those among themselves
+// (dynamics/soft/soft_surfaces.h).
+//
+// An attachment, and a contact of a rope that bore load in the last sub-step, lets its vertex carry inertia of the body: K^-1 / n, with K the compliance of the point and n
+// the number of rows that grip the body; of a fixed body kGripShare times its own mass. A contact that sticks does so in all directions, one that slides
 // along its normal. The vertex and this part move as one through the whole solve, so a rope between heavy bodies, or over a pulley with loads
 // of a thousand times its mass, knows what it is held by. The body then gets the momentum that its part has gained, and the difference
 // that is left is the start of the next sub-step. A contact that pulls opens, and one that sticks beyond its cone slides: then the sub-step is solved
-// anew, kGripPasses times at most.
-//
-// Contacts are solved further in rounds: sweeps of sequential impulses find impulses with the block of each vertex alone, which does not know
-// what moves along with it; of these the share is taken that minimises the energy of the coupled system, found from the true
-// response of all vertices. A round never makes the system worse, whatever masses and stiffnesses meet.
+// anew, kGripPasses times at most. Contacts of ropes are solved further in rounds (dynamics/soft/soft_rounds.h).
 //
 // Soft matter moves once in a whole sub-step, bodies in each of its half-steps. A vertex gets the impulse of a row at once; a body gets an
 // equal part of it in each half-step: the first when the row is solved, the others as the change by contacts, which starts the solve of
@@ -42,6 +42,8 @@ struct SoftRow {
   std::int32_t touched = -1;  // index of the body in SoftScratch::touched
   std::uint32_t source = 0;   // index among the entry's attachments or contacts
   bool is_contact = false;
+  bool coupled =
+      false;  // a contact of anything but an exact rope, which is solved with the stiffness of all that it touches; it carries nothing
   bool pushes = true;  // false: the body does not feel it, since the member is visual
   // Of a face: its other corners, and the weights of all three; the point of the row is their mean. Its vertices carry nothing.
   bool is_face = false;

@@ -15,6 +15,15 @@ namespace {
 // A solid is stiff if the blocks of its vertices have more than so many times their mass: a vertex that the bounds stop gives the solid so many times the energy
 // that it had.
 constexpr double kStiffShare = 100.0;
+// A vertex that began inside a shape and does not move is pushed out by so many times its weight. More would press a stiff solid out of shape where its vertices are nearest to
+// different sides of the shape.
+constexpr float kEmergeWeights = 5.0f;
+// Errors of what moves more slowly than this share of what gravity gives in the sub-step do not matter. With 0.1 a sheet that friction holds on a slope creeps by 0.1 mm in two seconds.
+constexpr float kRestShare = 0.03f;
+// A contact that still closes faster than this share of what gravity gives in the sub-step is not met.
+constexpr float kUnmetShare = 1.0f;
+// Normals with a lower product press from opposite sides.
+constexpr float kOpposite = 0.0f;
 
 SoftWork& work_at(SoftSolve& s, std::uint32_t member) { return *s.scratch->works[s.members[member]]; }
 SoftEntry& entry_at(SoftSolve& s, std::uint32_t member) { return s.store->entries[s.members[member]]; }
@@ -25,6 +34,13 @@ void for_each_surface(SoftSurfaces& all, Fn&& fn) {
   for (std::size_t i = 0; i < all.placed.size(); ++i) fn(all.member[i], all.placed[i].first);
 }
 
+// Calls fn(member, first vertex) for each member whose contacts are solved here.
+template <class Fn>
+void for_each_member(SoftSurfaces& all, Fn&& fn) {
+  for_each_surface(all, fn);
+  for (std::size_t i = 0; i < all.others.size(); ++i) fn(all.others[i], all.other_first[i]);
+}
+
 SurfaceContactSettings settings_of(const SoftSolve& s) {
   SurfaceContactSettings settings;
   settings.step = s.h;
@@ -32,12 +48,14 @@ SurfaceContactSettings settings_of(const SoftSolve& s) {
   return settings;
 }
 SurfaceVertices vertices_of(SoftSurfaces& all) {
-  return {all.positions, all.velocities, all.inverse_mass, all.blocks, all.stiff};
+  const std::size_t count = all.positions.size();
+  return {all.positions, all.velocities.view().first(count), all.inverse_mass.view().first(count),
+          all.blocks.view().first(count), all.stiff.view().first(count)};
 }
 
 void gather_velocities(SoftSolve& s) {
   SoftSurfaces& all = s.scratch->surfaces;
-  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+  for_each_member(all, [&](std::uint32_t member, std::uint32_t first) {
     const Particles& p = entry_at(s, member).body.particles;
     for (int i = 0; i < p.count; ++i) all.velocities[first + std::uint32_t(i)] = p.velocity(i);
   });
@@ -57,7 +75,7 @@ void add_carried_change(SoftSolve& s, std::uint32_t member) {
 void find_responses(SoftSolve& s) {
   SoftSurfaces& all = s.scratch->surfaces;
   std::uint32_t pieces = 0;
-  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+  for_each_member(all, [&](std::uint32_t member, std::uint32_t first) {
     const SoftEntry& entry = entry_at(s, member);
     const SoftWork& work = work_at(s, member);
     const Particles& p = entry.body.particles;
@@ -77,34 +95,153 @@ void find_responses(SoftSolve& s) {
   });
 }
 
-// Solves the contacts of surfaces and gives members what they get. `find_steps(member)` finds what the parts that their vertices carry gain by it.
-template <class FindSteps>
-void solve_contacts(SoftSolve& s, FindSteps&& find_steps) {
+// The inertia of the bodies that may yield, by their number among those that are touched.
+std::span<const RigidInertia> gather_rigid(SoftSolve& s) {
+  SoftScratch& scratch = *s.scratch;
+  const std::span<RigidInertia> rigid = scratch.surfaces.arena.make<RigidInertia>(scratch.touched.size());
+  for (std::size_t k = 0; k < rigid.size(); ++k) {
+    const BodyInertia& inertia = s.w->bodies.inertia[scratch.touched[k]];
+    const float inverse = inertia.inverse_mass;
+    rigid[k] = {along_free_axes(inertia, {inverse, inverse, inverse}), inertia.inverse};
+  }
+  return rigid;
+}
+
+// The coupling row of a contact with a shape.
+CouplingRow coupling_row(SoftSolve& s, const SoftRow& row, std::uint32_t first) {
+  CouplingRow out;
+  int k = 0;
+  for (std::uint32_t& v : out.vertex) v = first + row.particle;
+  float mobility = 0.0f;
+  for_each_vertex(row, [&](std::uint32_t v, float weight) {
+    out.vertex[k] = first + v, out.weight[k++] = weight;
+    mobility += weight * weight * s.scratch->surfaces.inverse_mass[first + v];
+  });
+  if (row.pushes && row.body_compliance != Sym3{}) out.body = row.touched;
+  const float wanted = dot(row.normal, row.bias);
+  out.arm = row.arm;
+  out.passing = velocity_of_body(s, row) - (row.bias - wanted * row.normal);
+  out.normal = row.normal, out.target = -wanted;
+  out.friction[0] = row.static_friction, out.friction[1] = row.dynamic_friction;
+  out.slides = row.grip == SoftGrip::slides;
+  out.slow = out.allowed = kUnmetShare * s.h * reference_gravity(s.w->settings);
+  out.impulse = row.impulse;
+  if (row.grip == SoftGrip::emerges && out.target > 0.0f)
+    out.damper = kEmergeWeights * s.h * reference_gravity(s.w->settings) / (mobility * out.target);
+  return out;
+}
+
+// Appends the rows of contacts with shapes to those of surfaces; returns their numbers among all rows of the step.
+std::span<const std::uint32_t> add_shape_rows(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  const std::span<std::uint32_t> numbers = all.arena.make<std::uint32_t>(s.scratch->rows.size());
+  std::size_t used = 0;
+  for_each_member(all, [&](std::uint32_t member, std::uint32_t first) {
+    const SoftWork& work = work_at(s, member);
+    for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
+      const SoftRow& row = s.scratch->rows[k];
+      bool moves = row.body_compliance != Sym3{};
+      for_each_vertex(row,
+                      [&](std::uint32_t v, float) { moves = moves || all.inverse_mass[first + v] > 0.0f; });
+      if (!row.coupled || !moves) continue;
+      all.contacts.rows.push_back(coupling_row(s, row, first));
+      numbers[used++] = k;
+    }
+  });
+  return numbers.first(used);
+}
+
+// True if bodies that do not yield press a vertex of a member from opposite sides, and one of them less quickly out of it than it is to.
+bool is_squeezed(SoftSolve& s, std::span<const std::uint32_t> numbers, std::span<const CouplingRow> rows) {
   SoftSurfaces& all = s.scratch->surfaces;
   const ArenaScope scope(all.arena);
-  const std::span<CoupledBody> bodies = all.arena.make<CoupledBody>(all.placed.size());
-  for (std::size_t i = 0; i < all.placed.size(); ++i) {
-    const SoftStep& step = work_at(s, all.member[i]).step;
-    bodies[i] = {&entry_at(s, all.member[i]).body,
-                 step.method == SoftMethod::conjugate_gradients ? &step.implicit : nullptr,
-                 all.placed[i].first};
+  const SoftEntry& entry = entry_of(s, s.scratch->rows[numbers[0]].member);
+  const std::span<const CouplingRow*> first =
+      all.arena.make<const CouplingRow*>(std::size_t(entry.body.particles.count));
+  for (const CouplingRow*& one : first) one = nullptr;
+  bool squeezed = false;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const SoftRow& row = s.scratch->rows[numbers[i]];
+    if (row.body_compliance != Sym3{}) continue;
+    for_each_vertex(row, [&](std::uint32_t v, float) {
+      if (first[v] == nullptr) first[v] = &rows[i];
+      squeezed = squeezed || (dot(first[v]->normal, rows[i].normal) < kOpposite &&
+                              (first[v]->is_missed || rows[i].is_missed));
+    });
   }
-  const std::span<Vec3> change = all.arena.make<Vec3>(all.positions.size());
-  make_coupling_rows(vertices_of(all), settings_of(s), all.contacts);
+  return squeezed;
+}
+
+// Impulses on what does not yield are not remembered by members that are squeezed, or of which one closes more than it may: they would grow without bound and throw what comes
+// free, and one that stays alone would throw it at once. Nor are those of visual members, whose velocities come from places that were moved to fit.
+void forget_squeezes(SoftSolve& s, std::span<const std::uint32_t> numbers,
+                     std::span<const CouplingRow> rows) {
+  const auto yields = [](const SoftRow& row) { return row.body_compliance != Sym3{}; };
+  for (std::size_t begin = 0, end = 0; begin < numbers.size(); begin = end) {
+    const std::uint32_t member = s.scratch->rows[numbers[begin]].member;
+    bool forgets = !s.scratch->rows[numbers[begin]].pushes;
+    for (; end < numbers.size() && s.scratch->rows[numbers[end]].member == member; ++end)
+      forgets = forgets || (rows[end].is_closing && !yields(s.scratch->rows[numbers[end]]));
+    forgets =
+        forgets || is_squeezed(s, numbers.subspan(begin, end - begin), rows.subspan(begin, end - begin));
+    for (std::size_t i = begin; i < end && forgets; ++i) {
+      SoftRow& row = s.scratch->rows[numbers[i]];
+      if (!row.pushes || !yields(row)) row.impulse = {};
+    }
+  }
+}
+
+// Gives the bodies what the rows gained, and tells how contacts hold.
+void take_shape_rows(SoftSolve& s, std::span<const std::uint32_t> numbers,
+                     std::span<const CouplingRow> rows) {
+  clear_changes(s);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    SoftRow& row = s.scratch->rows[numbers[i]];
+    try_on_body(s, row, rows[i].impulse - row.impulse);
+    row.impulse = rows[i].impulse;
+    if (row.grip == SoftGrip::emerges) continue;
+    const bool pushes = dot(row.normal, row.impulse) > 0.0f;
+    row.grip = !pushes ? SoftGrip::open : rows[i].slides ? SoftGrip::slides : SoftGrip::sticks;
+  }
+  change_bodies(s, 1.0f);
+  forget_squeezes(s, numbers, rows);
+}
+
+// Solves all contacts, and gives members what they get.
+void solve_contacts(SoftSolve& s) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  const ArenaScope scope(all.arena);
+  const std::span<CoupledBody> bodies = all.arena.make<CoupledBody>(all.placed.size() + all.others.size());
+  std::size_t count = 0;
+  for_each_member(all, [&](std::uint32_t member, std::uint32_t first) {
+    const SoftStep& step = work_at(s, member).step;
+    bodies[count++] = {&entry_at(s, member).body,
+                       step.method == SoftMethod::conjugate_gradients ? &step.implicit : nullptr,
+                       step.carried, first};
+  });
+  const std::span<Vec3> change = all.arena.make<Vec3>(all.velocities.size());
+  all.contacts.rows.clear(), all.contacts.row_pairs.clear();
+  if (all.active) make_coupling_rows(vertices_of(all), settings_of(s), all.contacts);
+  const std::size_t of_surfaces = all.contacts.rows.size();
+  const std::span<const std::uint32_t> numbers = add_shape_rows(s);
+  const std::span<CouplingRow> rows = all.contacts.rows;
+  CoupledSettings settings;
+  settings.rest_speed = kRestShare * s.h * reference_gravity(s.w->settings);
   const CoupledReport report =
-      solve_coupled(bodies, all.contacts.rows, {all.blocks, all.velocities, all.contacts.owed, change}, {},
-                    *s.kernels, all.arena, *s.tasks);
+      solve_coupled(bodies, gather_rigid(s), rows, {all.blocks, all.velocities, all.contacts.owed, change},
+                    settings, *s.kernels, all.arena, *s.tasks);
   all.unmet = all.unmet || !report.met;
   take_impulses(all.inverse_mass, all.contacts);
-  for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
+  take_shape_rows(s, numbers, rows.subspan(of_surfaces));
+  for (SoftRow& row : s.scratch->rows) row.carried_step = {};
+  for_each_member(all, [&](std::uint32_t member, std::uint32_t first) {
     SoftEntry& entry = entry_at(s, member);
     SoftWork& work = work_at(s, member);
-    // Explicit schemes get the impulses as forces in the next sub-step.
-    if (work.step.method != SoftMethod::conjugate_gradients) return;
     for (int i = 0; i < entry.body.particles.count; ++i) work.change[i] = change[first + std::uint32_t(i)];
     add_change(entry, work.step, work.change.view(), 1.0f);
-    find_steps(member);
+    add_carried_change(s, member);
   });
+  give_to_bodies(s);
 }
 
 // Puts the vertices of a member where the bounds let them. Velocities follow what the bounds took, or they would go on stretching the body; of a
@@ -178,6 +315,24 @@ void find_near(SoftSolve& s) {
   }
 }
 
+// Lists the members without a surface that touch shapes, whose vertices stand behind those of surfaces. Returns the number of all vertices.
+std::size_t list_others(SoftSolve& s, std::size_t vertices) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  all.others.clear(), all.other_first.clear();
+  all.has_contacts = false;
+  for (std::uint32_t m = 0; m < std::uint32_t(s.members.size()); ++m) {
+    const SoftWork& work = work_at(s, m);
+    bool touches = false;
+    for (std::uint32_t k = work.first_row; k < work.last_row; ++k)
+      touches = touches || s.scratch->rows[k].coupled;
+    all.has_contacts = all.has_contacts || touches;
+    if (!touches || all.placed_of[m] >= 0) continue;
+    all.others.push_back(m), all.other_first.push_back(std::uint32_t(vertices));
+    vertices += std::size_t(entry_at(s, m).body.particles.count);
+  }
+  return vertices;
+}
+
 }  // namespace
 
 void begin_soft_surfaces(SoftSolve& s) {
@@ -204,11 +359,12 @@ void begin_soft_surfaces(SoftSolve& s) {
   }
   for (const std::uint32_t slot : s.members) s.store->entries[slot].crossings = {};
   find_near(s);
-  if (!all.active) return all.left.clear();
+  const std::size_t with_others = list_others(s, vertices);
   all.positions.resize(vertices), all.targets.resize(vertices);
-  all.velocities.resize(vertices), all.inverse_mass.resize(vertices), all.blocks.resize(vertices),
-      all.stiff.resize(vertices);
-  all.contacts.clear(vertices);
+  all.velocities.resize(with_others), all.inverse_mass.resize(with_others), all.blocks.resize(with_others),
+      all.stiff.resize(with_others);
+  all.contacts.clear(with_others);
+  if (!all.active) return all.left.clear();
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) {
     const Particles& p = entry_at(s, member).body.particles;
     for (int i = 0; i < p.count; ++i) all.positions[first + std::uint32_t(i)] = p.place(i);
@@ -242,35 +398,24 @@ long count_soft_crossings(const SoftStore& store, Arena& arena) {
   return count_crossings(placed, positions, arena);
 }
 
-void solve_soft_surfaces(SoftSolve& s, int, int) {
+void solve_soft_contacts(SoftSolve& s, int, int) {
+  give_to_bodies(s);
   SoftSurfaces& all = s.scratch->surfaces;
-  if (!all.active) return;
+  if (!all.active && !all.has_contacts) return;
   all.arena.reset();
   gather_velocities(s);
   find_responses(s);
-  const SurfaceVertices vertices = vertices_of(all);
-  const SurfaceContactSettings settings = settings_of(s);
-  find_crossings(s);
-  find_surface_contacts(all.placed, vertices, settings, all.arena, *s.tasks, all.contacts);
-  solve_contacts(s, [&](std::uint32_t member) { find_carried_steps(s, member); });
-  push_surfaces(vertices, settings, all.arena, all.contacts);
+  if (all.active) {
+    find_crossings(s);
+    find_surface_contacts(all.placed, vertices_of(all), settings_of(s), all.arena, *s.tasks, all.contacts);
+  }
+  solve_contacts(s);
+  if (all.active) push_surfaces(vertices_of(all), settings_of(s), all.arena, all.contacts);
 }
 
 void end_soft_surfaces(SoftSolve& s) {
   SoftSurfaces& all = s.scratch->surfaces;
   if (all.active) all.left.assign(all.positions);
-}
-
-bool solve_soft_surfaces_again(SoftSolve& s) {
-  SoftSurfaces& all = s.scratch->surfaces;
-  if (!all.active || all.contacts.pairs.empty()) return false;
-  all.arena.reset();
-  gather_velocities(s);
-  // Bodies have what their parts gained before.
-  for (SoftRow& row : s.scratch->rows) row.carried_step = {};
-  solve_contacts(s, [&](std::uint32_t member) { add_carried_change(s, member); });
-  give_to_bodies(s);
-  return true;
 }
 
 void bound_soft_surfaces(SoftSolve& s, int, int) {
@@ -285,7 +430,7 @@ void bound_soft_surfaces(SoftSolve& s, int, int) {
                              all.contacts);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) { place_vertices(s, member, first); });
   all.may_cross = !all.contacts.tangle.empty() || all.report.forced > 0 || all.report.crossed > 0;
-  if (all.unmet) all.contacts.clear(all.positions.size());
+  if (all.unmet) all.contacts.clear(all.velocities.size());
   all.unmet = false;
 }
 

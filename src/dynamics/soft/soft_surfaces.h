@@ -1,7 +1,7 @@
-// Contacts of cloths and solids with themselves and each other within the sub-steps: gathers their surfaces and vertices for
-// soft/contact/surface_contacts.h, gives bodies the impulses, and takes back the moves that would cross.
+// Contacts of cloths and solids with themselves, each other and bodies within the sub-steps: gathers their surfaces and vertices for
+// soft/contact/surface_contacts.h and soft/solver/coupled_solve.h, gives both sides the impulses, and takes back the moves that would cross.
 //
-// In: members of a batch. Out: velocities and positions of their particles.
+// In: members of a batch, rows of contacts. Out: velocities and positions of their particles, velocities of bodies, impulses.
 #pragma once
 
 #include "base/arena/arena.h"
@@ -19,16 +19,20 @@ namespace gyre {
 struct SoftSolve;
 
 struct SoftSurfaces {
-  bool active = false;  // there are surfaces that may touch
+  bool active = false;        // there are surfaces that may touch
+  bool has_contacts = false;  // contacts of cloths or solids with shapes
   Array<PlacedSurface> placed;
   // Those of the placed surfaces, so that no other is taken for one of them by its address.
   std::vector<std::shared_ptr<const SoftSurface>> surfaces;
   Array<std::uint32_t> member;    // of each placed surface: its index in SoftSolve::members
   Array<std::int32_t> placed_of;  // by member; -1: it has no surface
+  Array<std::uint32_t> others;    // members without such a surface that touch shapes
+  Array<std::uint32_t> other_first;
   Array<std::uint8_t>
       near;  // by member: 1 if its surface may touch another one in the step, or pieces of its own
-  // By vertex; positions are those at the start of the sub-step.
+  // By vertex of a surface; positions are those at the start of the sub-step.
   Array<DVec3> positions, targets;
+  // By vertex, those of the others behind.
   Array<Vec3> velocities;
   Array<float> inverse_mass;
   Array<Sym3> blocks;          // 1/kg: how a vertex answers an impulse, its neighbours held still
@@ -54,11 +58,8 @@ void add_forces_of_surfaces(SoftSolve& s, std::uint32_t member);
 // every step: it looks at all of them.
 long count_soft_crossings(const SoftStore& store, Arena& arena);
 
-// Solves the contacts of surfaces again for what contacts with shapes changed. False if surfaces have no pairs.
-bool solve_soft_surfaces_again(SoftSolve& s);
-
 // Stages, each of one block.
-void solve_soft_surfaces(SoftSolve& s, int begin, int end);
+void solve_soft_contacts(SoftSolve& s, int begin, int end);
 void bound_soft_surfaces(SoftSolve& s, int begin, int end);
 
 }  // namespace gyre

@@ -13,11 +13,16 @@
 // cross can begin to do so only where such a pair (a vertex and a triangle, or two edges, without a common vertex) comes to distance 0. Hence no
 // crossing comes into being, but for vertices that are told where to go and leave others no room.
 //
+// Rooms are not negative, so a pair without room would hold its vertices back against all others. Moves are therefore counted from the mean of those that pairs connect, which
+// moves both planes of each of these pairs alike.
+//
 // Moves advance several times, each from where the last one led, with the room that is left there: a layer goes on into the room that the next one has
 // left. The planes of a pair then stand elsewhere at the end than at the start; in between they move straight, and so do the vertices, so that what
 // holds at both ends holds all along.
 //
-// Nothing here depends on the closest points being exact: a and b are taken from the vertices, whatever the normal.
+// Nothing here depends on the closest points being exact: a and b are taken from the vertices, whatever the normal. So the planes of a pair may turn where they would not have
+// its moves, to such that would: edges that touch near their ends turn about each other, and planes that stay as they are hold back the far ends. They
+// must also stand between the features at the start, since the whole move is straight.
 //
 // Sources: A. Chen, J. Hsu et al., "Offset Geometric Contact", 2025 (bounds from the nearest feature); D. Baraff, "Fast Contact Force Computation for
 // Nonpenetrating Rigid Bodies", 1994 (separating planes from the last step).

@@ -21,8 +21,6 @@ constexpr float kMaxPushOfThickness = 0.25f;
 constexpr float kUntangleShare = 0.4f;
 // Edges that cross resist by so many times what their bare masses do.
 constexpr float kUntangleResistance = 2.0f;
-// Rows resist by so many times what their vertices' own blocks do.
-constexpr float kResistance = 2.0f;
 
 // Takes the mean from the moves: surfaces that fly together do not look far. Returns it.
 DVec3 take_mean(std::span<const PlacedSurface> surfaces, std::span<DVec3> moves) {
@@ -117,7 +115,6 @@ void sum_impulses(const SurfaceVertices& vertices, SurfaceContacts& contacts) {
   for (std::size_t i = 0; i < contacts.pairs.size(); ++i) {
     const SurfacePair& pair = contacts.pairs[i];
     SurfaceImpulse& impulse = contacts.impulses[i];
-    if (!pair.touches) impulse = {};
     if (impulse.normal == 0.0f) continue;
     // The plane of friction turns with the normal.
     const Vec3 normal = to_float(pair.normal);
@@ -149,7 +146,10 @@ Vec3 sum_of(std::span<const Vec3> values, const std::uint32_t (&vertex)[4], cons
 void add_to(std::span<Vec3> values, const Row& row, Vec3 impulse) {
   for (int k = 0; k < 4; ++k) values[row.vertex[k]] += row.change[k] * impulse;
 }
-float gap_of(const SurfacePair& pair) { return float(pair.distance - double(pair.thickness)); }
+// Pairs that do not touch close no further than bounds let them: their rows tell the solve, which would else stretch what bounds hold back.
+float gap_of(const SurfacePair& pair, const BoundSettings& bounds) {
+  return float(pair.distance - (pair.touches ? 1.0 : bounds.least_gap) * double(pair.thickness));
+}
 
 Row make_row(const SurfacePair& pair, const SurfaceVertices& vertices) {
   Row row;
@@ -167,29 +167,13 @@ Row make_row(const SurfacePair& pair, const SurfaceVertices& vertices) {
   return row;
 }
 
-bool may_touch(const SurfacePair& pair, const SurfaceVertices& vertices, float step) {
-  const float gap = gap_of(pair), near = kNearOfThickness * pair.thickness;
+bool may_touch(const SurfacePair& pair, const SurfaceVertices& vertices,
+               const SurfaceContactSettings& settings) {
+  const float gap = gap_of(pair, settings.bounds), near = kNearOfThickness * pair.thickness;
   if (gap < near) return true;
+  if (!pair.touches) return false;
   const Vec3 velocity = sum_of(vertices.velocities, pair.vertex, pair.weight);
-  return gap - near < -kMoveAhead * step * dot(to_float(pair.normal), velocity);
-}
-
-// Sets what the row resists by; false if all its vertices are held. Held vertices count as if they answered as the others do: where they close, the
-// little weight of one that is free is not to stop them all.
-bool set_resistance(std::span<const Sym3> blocks, CouplingRow& row) {
-  float along = 0.0f, trace = 0.0f, loose = 0.0f, all = 0.0f;
-  for (int k = 0; k < 5; ++k) {
-    const Sym3& block = blocks[row.vertex[k]];
-    const float share = row.weight[k] * row.weight[k];
-    along += share * dot(row.normal, block * row.normal);
-    trace += share * (block.xx + block.yy + block.zz);
-    all += share;
-    if (block.xx > 0.0f) loose += share;
-  }
-  if (!(along > 0.0f) || !(trace > along)) return false;
-  const float resistance = kResistance * loose / all;
-  row.along = resistance / along, row.across = 2.0f * resistance / (trace - along);
-  return true;
+  return gap - near < -kMoveAhead * settings.step * dot(to_float(pair.normal), velocity);
 }
 
 void solve_push(Row& row, std::span<Vec3> pushes) {
@@ -231,17 +215,16 @@ void make_coupling_rows(const SurfaceVertices& vertices, const SurfaceContactSet
   contacts.rows.clear(), contacts.row_pairs.clear();
   for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
     const SurfacePair& pair = contacts.pairs[i];
-    if (!pair.touches) continue;
-    if (!(contacts.impulses[i].normal > 0.0f) && !may_touch(pair, vertices, settings.step)) continue;
+    if (pair.normal == DVec3{}) continue;
+    if (!(contacts.impulses[i].normal > 0.0f) && !may_touch(pair, vertices, settings)) continue;
     CouplingRow row;
     for (int k = 0; k < 4; ++k) row.vertex[k] = pair.vertex[k], row.weight[k] = pair.weight[k];
     row.vertex[4] = pair.vertex[0];
     row.normal = to_float(pair.normal);
-    if (!set_resistance(vertices.blocks, row)) continue;
     const SurfaceImpulse& impulse = contacts.impulses[i];
     row.impulse = impulse.normal * row.normal + impulse.friction;
     row.friction[0] = pair.friction[0], row.friction[1] = pair.friction[1];
-    row.target = -max(gap_of(pair), 0.0f) / settings.step;
+    row.target = -max(gap_of(pair, settings.bounds), 0.0f) / settings.step;
     row.allowed = settings.closing * pair.thickness / settings.step;
     contacts.rows.push_back(row), contacts.row_pairs.push_back(i);
   }
@@ -255,9 +238,8 @@ void make_coupling_rows(const SurfaceVertices& vertices, const SurfaceContactSet
     }
     if (!(mobility > 0.0f)) continue;
     row.normal = edge.way;
-    row.along = kUntangleResistance / mobility;
+    row.damper = kUntangleResistance / mobility;
     row.target = edge.share * kUntangleShare * std::sqrt(settings.gravity * edge.edge);
-    row.adds_up = false;
     contacts.rows.push_back(row);
   }
 }
@@ -285,7 +267,7 @@ void push_surfaces(const SurfaceVertices& vertices, const SurfaceContactSettings
   std::size_t used = 0;
   for (std::uint32_t i = 0; i < std::uint32_t(contacts.pairs.size()); ++i) {
     const SurfacePair& pair = contacts.pairs[i];
-    const float overlap = -gap_of(pair);
+    const float overlap = -gap_of(pair, settings.bounds);
     if (!pair.touches || overlap < kSlopOfThickness * pair.thickness) continue;
     Row& row = rows[used++];
     row = make_row(pair, vertices);

@@ -14,6 +14,9 @@ constexpr std::uint64_t kEdgePairs = std::uint64_t(1) << 63;  // in keys
 // A pair is looked for further by this share of the radii of its vertices, so that candidates last.
 constexpr float kAheadOfRadius = 0.3f;
 
+// Features of a surface that are nearer than this share of their radii are in one place: parts of a split vertex that could not be moved apart.
+constexpr double kOnePlace = 1.0e-6;
+
 constexpr int kBlockCandidates = 512;  // that one worker takes at a time
 
 DVec3 least_of(DVec3 a, DVec3 b) { return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; }
@@ -45,7 +48,9 @@ class PairFinder {
     const double move = largest_difference(v, 1);
     if (far > square(limit + radius + move) || stay_apart(v, 1, limit + radius)) return;
     const PlacedSurface& b = candidates_.surfaces[one.surface_b];
-    const bool touches = touches_triangle(p, closest, b, one.b - candidates_.bases[one.surface_b].triangle);
+    const bool in_one_place = are_in_one_place(one, far, radius);
+    const bool touches =
+        !in_one_place && touches_triangle(p, closest, b, one.b - candidates_.bases[one.surface_b].triangle);
     if (!touches && far > square(limit + move + least_gap_ * radius)) return;
     SurfacePair& pair = add(one, touches);
     pair.key = std::uint64_t(one.a) << 32 | one.b;
@@ -54,6 +59,7 @@ class PairFinder {
     for (int n = 0; n < 3; ++n) pair.weight[n + 1] = -float(closest.weights[n]);
     finish(pair, -closest.point,
            cross(positions_[v[2]] - positions_[v[1]], positions_[v[3]] - positions_[v[1]]));
+    if (in_one_place) pair.normal = {};
   }
 
   void add_edges(const SurfaceCandidate& one) {
@@ -69,7 +75,9 @@ class PairFinder {
     const double limit = largest(limits_), radius = largest(radii_), far = length_squared(apart);
     const double move = largest_difference(v, 2);
     if (far > square(limit + radius + move) || stay_apart(v, 2, limit + radius)) return;
-    const bool touches = closest.s > 0.0 && closest.s < 1.0 && closest.t > 0.0 && closest.t < 1.0 &&
+    const bool in_one_place = are_in_one_place(one, far, radius);
+    const bool touches = !in_one_place && closest.s > 0.0 && closest.s < 1.0 && closest.t > 0.0 &&
+                         closest.t < 1.0 &&
                          touches_edge(one.surface_a, one.a, origin + closest.on_a, -apart) &&
                          touches_edge(one.surface_b, one.b, origin + closest.on_b, apart);
     if (!touches && far > square(limit + move + least_gap_ * radius)) return;
@@ -79,9 +87,13 @@ class PairFinder {
     pair.weight[1] = float(closest.s), pair.weight[0] = 1.0f - pair.weight[1];
     pair.weight[3] = -float(closest.t), pair.weight[2] = -1.0f - pair.weight[3];
     finish(pair, apart, cross(along, q - p));
+    if (in_one_place) pair.normal = {};
   }
 
  private:
+  static bool are_in_one_place(const SurfaceCandidate& one, double far, double radius) {
+    return one.surface_a == one.surface_b && far <= square(kOnePlace * radius);
+  }
   // Of the moves of a vertex of A, the first `on_a`, and one of B.
   double largest_difference(const std::uint32_t* v, int on_a) const {
     double most = 0.0;

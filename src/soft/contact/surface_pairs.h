@@ -34,8 +34,9 @@ struct SurfacePair {
   float weight[4] = {};
   float thickness = 0.0f;  // m: the radii at the closest points together
   float friction[2] = {};  // static, dynamic
-  DVec3 normal{};          // from B to A, of unit length
-  double distance = 0.0;   // m
+  DVec3
+      normal{};  // from B to A, of unit length; zero where parts of a split vertex are in one place: they have no direction, and are free
+  double distance = 0.0;  // m
   std::uint64_t key = 0;
 };
 

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace gyre::surface_pairs_test {
 namespace {
 
@@ -364,6 +366,35 @@ TEST(DisplacementBounds, LeaveMovesAloneThatDoNotApproach) {
     EXPECT_NEAR(moves[v].x, 0.01, 1e-9);
     EXPECT_NEAR(moves[v].y, -(0.03 - 0.2 * 0.02), 1e-5);  // up to a fifth of the thickness
   }
+}
+
+// Where surfaces lie in each other a pair leaves no room to either side. They still fly on.
+TEST(DisplacementBounds, DoNotHoldBackWhatFliesTogether) {
+  Arena arena;
+  TaskSystem tasks;
+  // A vertex in a triangle, kept on both of its sides, and far from there another one that stands still.
+  Array<DVec3> positions;
+  for (const DVec3& p : {DVec3{0.2, 0, 0.2}, DVec3{0, 0, 0}, DVec3{1, 0, 0}, DVec3{0, 0, 1}, DVec3{9, 0, 0}})
+    positions.push_back(p);
+  std::array<SurfacePair, 2> pairs;
+  for (int k = 0; k < 2; ++k) {
+    for (std::uint32_t v = 0; v < 4; ++v) pairs[k].vertex[v] = v;
+    pairs[k].thickness = 0.01f;
+    pairs[k].normal = {0, k == 0 ? 1.0 : -1.0, 0};
+  }
+  Array<std::uint8_t> held;
+  held.resize(5);
+  Array<DVec3> moves;
+  moves.resize(5);
+  for (int v = 0; v < 4; ++v) moves[v] = {0.01, -0.07, 0.02};
+  const BoundReport report = bound_moves(pairs, positions, {}, held, {}, {}, moves, arena, tasks);
+  EXPECT_EQ(report.crossed, 2);
+  EXPECT_EQ(report.shortened, 0);
+  for (int v = 0; v < 4; ++v) EXPECT_EQ(moves[v], (DVec3{0.01, -0.07, 0.02}));
+  // What moves against the rest does not.
+  moves[0].y += 0.01;
+  bound_moves(pairs, positions, {}, held, {}, {}, moves, arena, tasks);
+  for (int v = 1; v < 4; ++v) EXPECT_NEAR(moves[v].y, moves[0].y, 1.0e-12);
 }
 
 }  // namespace

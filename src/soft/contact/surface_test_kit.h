@@ -111,7 +111,7 @@ struct SoftScene {
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       const Particles& p = bodies[k].particles;
       const std::uint32_t first = all.placed[k].first;
-      coupled.push_back({&bodies[k], &steps[k], first});
+      coupled.push_back({&bodies[k], &steps[k], {}, first});
       for (int i = 0; i < p.count; ++i) {
         const std::size_t v = first + std::size_t(i);
         all.positions[v] = p.place(i);
@@ -126,7 +126,9 @@ struct SoftScene {
     Array<Vec3> change;
     change.resize(count);
     const CoupledVertices solved{blocks, velocities, contacts.owed, change};
-    solve_coupled(coupled, contacts.rows, solved, {}, bench.kernels, contact_arena, bench.tasks);
+    solve_coupled(coupled, {}, contacts.rows, solved,
+                  {.rest_speed = 0.03f * settings.step * settings.gravity}, bench.kernels, contact_arena,
+                  bench.tasks);
     take_impulses(inverse_mass, contacts);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       Particles& p = bodies[k].particles;

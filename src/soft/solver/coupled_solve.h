@@ -1,8 +1,8 @@
-// Contacts between soft bodies, solved together with the stiffness of the bodies. The change of velocity d minimises
+// Contacts of soft bodies with each other and with rigid bodies, solved together with the stiffness of the soft bodies and the inertia of the rigid ones. The change of velocity d minimises
 //
 //   1/2 d.A d - b.d + sum over rows of psi(u + J d)
 //
-// with A the matrices of the bodies' own steps, b impulses that they have not answered yet, J d the change of a row's relative velocity u,
+// with A the matrices of the soft bodies' own steps and the mass and inertia of rigid ones, b impulses that they have not answered yet, J d the change of a row's relative velocity u,
 // and psi the augmented Lagrangian of a row. The derivative of psi is minus the impulse
 //
 //   p_n = max(0, l_n + along (target - u_n)),   p_t = l_t - across u_t, at most the friction times l_n
@@ -19,6 +19,7 @@
 #pragma once
 
 #include "soft/contact/coupling_row.h"
+#include "soft/solver/coupled_rigid.h"
 #include "soft/solver/implicit_step.h"
 
 #include <cstdint>
@@ -30,6 +31,7 @@ namespace gyre {
 struct CoupledBody {
   const SoftBody* body = nullptr;
   const ImplicitStep* step = nullptr;  // null: it has an explicit scheme, and answers with its masses
+  std::span<const CarriedInertia> carried{};
   std::uint32_t first = 0;
 };
 
@@ -45,9 +47,10 @@ struct CoupledVertices {
 
 struct CoupledSettings {
   int least_stages = 2, most_stages = 8;
-  int most_iterations = 50;  // in a stage
-  double tolerance =
-      1.0e-2;  // a stage ends when the energy of the error is so small a share of that when the solve began
+  int most_iterations = 300;  // in a stage
+  // A stage ends when the energy of the error is so small a share of what vertices have by the speeds that their rows take.
+  double tolerance = 1.0e-2;
+  float rest_speed = 0.0f;  // m/s: the least of these speeds; what is slower is at rest
 };
 
 struct CoupledReport {
@@ -55,9 +58,11 @@ struct CoupledReport {
   bool met = true;  // no row misses its target by more than it is allowed to
 };
 
-// Finds the change of all velocities and the impulses of the rows. Bodies that nothing holds have exactly the momentum of their impulses.
-CoupledReport solve_coupled(std::span<const CoupledBody> bodies, std::span<CouplingRow> rows,
-                            const CoupledVertices& vertices, const CoupledSettings& settings,
-                            const SoftKernels& kernels, Arena& arena, TaskSystem& tasks);
+// Finds the change of all velocities and the impulses of the rows. Bodies that nothing holds have exactly the momentum of their impulses. Rigid bodies get theirs from
+// the caller, by the impulses.
+CoupledReport solve_coupled(std::span<const CoupledBody> bodies, std::span<const RigidInertia> rigid,
+                            std::span<CouplingRow> rows, const CoupledVertices& vertices,
+                            const CoupledSettings& settings, const SoftKernels& kernels, Arena& arena,
+                            TaskSystem& tasks);
 
 }  // namespace gyre

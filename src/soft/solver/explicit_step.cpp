@@ -40,7 +40,8 @@ class ExplicitStepper {
     find_forces(pass_, body_, kernels_, tasks_);
     if (body_.gas.triangles.empty()) return;
     find_volume_gradient(body_.particles, body_.gas, gradient_);
-    const float push = float(gauge_pressure(body_.gas, enclosed_volume(body_.particles, body_.gas.triangles)));
+    const float push =
+        float(gauge_pressure(body_.gas, enclosed_volume(body_.particles, body_.gas.triangles)));
     for (std::size_t i = 0; i < gradient_.size(); ++i) {
       const Vec3 force = push * gradient_[i];
       pass_.force.x[i] += force.x, pass_.force.y[i] += force.y, pass_.force.z[i] += force.z;

@@ -153,7 +153,8 @@ void find_impulses(const Particles& particles, const ImplicitSettings& settings,
 
 void keep_momentum(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
                    const VectorRows& change, double ahead = 0.0) {
-  if (step.carried.empty()) return gyre::keep_momentum(body, impulses, change, ahead);
+  if (step.carried.empty() && knows_rotations(body))
+    return gyre::keep_momentum(body, impulses, change, ahead);
   keep_linear_momentum(body.particles, step.carried, impulses, change);
 }
 
@@ -166,6 +167,10 @@ void change_velocities(Particles& particles, const VectorRows& change) {
 }
 
 }  // namespace
+
+bool knows_rotations(const SoftBody& body) {
+  return body.continuum.empty() || body.continuum.material.model != ElementModel::linear;
+}
 
 ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, const SoftKernels& kernels,
                             Arena& arena, TaskSystem& tasks) {
@@ -192,33 +197,6 @@ ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, co
 Sym3 inverse_mass(const ImplicitStep& step, int particle) {
   const auto part = [&](int k) { return step.pass.inverse[k][particle]; };
   return {part(0), part(1), part(2), part(3), part(4), part(5)};
-}
-
-void find_response(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
-                   const VectorRows& change, int iterations, double tolerance, const SoftKernels& kernels,
-                   Arena& arena, TaskSystem& tasks) {
-  const ArenaScope scope(arena);
-  SoftPass pass = step.pass;
-  const std::size_t rows = body.particles.x.size();
-  pass.change = change;
-  pass.residual = make_vectors(arena, rows);  // advance() writes it
-  for (std::size_t i = 0; i < rows; ++i) {
-    change.x[i] = change.y[i] = change.z[i] = 0.0f;
-    pass.residual.x[i] = impulses.x[i], pass.residual.y[i] = impulses.y[i],
-    pass.residual.z[i] = impulses.z[i];
-  }
-  BodySystem solver(pass, step.carried, kernels, tasks);
-  double error = solver.sum(kernels.precondition);
-  iterate(solver, error, tolerance * error, tolerance > 0.0 ? 1 : iterations, iterations);
-  if (body.held.empty()) keep_momentum(body, step, impulses, change);
-}
-
-void add_impulses(SoftBody& body, const ImplicitStep& step, const VectorRows& impulses, int iterations,
-                  const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
-  const ArenaScope scope(arena);
-  const VectorRows change = make_vectors(arena, body.particles.x.size());
-  find_response(body, step, impulses, change, iterations, 0.0, kernels, arena, tasks);
-  change_velocities(body.particles, change);
 }
 
 void finish_implicit(SoftBody& body, const ImplicitStep& step, const SoftKernels& kernels,

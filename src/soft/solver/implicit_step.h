@@ -55,19 +55,13 @@ struct ImplicitStep {
   ImplicitReport report;
 };
 
+// False if the elements resist a rotation of the whole body: by the linear law, once it has turned.
+bool knows_rotations(const SoftBody& body);
 // Finds the velocities at the end of the sub-step, as if nothing touched the body.
 ImplicitStep begin_implicit(SoftBody& body, const ImplicitSettings& settings, const SoftKernels& kernels,
                             Arena& arena, TaskSystem& tasks);
 // How a particle's velocity answers an impulse on it, its neighbours held still: the inverse of its block of A, 1/kg; zero if it is held.
 Sym3 inverse_mass(const ImplicitStep& step, int particle);
-// Finds the change of velocity that impulses (N s, a row for each particle, also those that fill up the last slice) make, through the
-// stiffness of the whole body: A d = impulses, by so many iterations at most, or until so small a share of the error is left.
-void find_response(const SoftBody& body, const ImplicitStep& step, const VectorRows& impulses,
-                   const VectorRows& change, int iterations, double tolerance, const SoftKernels& kernels,
-                   Arena& arena, TaskSystem& tasks);
-// The same by exactly so many iterations, and adds it.
-void add_impulses(SoftBody& body, const ImplicitStep& step, const VectorRows& impulses, int iterations,
-                  const SoftKernels& kernels, Arena& arena, TaskSystem& tasks);
 // Moves the particles with the velocities that they have now.
 void finish_implicit(SoftBody& body, const ImplicitStep& step, const SoftKernels& kernels, TaskSystem& tasks);
 

@@ -9,19 +9,12 @@ namespace gyre {
 
 namespace {
 
-// Iterations by which impulses spread through a body. Each reaches the neighbours of those before; what is missing is found by the rows of the
-// next half-step.
-constexpr int kSpreadIterations = 8;
-// Iterations for solids that touch shapes, which need the response of the whole body: with 8, each impulse of a contact presses a stiff solid out of shape, and it gains more energy
-// than it had.
-constexpr int kSolidSpreadIterations = 50;
 // Iterations of Newton's for ropes, whose tension differs between the stages of a scheme.
 constexpr int kStageIterations = 3;
 // Of the change that gravity makes in a sub-step, against which errors of cloths are measured at least. With the whole of it a cloth that hangs still wanders, since
 // errors of 1 % of its weight are alike from sub-step to sub-step: a strip of 10 cm by 5 % of its drop. With none of it iterations go on at rest until they are
 // spent. Solids have the whole: plates that break gain up to 9 % of their energy from contacts with a tenth, and up to 2 % so.
 constexpr float kClothRestShare = 0.1f;
-constexpr double kSpreadTolerance = 1.0e-4;  // of the square of the error
 
 ExplicitScheme scheme_of(SoftIntegrator integrator) {
   switch (integrator) {
@@ -123,7 +116,6 @@ SoftStep begin_soft_step(SoftEntry& entry, const SoftStepSettings& settings, con
   SoftStep step;
   step.h = settings.step;
   step.carried = settings.carried;
-  step.touches = settings.touches;
   const SoftIntegrator integrator = entry.settings().integrator;
   if (!is_implicit(integrator)) {
     step.method = SoftMethod::explicit_scheme;
@@ -152,32 +144,6 @@ Sym3 inverse_mass(const SoftEntry& entry, const SoftStep& step, std::uint32_t pa
   if (step.method == SoftMethod::rope) return step.rope.inverse[particle];
   if (step.method == SoftMethod::conjugate_gradients) return inverse_mass(step.implicit, int(particle));
   return explicit_inverse_mass(p, step, int(particle));
-}
-
-void respond(SoftEntry& entry, SoftStep& step, std::span<const Vec3> impulses, std::span<Vec3> change,
-             const SoftKernels& kernels, Arena& arena, TaskSystem& tasks) {
-  const Particles& p = entry.body.particles;
-  const std::size_t count = std::size_t(p.count);
-  if (step.method == SoftMethod::rope)
-    return respond_rope(entry.body, step.rope, impulses.first(count), change.first(count));
-  if (step.method == SoftMethod::explicit_scheme) {
-    for (std::size_t i = 0; i < count; ++i)
-      change[i] = p.loose[i] == 0.0f ? Vec3{} : (1.0f / p.mass[i]) * impulses[i];
-    for (const CarriedInertia& one : step.carried)
-      change[std::size_t(one.particle)] =
-          explicit_inverse_mass(p, step, one.particle) * impulses[std::size_t(one.particle)];
-    return;
-  }
-  const ArenaScope scope(arena);
-  const VectorRows given = make_vectors(arena, impulses.size()), found = make_vectors(arena, impulses.size());
-  for (std::size_t i = 0; i < impulses.size(); ++i) {
-    const Vec3 one = i < count && p.loose[i] != 0.0f ? impulses[i] : Vec3{};
-    given.x[i] = one.x, given.y[i] = one.y, given.z[i] = one.z;
-  }
-  const bool is_pressed = entry.kind == SoftKind::solid && step.touches;
-  const int iterations = is_pressed ? kSolidSpreadIterations : kSpreadIterations;
-  find_response(entry.body, step.implicit, given, found, iterations, kSpreadTolerance, kernels, arena, tasks);
-  for (std::size_t i = 0; i < count; ++i) change[i] = {found.x[i], found.y[i], found.z[i]};
 }
 
 void add_change(SoftEntry& entry, SoftStep& step, std::span<const Vec3> change, float scale) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "soft/body/soft_energy.h"
+#include "soft/solver/body_system.h"
 #include "soft/solver/implicit_step.h"
 
 #include <cmath>
@@ -26,6 +27,22 @@ struct Bench {
     for (int i = 0; i < steps; ++i) this->step(body, settings);
   }
 };
+
+// The change of velocity that impulses (N s, a row for each particle, also those that fill up the last slice) make: A d = impulses, by conjugate gradients.
+inline void find_response(Bench& bench, const SoftBody& body, const ImplicitStep& step,
+                          const VectorRows& impulses, const VectorRows& change) {
+  SoftPass pass = step.pass;
+  pass.change = change;
+  pass.residual = make_vectors(bench.arena, body.particles.x.size());
+  for (std::size_t i = 0; i < body.particles.x.size(); ++i) {
+    change.x[i] = change.y[i] = change.z[i] = 0.0f;
+    pass.residual.x[i] = impulses.x[i], pass.residual.y[i] = impulses.y[i],
+    pass.residual.z[i] = impulses.z[i];
+  }
+  BodySystem system(pass, step.carried, bench.kernels, bench.tasks);
+  double error = system.sum(bench.kernels.precondition);
+  iterate(system, error, 1.0e-12 * error, 1, 500);
+}
 
 inline DVec3 momentum(const SoftBody& body) {
   DVec3 sum{};
