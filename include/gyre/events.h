@@ -70,7 +70,7 @@ struct SoftContactEnd {
 // A tetrahedron of a solid was turned inside out in the step. It turns back by itself, unless the model is linear.
 struct SoftInverted {
   SoftId soft{};
-  int tetrahedron = 0;  // in the order of SolidDef::tetrahedra; of a box: six of each cell
+  int tetrahedron = 0;  // in the order of SolidDef::tetrahedra; of a box: five of each cell
   std::array<std::uint32_t, 4> vertices{};
 };
 // A cloth tore or a solid broke at a vertex: some of the elements around it have the new vertex instead.

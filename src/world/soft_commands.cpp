@@ -305,7 +305,7 @@ std::size_t World::solid_tetrahedra(SoftId solid, std::span<std::uint32_t> out) 
     for (int lane = 0; lane < kTetLanes; ++lane) {
       if (!(block.volume[lane] > 0.0f)) continue;
       // Corners ascend in a block; the last two change places where that turns the tetrahedron inside out.
-      const auto& m = block.inverse;
+      const auto& m = block.gradient;
       const Vec3 x{m[0][lane], m[1][lane], m[2][lane]}, y{m[3][lane], m[4][lane], m[5][lane]},
           z{m[6][lane], m[7][lane], m[8][lane]};
       const bool inverted = dot(cross(x, y), z) < 0.0f;

@@ -32,8 +32,8 @@ void find_touching(const SoftEntry& entry, Array<std::uint8_t>& mark, Array<Soft
 bool is_inverted(const Particles& p, const TetBlock& block, int lane) {
   if (block.volume[lane] == 0.0f) return false;
   const auto rest = [&](int c) {
-    return DVec3{double(block.inverse[3 * c][lane]), double(block.inverse[3 * c + 1][lane]),
-                 double(block.inverse[3 * c + 2][lane])};
+    return DVec3{double(block.gradient[3 * c][lane]), double(block.gradient[3 * c + 1][lane]),
+                 double(block.gradient[3 * c + 2][lane])};
   };
   const DVec3 origin = p.place(block.corner[0][lane]);
   const auto edge = [&](int c) { return p.place(block.corner[c][lane]) - origin; };

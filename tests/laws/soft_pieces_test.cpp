@@ -31,7 +31,7 @@ SoftId add_plate(World& world) {
   plate.box = SolidBox{{0.6f, 0.04f, 0.4f}, {8, 2, 5}};
   plate.pose = {{0.02, 1.0, 0.01}, {0, 0, 0.02f, 0.9998f}};
   plate.young_modulus = 1.0e6f, plate.poisson_ratio = 0.3f;
-  plate.fracture_stress = 2.0e4f;
+  plate.fracture_stress = 1.3e4f;
   plate.settings.damping = 0.005f;
   return world.add_solid(plate);
 }
@@ -55,7 +55,7 @@ TEST(SoftPieces, APlateThatBreaksOverARodLiesInAHeap) {
   }
   EXPECT_GT(world.vertices(plate).size(), whole + 30);
   // Contacts give back nothing, but parts that are moved apart stretch what is around them.
-  EXPECT_LT(gained, 5.0e-4 * start);
+  EXPECT_LT(gained, 1.0e-3 * start);
   EXPECT_EQ(world.soft_info(plate).mass, mass);
   // The heap rests: less than 0.01 J of 750 J are left in motion, and nothing is in the ground.
   EXPECT_LT(world.energy().kinetic, 0.01);

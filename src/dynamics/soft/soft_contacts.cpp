@@ -190,8 +190,12 @@ class ContactFinder {
     for (int i = 0; i < p_.count; ++i) reach[std::size_t(i)] = reach_of(i);
     emerging_ = arena_.make<std::uint8_t>(std::size_t(p_.count));
     for (std::uint8_t& one : emerging_) one = 0;
-    for (const SoftContact& one : entry_.contacts)
-      if (one.grip == SoftGrip::emerges) emerging_[one.particle] = 1;
+    emerges_from_ = arena_.make<std::int32_t>(candidates_.size()).first(0);
+    for (const SoftContact& one : entry_.contacts) {
+      if (one.grip != SoftGrip::emerges) continue;
+      emerging_[one.particle] = 1;
+      if (!emerges_from(one.body)) add_emerging(one.body);
+    }
     for_blocks(tasks, int(faces), kParticlesPerBlock, [&](int begin, int end, int) {
       for (std::size_t t = std::size_t(begin); t < std::size_t(end); ++t)
         found[t] = find_face(std::uint32_t(t), reach, touching, counts, before, room[t]);
@@ -292,6 +296,16 @@ class ContactFinder {
     }
     return false;
   }
+  // True if a vertex emerges from a body. That may be within the solid, whose faces would press it apart from all sides: they emerge, too.
+  bool emerges_from(std::int32_t body) const {
+    for (const std::int32_t one : emerges_from_)
+      if (one == body) return true;
+    return false;
+  }
+  void add_emerging(std::int32_t body) {
+    emerges_from_ = {emerges_from_.data(), emerges_from_.size() + 1};
+    emerges_from_.back() = body;
+  }
 
   void set_face(const Candidate& candidate, const DVec3 (&at)[3], const FaceDistance& found,
                 std::span<const SoftFaceContact> before, SoftFaceContact& out) const {
@@ -319,7 +333,7 @@ class ContactFinder {
     contact.gap = float(found.distance) - entry_.radius;
     contact.static_friction = candidate.static_friction;
     contact.dynamic_friction = candidate.dynamic_friction;
-    if (last != nullptr) contact.impulse = last->at.impulse;
+    keep_grip(last != nullptr ? &last->at : nullptr, contact);
   }
 
   static bool is_beyond(const Aabb& box, DVec3 at, double reach) {
@@ -346,19 +360,20 @@ class ContactFinder {
   // Both lists ascend by particle, then shape.
   void keep_impulses(std::span<const SoftContact> before) {
     std::size_t k = 0;
-    // No sub-step has moved it yet.
-    const bool is_new = is_implicit(entry_.settings().integrator) && entry_.body.pull[0].empty();
     for (SoftContact& contact : entry_.contacts) {
       const auto key = [](const SoftContact& c) { return std::uint64_t(c.particle) << 32 | c.shape; };
       while (k < before.size() && key(before[k]) < key(contact)) ++k;
-      if (k < before.size() && key(before[k]) == key(contact))
-        contact.impulse = before[k].impulse, contact.grip = before[k].grip;
-      else if (is_new && is_deep(contact))
-        contact.grip = SoftGrip::emerges;
-      if (contact.grip == SoftGrip::emerges && !is_deep(contact)) contact.grip = SoftGrip::open;
+      keep_grip(k < before.size() && key(before[k]) == key(contact) ? &before[k] : nullptr, contact);
     }
   }
-  // A vertex of a solid that is inside a shape, deeper than one that lies on it.
+  // What a contact goes on with: the impulse and the grip of the last step. What begins inside a shape, before any sub-step has moved it, emerges.
+  void keep_grip(const SoftContact* last, SoftContact& contact) const {
+    const bool is_new = is_implicit(entry_.settings().integrator) && entry_.body.pull[0].empty();
+    if (last != nullptr) contact.impulse = last->impulse, contact.grip = last->grip;
+    if ((last == nullptr && is_new) || emerges_from(contact.body)) contact.grip = SoftGrip::emerges;
+    if (contact.grip == SoftGrip::emerges && !is_deep(contact)) contact.grip = SoftGrip::open;
+  }
+  // A vertex or face of a solid that is inside a shape, deeper than one that lies on it.
   bool is_deep(const SoftContact& contact) const {
     return entry_.kind == SoftKind::solid && contact.gap + entry_.radius < -kDeepShare * entry_.size;
   }
@@ -370,7 +385,8 @@ class ContactFinder {
   float fall_;  // m/s, what gravity adds in the step
   Arena& arena_;
   std::span<Candidate> candidates_{};
-  std::span<std::uint8_t> emerging_{};  // by vertex
+  std::span<std::uint8_t> emerging_{};      // by vertex
+  std::span<std::int32_t> emerges_from_{};  // bodies
 };
 
 // Wakes bodies that are touched or held by what moves. An awake one does not fall asleep meanwhile.

@@ -172,18 +172,40 @@ bool is_squeezed(SoftSolve& s, std::span<const std::uint32_t> numbers, std::span
   return squeezed;
 }
 
+// By vertex: 0 for those of a stiff piece that bears nothing but itself: no rigid body that yields and no other soft matter.
+std::span<const std::uint8_t> find_loaded(SoftSolve& s, std::span<const std::uint32_t> numbers,
+                                          std::span<const CouplingRow> rows) {
+  SoftSurfaces& all = s.scratch->surfaces;
+  const std::size_t count = all.positions.size();
+  const std::span<std::uint8_t> piece = all.arena.make<std::uint8_t>(count),
+                                loaded = all.arena.make<std::uint8_t>(count);
+  for (std::uint8_t& one : piece) one = 0;
+  const auto load = [&](const CouplingRow& row) {
+    for (const std::uint32_t v : row.vertex)
+      if (all.stiff[v] != kNoStiffPiece) piece[all.stiff[v]] = 1;
+  };
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (s.scratch->rows[numbers[i]].body_compliance != Sym3{}) load(rows[i]);
+  for (const CouplingRow& row : all.contacts.rows.view().first(all.contacts.row_pairs.size()))
+    if (row.impulse != Vec3{}) load(row);
+  for (std::size_t v = 0; v < count; ++v) loaded[v] = all.stiff[v] == kNoStiffPiece ? 1 : piece[all.stiff[v]];
+  return loaded;
+}
+
 // Impulses on what does not yield are not remembered by members that are squeezed, or of which one closes more than it may: they would grow without bound and throw what comes
-// free, and one that stays alone would throw it at once. Nor are those of visual members, whose velocities come from places that were moved to fit.
+// free, and one that stays alone would throw it at once. Nor are those of stiff solids that bear nothing but themselves: where two sides hold one, impulses that
+// were in balance are not when it has turned. Nor are those of visual members, whose velocities come from places that were moved to fit.
 void forget_squeezes(SoftSolve& s, std::span<const std::uint32_t> numbers,
                      std::span<const CouplingRow> rows) {
   const auto yields = [](const SoftRow& row) { return row.body_compliance != Sym3{}; };
+  const std::span<const std::uint8_t> loaded = find_loaded(s, numbers, rows);
   for (std::size_t begin = 0, end = 0; begin < numbers.size(); begin = end) {
     const std::uint32_t member = s.scratch->rows[numbers[begin]].member;
     bool forgets = !s.scratch->rows[numbers[begin]].pushes;
     for (; end < numbers.size() && s.scratch->rows[numbers[end]].member == member; ++end)
       forgets = forgets || (rows[end].is_closing && !yields(s.scratch->rows[numbers[end]]));
-    forgets =
-        forgets || is_squeezed(s, numbers.subspan(begin, end - begin), rows.subspan(begin, end - begin));
+    forgets = forgets || !loaded[rows[begin].vertex[0]] ||
+              is_squeezed(s, numbers.subspan(begin, end - begin), rows.subspan(begin, end - begin));
     for (std::size_t i = begin; i < end && forgets; ++i) {
       SoftRow& row = s.scratch->rows[numbers[i]];
       if (!row.pushes || !yields(row)) row.impulse = {};

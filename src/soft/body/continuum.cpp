@@ -9,11 +9,9 @@ namespace gyre {
 
 namespace {
 
-constexpr int kPair[kTetEdges][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-
-void sort_corners(std::uint32_t (&corner)[4]) {
-  for (int i = 1; i < 4; ++i) {
-    for (int j = i; j > 0 && corner[j - 1] > corner[j]; --j) std::swap(corner[j - 1], corner[j]);
+void sort_corners(std::span<std::uint32_t> corner) {
+  for (std::size_t i = 1; i < corner.size(); ++i) {
+    for (std::size_t j = i; j > 0 && corner[j - 1] > corner[j]; --j) std::swap(corner[j - 1], corner[j]);
   }
 }
 
@@ -54,7 +52,7 @@ void set_shape(TetBlock& block, int lane, const std::uint32_t (&corner)[4], std:
       d{matrix[6], matrix[7], matrix[8]};
   if (!invert_3x3(matrix, inverse)) return;
   block.volume[lane] = float(absolute(dot(a, cross(b, d))) / 6.0);
-  for (int k = 0; k < 9; ++k) block.inverse[k][lane] = float(inverse[k]);
+  for (int k = 0; k < 9; ++k) block.gradient[k][lane] = float(inverse[k]);
 }
 
 // The lowest colour that no chunk with a common particle has, chunk by chunk.
@@ -93,7 +91,7 @@ ColoredChunks color_chunks(const Array<Block>& blocks, int particles) {
   return out;
 }
 
-// The pattern of elements of `size` corners each.
+// The pattern of all elements of a continuum.
 struct Pattern {
   NeighbourLists lists;
   Array<std::int32_t> number;  // of the edge to each neighbour
@@ -103,17 +101,19 @@ struct Pattern {
   }
 };
 
-Pattern make_pattern(std::span<const std::uint32_t> corners, std::size_t size, int particles,
-                     Continuum& continuum) {
-  Array<MatrixEntry> entries;
+// Adds all pairs of elements of `size` corners each.
+void add_pairs(std::span<const std::uint32_t> corners, std::size_t size, Array<MatrixEntry>& entries) {
   for (std::size_t first = 0; first < corners.size(); first += size) {
     for (std::size_t a = 0; a < size; ++a) {
       for (std::size_t b = 0; b < size; ++b) entries.push_back({corners[first + a], corners[first + b], 0.0});
     }
   }
-  merge_entries(entries);
+}
+
+Pattern make_pattern(Array<MatrixEntry>& pairs, int particles, Continuum& continuum) {
+  merge_entries(pairs);
   Pattern pattern;
-  pattern.lists = list_neighbours(entries, particles);
+  pattern.lists = list_neighbours(pairs, particles);
   continuum.edges = number_edges(pattern.lists, pattern.number);
   Array<std::int32_t> place;
   continuum.rows = slice_rows(pattern.lists, place);
@@ -125,6 +125,83 @@ Pattern make_pattern(std::span<const std::uint32_t> corners, std::size_t size, i
     }
   }
   return pattern;
+}
+
+bool share_a_face(const std::uint32_t* a, const std::uint32_t* b) {
+  int common = 0;
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) common += a[i] == b[k] ? 1 : 0;
+  }
+  return common == 3;
+}
+
+// Cells and their corners, kCellCorners each, ascending, the last several times where there are fewer.
+class CellLists {
+ public:
+  Array<std::uint32_t> corners;
+
+  // `group`: by tetrahedron, ascending.
+  CellLists(std::span<const std::uint32_t> tetrahedra, std::span<const std::uint32_t> group,
+            Continuum& continuum)
+      : tetrahedra_(tetrahedra), continuum_(continuum) {
+    if (group.empty()) return;
+    continuum.cell_of.assign(group.size(), -1);
+    continuum.cell_begin.push_back(0);
+    for (std::size_t first = 0, end = 0; first < group.size(); first = end) {
+      while (end < group.size() && group[end] == group[first]) ++end;
+      for (std::size_t t = first; t < end; ++t) add_cell(t, end);
+    }
+  }
+
+ private:
+  // The cell of all tetrahedra from `first` to `end` that hang together with the first one by whole faces.
+  void add_cell(std::size_t first, std::size_t end) {
+    if (continuum_.cell_of[first] >= 0) return;
+    parts_.clear(), around_.clear();
+    parts_.push_back(std::int32_t(first));
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      const std::uint32_t* const own = tetrahedra_.data() + 4 * std::size_t(parts_[k]);
+      for (int a = 0; a < 4; ++a) add_corner(own[a]);
+      for (std::size_t t = first; t < end; ++t) {
+        bool is_new = continuum_.cell_of[t] < 0;
+        for (const std::int32_t part : parts_) is_new = is_new && part != std::int32_t(t);
+        if (is_new && share_a_face(own, tetrahedra_.data() + 4 * t)) parts_.push_back(std::int32_t(t));
+      }
+    }
+    if (parts_.size() == 1 || around_.size() > kCellCorners) return;
+    const std::int32_t number = std::int32_t(continuum_.cell_begin.size()) - 1;
+    for (const std::int32_t part : parts_) {
+      continuum_.cell_of[part] = number;
+      continuum_.cell_parts.push_back(part);
+    }
+    continuum_.cell_begin.push_back(std::int32_t(continuum_.cell_parts.size()));
+    sort_corners(around_.view());
+    while (around_.size() < kCellCorners) around_.push_back(around_.back());
+    corners.append(around_.view());
+  }
+  void add_corner(std::uint32_t corner) {
+    for (const std::uint32_t one : around_) {
+      if (one == corner) return;
+    }
+    around_.push_back(corner);
+  }
+
+  std::span<const std::uint32_t> tetrahedra_;
+  Continuum& continuum_;
+  Array<std::int32_t> parts_;
+  Array<std::uint32_t> around_;
+};
+
+// Corners of a lane, which ascend, and the edges between them.
+template <int Corners>
+void set_corners(SolidBlock<Corners>& block, int lane, const std::uint32_t* corner, const Pattern& pattern,
+                 int edges) {
+  int edge = 0;
+  for (int a = 0; a < Corners; ++a) {
+    block.corner[a][lane] = std::int32_t(corner[a]);
+    for (int b = a + 1; b < Corners; ++b)
+      block.edge[edge++][lane] = corner[a] == corner[b] ? edges : pattern.edge(corner[a], corner[b]);
+  }
 }
 
 void number_pieces(Continuum& continuum, std::span<const std::uint32_t> corners, int particles) {
@@ -151,10 +228,81 @@ void fill_up(Array<Block>& blocks, std::size_t elements, int edges) {
 
 }  // namespace
 
-Continuum make_continuum(std::span<const std::uint32_t> corners, std::span<const DVec3> places) {
+namespace {
+
+// Gradients of all corners of a cell.
+struct CellGradients {
+  double of[kCellCorners][3] = {};
+};
+
+// Those of one of its tetrahedra.
+CellGradients part_gradients(const CellBlock& block, int lane, const TetBlock& part, int at) {
+  CellGradients out;
+  int corner[4];
+  for (int a = 0; a < 4; ++a) {
+    corner[a] = 0;
+    while (block.corner[corner[a]][lane] != part.corner[a][at]) ++corner[a];
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int a = 1; a < 4; ++a) {
+      const double own = double(part.gradient[TetBlock::kOthers * axis + a - 1][at]);
+      out.of[corner[a]][axis] = own, out.of[corner[0]][axis] -= own;
+    }
+  }
+  return out;
+}
+
+// Adds a share of the products of the gradients of each two corners.
+void add_products(const CellGradients& gradients, double share, double (&products)[CellBlock::kEdges]) {
+  int edge = 0;
+  for (int a = 0; a < kCellCorners; ++a) {
+    for (int b = a + 1; b < kCellCorners; ++b, ++edge) {
+      for (int axis = 0; axis < 3; ++axis)
+        products[edge] += share * gradients.of[a][axis] * gradients.of[b][axis];
+    }
+  }
+}
+
+}  // namespace
+
+void renew_cell(Continuum& continuum, int cell) {
+  CellBlock& block = continuum.cells[cell / kTetLanes];
+  const int lane = cell % kTetLanes;
+  CellGradients mean;
+  double volume = 0.0, products[CellBlock::kEdges] = {};
+  for (std::int32_t k = continuum.cell_begin[cell]; k < continuum.cell_begin[cell + 1]; ++k) {
+    const TetBlock& part = continuum.tetrahedra[continuum.cell_parts[k] / kTetLanes];
+    const int at = continuum.cell_parts[k] % kTetLanes;
+    const CellGradients gradients = part_gradients(block, lane, part, at);
+    const double own = double(part.volume[at]);
+    volume += own;
+    for (int a = 0; a < kCellCorners; ++a) {
+      for (int axis = 0; axis < 3; ++axis) mean.of[a][axis] += own * gradients.of[a][axis];
+    }
+    add_products(gradients, own, products);
+  }
+  for (auto& gradient : mean.of) {
+    for (double& one : gradient) one /= volume;
+  }
+  add_products(mean, -volume, products);
+  block.volume[lane] = float(volume);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int a = 1; a < kCellCorners; ++a)
+      block.gradient[CellBlock::kOthers * axis + a - 1][lane] = float(mean.of[a][axis]);
+  }
+  for (int edge = 0; edge < CellBlock::kEdges; ++edge)
+    block.tie[edge][lane] = float(-2.0 * kSpreadShare * products[edge]);
+}
+
+Continuum make_continuum(std::span<const std::uint32_t> corners, std::span<const DVec3> places,
+                         std::span<const std::uint32_t> group) {
   Continuum continuum;
-  const Pattern pattern = make_pattern(corners, 4, int(places.size()), continuum);
-  const std::size_t count = corners.size() / 4;
+  const CellLists cells(corners, group, continuum);
+  Array<MatrixEntry> pairs;
+  add_pairs(corners, 4, pairs);
+  add_pairs(cells.corners.view(), kCellCorners, pairs);
+  const Pattern pattern = make_pattern(pairs, int(places.size()), continuum);
+  const std::size_t count = corners.size() / 4, cell_count = cells.corners.size() / kCellCorners;
   continuum.tetrahedra.resize((count + kTetLanes - 1) / kTetLanes);
   for (std::size_t t = 0; t < count; ++t) {
     std::uint32_t corner[4];
@@ -162,14 +310,23 @@ Continuum make_continuum(std::span<const std::uint32_t> corners, std::span<const
     sort_corners(corner);
     TetBlock& block = continuum.tetrahedra[t / kTetLanes];
     const int lane = int(t % kTetLanes);
-    for (int a = 0; a < 4; ++a) block.corner[a][lane] = std::int32_t(corner[a]);
-    for (int e = 0; e < kTetEdges; ++e)
-      block.edge[e][lane] = pattern.edge(corner[kPair[e][0]], corner[kPair[e][1]]);
+    set_corners(block, lane, corner, pattern, continuum.edges);
     set_shape(block, lane, corner, places);
+    block.stiffness[lane] = continuum.is_in_cell(t) ? 0.0f : 1.0f;
+  }
+  continuum.cells.resize((cell_count + kTetLanes - 1) / kTetLanes);
+  for (std::size_t c = 0; c < cell_count; ++c) {
+    CellBlock& block = continuum.cells[c / kTetLanes];
+    const int lane = int(c % kTetLanes);
+    set_corners(block, lane, cells.corners.data() + kCellCorners * c, pattern, continuum.edges);
+    block.stiffness[lane] = 1.0f;
+    renew_cell(continuum, int(c));
   }
   fill_up(continuum.tetrahedra, count, continuum.edges);
+  fill_up(continuum.cells, cell_count, continuum.edges);
   number_pieces(continuum, corners, int(places.size()));
   continuum.tetrahedron_chunks = color_chunks(continuum.tetrahedra, int(places.size()));
+  continuum.cell_chunks = color_chunks(continuum.cells, int(places.size()));
   return continuum;
 }
 
@@ -177,7 +334,9 @@ Continuum make_membrane(std::span<const SheetTriangle> triangles, int particles)
   Continuum continuum;
   Array<std::uint32_t> corners;
   for (const SheetTriangle& one : triangles) corners.append(one.corner);
-  const Pattern pattern = make_pattern(corners, 3, particles, continuum);
+  Array<MatrixEntry> pairs;
+  add_pairs(corners.view(), 3, pairs);
+  const Pattern pattern = make_pattern(pairs, particles, continuum);
   continuum.triangles.resize((triangles.size() + kTetLanes - 1) / kTetLanes);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     int order[3] = {0, 1, 2};  // by particle, ascending

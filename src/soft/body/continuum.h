@@ -15,6 +15,13 @@
 //                write lambda for what is lambda + mu here). Below |F|^2 = 1/2 the first term falls off faster, so that an
 //                element that was pressed to a point grows again.
 //
+// Tetrahedra alone are too stiff in bending and torsion, and lock near a Poisson's ratio of 1/2, since each keeps its volume. Where they come in cells,
+// such as cubes of five, the cell is the element, of up to eight corners: V W(mean F) + s mu sum V_t |F_t - mean F|^2, with the mean over its tetrahedra.
+// The second term is quadratic and does not change in a rotation: springs without length between the corners. Without it a cell would bend for
+// nothing (T. Belytschko, J. S.-J. Ong, W. K. Liu, J. M. Kennedy, "Hourglass Control in Linear and Nonlinear Problems", 1984). A tetrahedron that is pressed
+// below half of its volume pushes back by itself. Tetrahedra of a cell hang together by whole faces: where a crack divides a cell, each part is a
+// cell or a tetrahedron.
+//
 // Membrane triangles have F of two columns, (x1 - x0, x2 - x0) Dm^-1 in the two directions of the sheet, and the energy per area of St Venant
 // and Kirchhoff, 1/2 c (E11^2 + E22^2) + c' E11 E22 + 2 g E12^2 with E = (F^T F - 1) / 2.
 //
@@ -42,12 +49,22 @@ struct ColoredChunks {
   Array<std::int32_t> begin;
 };
 
+// s: the share of the shear modulus with which tetrahedra of a cell resist to differ from their mean. Beams of cubic cells bend right within 8 %
+// from two cells through the depth on. With half of it one of one cell hangs three times too far, and with twice as much it twists by a fifth too little
+// with four (docs/decisions/soft-solver.md).
+constexpr double kSpreadShare = 0.15;
+
 struct Continuum {
   ElementMaterial material;
   int edges = 0;
   Array<TetBlock> tetrahedra;
   Array<TriangleBlock> triangles;
   ColoredChunks tetrahedron_chunks, triangle_chunks;
+  Array<CellBlock> cells;
+  ColoredChunks cell_chunks;
+  Array<std::int32_t> cell_of;     // by tetrahedron: its cell, -1 if it is in none; empty: there are none
+  Array<std::int32_t> cell_begin;  // by cell, and the end: its tetrahedra in cell_parts
+  Array<std::int32_t> cell_parts;
   // By particle: the number of the piece that tetrahedra hold together, ascending by the lowest particle. None: all are one piece.
   Array<std::uint32_t> piece;
   int pieces = 1;
@@ -55,6 +72,8 @@ struct Continuum {
   Array<std::int32_t>
       edge_of_place;  // 2 edge, + 1 where the row is the higher particle; -1 where there is no neighbour
 
+  int cell_count() const { return cell_begin.empty() ? 0 : int(cell_begin.size()) - 1; }
+  bool is_in_cell(std::size_t tetrahedron) const { return !cell_of.empty() && cell_of[tetrahedron] >= 0; }
   bool empty() const { return tetrahedra.empty() && triangles.empty(); }
 };
 
@@ -64,8 +83,12 @@ struct SheetTriangle {
   double place[3][2];
 };
 
-// `corners`: four particles a tetrahedron, in any order; `places`: of the particles at rest. Every tetrahedron must have a volume.
-Continuum make_continuum(std::span<const std::uint32_t> corners, std::span<const DVec3> places);
+// `corners`: four particles a tetrahedron, in any order; `places`: of the particles at rest. Every tetrahedron must have a volume. `group`: by tetrahedron,
+// ascending: those of one group make a cell, or several where they do not hang together; none: there are no cells.
+Continuum make_continuum(std::span<const std::uint32_t> corners, std::span<const DVec3> places,
+                         std::span<const std::uint32_t> group = {});
+// Finds the mean of a cell anew, after the rest shapes of its tetrahedra changed.
+void renew_cell(Continuum& continuum, int cell);
 Continuum make_membrane(std::span<const SheetTriangle> triangles, int particles);
 
 }  // namespace gyre

@@ -18,15 +18,37 @@ struct RowSlot {
 enum class ElementModel : std::uint8_t { linear, corotated, neo_hookean };
 
 constexpr int kTetLanes = 16;
-constexpr int kTetEdges = 6;     // pairs of corners 01 02 03 12 13 23
 constexpr int kEdgeFloats = 12;  // a block of nine numbers, each column in four
 
-// Corners ascend within a tetrahedron, so that an edge always leads from the lower particle to the higher.
-struct alignas(64) TetBlock {
-  std::int32_t corner[4][kTetLanes];
-  std::int32_t edge[kTetEdges][kTetLanes];
-  float inverse[9][kTetLanes];  // Dm^-1 by columns, 1/m
-  float volume[kTetLanes];      // m^3; 0 in lanes that fill up the last block
+// Elements of a solid with one deformation gradient each. Corners ascend within an element, so that an edge always leads from the lower particle
+// to the higher. An element of fewer corners has its last corner several times, with gradients of zero.
+template <int Corners>
+struct alignas(64) SolidBlock {
+  static constexpr int kCorners = Corners;
+  static constexpr int kEdges = Corners * (Corners - 1) / 2;  // pairs of corners 01 02 ... 12 13 ...
+  static constexpr int kOthers = Corners - 1;                 // corners from the second on
+
+  std::int32_t corner[Corners][kTetLanes];
+  std::int32_t edge[kEdges][kTetLanes];
+  // 1/m, of the other corners: x of all, y, z; that of the first makes the sum zero.
+  float gradient[3 * kOthers][kTetLanes];
+  float volume[kTetLanes];  // m^3; 0 in lanes that fill up the last block
+  float stiffness[kTetLanes];  // 1; 0 of tetrahedra for which a cell acts
+};
+
+using TetBlock = SolidBlock<4>;
+
+constexpr int kCellCorners = 8;
+
+// A tetrahedron of a cell has no energy of its own until it is pressed below this share of its volume. Then it pushes back, by this share of the shear
+// modulus for each share of its volume that is missing: so a cell whose corners were turned inside out comes back (at 0.7 in place of 0.5, and at
+// half or twice the stiffness, fewer do).
+constexpr float kMinPartVolume = 0.5f;
+constexpr float kGuardStiffness = 2.0f;
+
+// Cells also have springs without length between all their corners, which are zero in sum at any uniform deformation.
+struct alignas(64) CellBlock : SolidBlock<kCellCorners> {
+  float tie[kEdges][kTetLanes];  // m, times the shear modulus: their stiffness
 };
 
 struct alignas(64) TriangleBlock {

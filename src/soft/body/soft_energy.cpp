@@ -1,6 +1,7 @@
 #include "soft/body/soft_energy.h"
 
 #include "math/dense.h"
+#include "soft/body/deformation.h"
 #include "soft/body/enclosed_gas.h"
 
 #include <cmath>
@@ -65,22 +66,38 @@ double density(const Continuum& continuum, const DVec3 (&f)[3]) {
   return 0.5 * mu * (spread - 2.75) + 0.5 * bulk * (excess * excess - square(mu / bulk));
 }
 
-double continuum_energy(const Particles& particles, const Continuum& continuum) {
+template <class Block>
+double elements_energy(const Particles& particles, const Continuum& continuum, const Array<Block>& blocks) {
   double sum = 0.0;
-  for (const TetBlock& block : continuum.tetrahedra) {
+  for (const Block& block : blocks) {
     for (int lane = 0; lane < kTetLanes; ++lane) {
-      if (block.volume[lane] == 0.0f) continue;
-      const DVec3 origin = particles.place(block.corner[0][lane]);
-      DVec3 edges[3], f[3];
-      for (int c = 0; c < 3; ++c) edges[c] = particles.place(block.corner[c + 1][lane]) - origin;
-      for (int c = 0; c < 3; ++c) {
-        f[c] = {};
-        for (int k = 0; k < 3; ++k) f[c] += double(block.inverse[3 * c + k][lane]) * edges[k];
-      }
+      if (block.stiffness[lane] == 0.0f) continue;
+      DVec3 f[3];
+      find_deformation(particles, block, lane, f);
       sum += double(block.volume[lane]) * density(continuum, f);
     }
   }
   return sum;
+}
+
+// Of the differences between tetrahedra of a cell, and of those that are pressed below kMinPartVolume.
+double parts_energy(const SoftBody& body) {
+  const Continuum& continuum = body.continuum;
+  double spread = 0.0, pressed = 0.0;
+  for (int cell = 0; cell < continuum.cell_count(); ++cell) {
+    DVec3 mean[3];
+    find_mean_deformation(body, cell, mean);
+    for (std::int32_t k = continuum.cell_begin[cell]; k < continuum.cell_begin[cell + 1]; ++k) {
+      const TetBlock& block = continuum.tetrahedra[continuum.cell_parts[k] / kTetLanes];
+      const int lane = continuum.cell_parts[k] % kTetLanes;
+      const double volume = double(block.volume[lane]);
+      DVec3 f[3];
+      find_deformation(body.particles, block, lane, f);
+      for (int c = 0; c < 3; ++c) spread += volume * length_squared(f[c] - mean[c]);
+      pressed += volume * square(min(dot(f[0], cross(f[1], f[2])) - double(kMinPartVolume), 0.0));
+    }
+  }
+  return double(continuum.material.mu) * (kSpreadShare * spread + 0.5 * double(kGuardStiffness) * pressed);
 }
 
 double membrane_energy(const Particles& particles, const Continuum& continuum) {
@@ -117,7 +134,8 @@ double elastic_energy(const SoftBody& body) {
     twice += 0.5 * double(body.bend.stiffness[place]) * square(span);
   });
   const bool has_gas = !body.gas.triangles.empty();
-  return 0.5 * twice + continuum_energy(body.particles, body.continuum) +
+  return 0.5 * twice + elements_energy(body.particles, body.continuum, body.continuum.tetrahedra) +
+         elements_energy(body.particles, body.continuum, body.continuum.cells) + parts_energy(body) +
          membrane_energy(body.particles, body.continuum) +
          (has_gas ? gas_energy(body.gas, enclosed_volume(body.particles, body.gas.triangles)) : 0.0);
 }

@@ -298,6 +298,8 @@ constexpr SoftKernels soft_kernels() {
   return {W,
           add_tetrahedra<W, true>,
           add_tetrahedra<W, false>,
+          add_cells<W, true>,
+          add_cells<W, false>,
           add_triangles<W, true>,
           add_triangles<W, false>,
           fill_rows<W>,

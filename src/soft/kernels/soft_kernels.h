@@ -44,6 +44,7 @@ struct SoftPass {
   RowPattern full;
   float* full_blocks = nullptr;
   const TetBlock* tetrahedra = nullptr;
+  const CellBlock* cells = nullptr;
   const TriangleBlock* triangles = nullptr;
   const std::int32_t* edge_of_place = nullptr;
   ElementMaterial material;
@@ -83,6 +84,9 @@ struct SoftKernels {
   // Blocks of tetrahedra: their forces and stiffness; their forces alone.
   void (*add_tetrahedra)(const SoftPass& pass, int block_begin, int block_end);
   void (*add_tetrahedra_forces)(const SoftPass& pass, int block_begin, int block_end);
+  // The same of cells.
+  void (*add_cells)(const SoftPass& pass, int block_begin, int block_end);
+  void (*add_cells_forces)(const SoftPass& pass, int block_begin, int block_end);
   // The same of triangles.
   void (*add_triangles)(const SoftPass& pass, int block_begin, int block_end);
   void (*add_triangles_forces)(const SoftPass& pass, int block_begin, int block_end);

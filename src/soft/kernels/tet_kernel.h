@@ -1,4 +1,5 @@
-// The kernel of tetrahedra, one template for every width: forces and stiffness of each, added to its particles and edges.
+// The kernel of elements with one deformation gradient, tetrahedra and cells, one template for every width: forces and stiffness of each, added to its
+// particles and edges.
 //
 // With F = R S and S = Q diag(s) Q^T, the second derivative of an isotropic energy is, in the frame of U = R Q on the side of places and
 // Q on that of the rest shape, a 3 x 3 matrix A for the stretches and two numbers for each pair of axes, for their shear (flip) and
@@ -10,6 +11,8 @@
 #include "soft/kernels/element_sums.h"
 #include "soft/kernels/polar_lanes.h"
 #include "soft/kernels/row_lanes.h"
+
+#include <type_traits>
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -113,10 +116,9 @@ GYRE_INLINE Mat3W<W> corner_stiffness(const ElementResponse<W>& element, Vec3W<W
   return element.turn * inner * transpose(element.turn);
 }
 
-using TetSums = ElementSums<3, kTetEdges>;
-
-template <int W>
-GYRE_INLINE Vec3W<W> corner_edge(const SoftPass& pass, const TetBlock& block, int corner, int lane) {
+template <int W, int Corners>
+GYRE_INLINE Vec3W<W> corner_edge(const SoftPass& pass, const SolidBlock<Corners>& block, int corner,
+                                 int lane) {
   alignas(64) float edge[3][W];
   for (int i = 0; i < W; ++i) {
     const std::int32_t a = block.corner[0][lane + i], b = block.corner[corner][lane + i];
@@ -127,52 +129,148 @@ GYRE_INLINE Vec3W<W> corner_edge(const SoftPass& pass, const TetBlock& block, in
   return {Wide<W>::load(edge[0]), Wide<W>::load(edge[1]), Wide<W>::load(edge[2])};
 }
 
-template <int W, bool WithBlocks>
-GYRE_INLINE void respond(const SoftPass& pass, const TetBlock& block, int lane, TetSums& out) {
-  const auto rest = [&](int k) { return Wide<W>::load(block.inverse[k] + lane); };
-  const Mat3W<W> inverse{
-      {rest(0), rest(1), rest(2)}, {rest(3), rest(4), rest(5)}, {rest(6), rest(7), rest(8)}};
-  const Mat3W<W> edges{corner_edge<W>(pass, block, 1, lane), corner_edge<W>(pass, block, 2, lane),
-                       corner_edge<W>(pass, block, 3, lane)};
-  const Mat3W<W> f = edges * inverse;
+// Gradients of all corners, edges from the first corner, and the deformation gradient.
+template <int W, int Corners>
+struct Deformation {
+  Vec3W<W> gradient[Corners], edge[Corners];
+  Mat3W<W> f;
+
+  GYRE_INLINE Deformation(const SoftPass& pass, const SolidBlock<Corners>& block, int lane) {
+    constexpr int kOthers = SolidBlock<Corners>::kOthers;
+    edge[0] = {0.0f, 0.0f, 0.0f};
+    for (int a = 0; a < kOthers; ++a) {
+      const auto part = [&](int axis) { return Wide<W>::load(block.gradient[kOthers * axis + a] + lane); };
+      const Vec3W<W> own{part(0), part(1), part(2)}, way = corner_edge<W>(pass, block, a + 1, lane);
+      gradient[a + 1] = own, edge[a + 1] = way;
+      gradient[0] = a == 0 ? own : gradient[0] + own;
+      f = a == 0 ? Mat3W<W>{own.x * way, own.y * way, own.z * way}
+                 : Mat3W<W>{f.x + own.x * way, f.y + own.y * way, f.z + own.z * way};
+    }
+    gradient[0] = -gradient[0];
+  }
+};
+
+template <class Block>
+using BlockSums = ElementSums<Block::kOthers, Block::kEdges>;
+
+template <int W, bool WithBlocks, class Block>
+GYRE_INLINE void respond(const SoftPass& pass, const Block& block, int lane, BlockSums<Block>& out) {
+  constexpr int kCorners = Block::kCorners;
+  constexpr bool kHasTies = std::is_same_v<Block, CellBlock>;
+  const Deformation<W, kCorners> now(pass, block, lane);
   const ElementMaterial& material = pass.material;
   const ElementResponse<W> element =
       material.model == ElementModel::neo_hookean
-          ? neo_hookean_response(f, material.mu, material.lambda)
-          : linear_response(f, material.model == ElementModel::corotated, material.mu, material.lambda);
+          ? neo_hookean_response(now.f, material.mu, material.lambda)
+          : linear_response(now.f, material.model == ElementModel::corotated, material.mu, material.lambda);
   const Wide<W> volume = Wide<W>::load(block.volume + lane);
-  // Rows of Dm^-1 are the gradients of corners 1 to 3.
-  const Mat3W<W> gradients = transpose(inverse);
-  const Vec3W<W> gradient[4] = {-(gradients.x + gradients.y + gradients.z), gradients.x, gradients.y,
-                                gradients.z};
-  GYRE_UNROLL
-  for (int a = 1; a < 4; ++a) {
-    put_columns<W>(out.force[a - 1], lane, 0, -volume * (element.stress * gradient[a]));
+  Vec3W<W> force[kCorners];
+  force[0] = {0.0f, 0.0f, 0.0f};  // add_lane() finds what it lacks
+  for (int a = 1; a < kCorners; ++a) force[a] = -volume * (element.stress * now.gradient[a]);
+  if constexpr (kHasTies) {
+    int edge = 0;
+    for (int a = 0; a < kCorners; ++a) {
+      for (int b = a + 1; b < kCorners; ++b) {
+        const Wide<W> tie = Wide<W>(material.mu) * Wide<W>::load(block.tie[edge++] + lane);
+        const Vec3W<W> pull = tie * (now.edge[b] - now.edge[a]);
+        force[a] += pull;
+        force[b] -= pull;
+      }
+    }
   }
+  for (int a = 1; a < kCorners; ++a) put_columns<W>(out.force[a - 1], lane, 0, force[a]);
   if constexpr (WithBlocks) {
-    constexpr int kPair[kTetEdges][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-    const Wide<W> scaled = -Wide<W>(pass.material_scale) * volume;
-    Vec3W<W> turned[4];
-    GYRE_UNROLL
-    for (int a = 0; a < 4; ++a) turned[a] = transpose_times(element.rest, gradient[a]);
-    for (int e = 0; e < kTetEdges; ++e)
-      put_block<W>(out.block[e], lane,
-                   corner_stiffness(element, turned[kPair[e][0]], turned[kPair[e][1]], scaled));
+    const Wide<W> scale(pass.material_scale), scaled = -scale * volume;
+    Vec3W<W> turned[kCorners];
+    for (int a = 0; a < kCorners; ++a) turned[a] = transpose_times(element.rest, now.gradient[a]);
+    int edge = 0;
+    for (int a = 0; a < kCorners; ++a) {
+      for (int b = a + 1; b < kCorners; ++b, ++edge) {
+        Mat3W<W> own = corner_stiffness(element, turned[a], turned[b], scaled);
+        if constexpr (kHasTies) {
+          const Wide<W> tie = scale * Wide<W>(material.mu) * Wide<W>::load(block.tie[edge] + lane);
+          own.x.x += tie, own.y.y += tie, own.z.z += tie;
+        }
+        put_block<W>(out.block[edge], lane, own);
+      }
+    }
   }
+}
+
+template <int W, bool WithBlocks, class Block>
+GYRE_INLINE void add_elements(const SoftPass& pass, const Block* blocks, int block_begin, int block_end) {
+  for (int b = block_begin; b < block_end; ++b) {
+    const Block& block = blocks[b];
+    BlockSums<Block> sums;
+    GYRE_ROLLED
+    for (int lane = 0; lane < kTetLanes; lane += W) respond<W, WithBlocks>(pass, block, lane, sums);
+    for (int lane = 0; lane < kTetLanes; ++lane) {
+      if (block.stiffness[lane] == 0.0f) continue;
+      add_lane<W, WithBlocks>(pass.corner_force, pass.edge_blocks, block, sums, lane);
+    }
+  }
+}
+
+// Parts of cells that are pressed below kMinPartVolume, W = 1/2 k (det F - kMinPartVolume)^2. The second derivative of det F is left out, so that the stiffness is
+// positive semi-definite. False if none of W lanes is.
+template <int W, bool WithBlocks>
+GYRE_INLINE bool guard_volume(const SoftPass& pass, const TetBlock& block, int lane, BlockSums<TetBlock>& out,
+                              bool (&is_pressed)[kTetLanes]) {
+  const Deformation<W, 4> now(pass, block, lane);
+  const Mat3W<W> cofactor{cross(now.f.y, now.f.z), cross(now.f.z, now.f.x), cross(now.f.x, now.f.y)};
+  const Wide<W> missing = dot(now.f.x, cofactor.x) - kMinPartVolume;
+  bool any = false;
+  for (int i = 0; i < W; ++i) {
+    is_pressed[lane + i] = missing[i] < 0.0f && block.stiffness[lane + i] == 0.0f;
+    any = any || is_pressed[lane + i];
+  }
+  if (!any) return false;
+  const Wide<W> bulk = Wide<W>(kGuardStiffness * pass.material.mu) * Wide<W>::load(block.volume + lane);
+  Vec3W<W> along[4];
+  GYRE_UNROLL
+  for (int a = 0; a < 4; ++a) along[a] = cofactor * now.gradient[a];
+  GYRE_UNROLL
+  for (int a = 1; a < 4; ++a) put_columns<W>(out.force[a - 1], lane, 0, -(bulk * missing) * along[a]);
+  if constexpr (WithBlocks) {
+    const Wide<W> scaled = -Wide<W>(pass.material_scale) * bulk;
+    int edge = 0;
+    for (int a = 0; a < 4; ++a) {
+      for (int b = a + 1; b < 4; ++b, ++edge) {
+        const Vec3W<W> left = scaled * along[a];
+        put_block<W>(out.block[edge], lane, {along[b].x * left, along[b].y * left, along[b].z * left});
+      }
+    }
+  }
+  return true;
 }
 
 template <int W, bool WithBlocks>
 void add_tetrahedra(const SoftPass& pass, int block_begin, int block_end) {
   for (int b = block_begin; b < block_end; ++b) {
     const TetBlock& block = pass.tetrahedra[b];
-    TetSums sums;
-    GYRE_ROLLED
-    for (int lane = 0; lane < kTetLanes; lane += W) respond<W, WithBlocks>(pass, block, lane, sums);
+    bool acts = false, has_parts = false;
     for (int lane = 0; lane < kTetLanes; ++lane) {
-      if (block.volume[lane] == 0.0f) continue;
-      add_lane<W, WithBlocks>(pass.corner_force, pass.edge_blocks, block, sums, lane);
+      acts = acts || block.stiffness[lane] > 0.0f;
+      has_parts = has_parts || (block.stiffness[lane] == 0.0f && block.volume[lane] > 0.0f);
+    }
+    if (acts) add_elements<W, WithBlocks>(pass, pass.tetrahedra, b, b + 1);
+    if (!has_parts) continue;
+    BlockSums<TetBlock> sums;
+    bool is_pressed[kTetLanes] = {}, any = false;
+    GYRE_ROLLED
+    for (int lane = 0; lane < kTetLanes; lane += W)
+      any = guard_volume<W, WithBlocks>(pass, block, lane, sums, is_pressed) || any;
+    if (!any) continue;
+    for (int lane = 0; lane < kTetLanes; ++lane) {
+      if (is_pressed[lane] && block.volume[lane] > 0.0f)
+        add_lane<W, WithBlocks>(pass.corner_force, pass.edge_blocks, block, sums, lane);
     }
   }
+}
+
+template <int W, bool WithBlocks>
+void add_cells(const SoftPass& pass, int block_begin, int block_end) {
+  add_elements<W, WithBlocks>(pass, pass.cells, block_begin, block_end);
 }
 
 // Rows of the matrix from its edges, with forces and diagonals.

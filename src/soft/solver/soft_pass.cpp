@@ -36,6 +36,7 @@ SoftPass begin_pass(SoftBody& body, Arena& arena) {
     const Continuum& continuum = body.continuum;
     pass.full = pattern_of(continuum.rows);
     pass.tetrahedra = continuum.tetrahedra.data();
+    pass.cells = continuum.cells.data();
     pass.triangles = continuum.triangles.data();
     pass.edge_of_place = continuum.edge_of_place.data();
     pass.material = continuum.material;
@@ -83,6 +84,7 @@ void find_forces(const SoftPass& pass, const SoftBody& body, const SoftKernels& 
     const Continuum& continuum = body.continuum;
     add_elements(pass, continuum.tetrahedron_chunks, int(continuum.tetrahedra.size()),
                  kernels.add_tetrahedra_forces, tasks);
+    add_elements(pass, continuum.cell_chunks, int(continuum.cells.size()), kernels.add_cells_forces, tasks);
     add_elements(pass, continuum.triangle_chunks, int(continuum.triangles.size()),
                  kernels.add_triangles_forces, tasks);
     each_slice(pass, kernels.fill_forces, tasks);
@@ -97,6 +99,7 @@ void linearize(const SoftPass& pass, const SoftBody& body, const SoftKernels& ke
     const Continuum& continuum = body.continuum;
     add_elements(pass, continuum.tetrahedron_chunks, int(continuum.tetrahedra.size()), kernels.add_tetrahedra,
                  tasks);
+    add_elements(pass, continuum.cell_chunks, int(continuum.cells.size()), kernels.add_cells, tasks);
     add_elements(pass, continuum.triangle_chunks, int(continuum.triangles.size()), kernels.add_triangles,
                  tasks);
     each_slice(pass, kernels.fill_rows, tasks);

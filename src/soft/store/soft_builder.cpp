@@ -304,7 +304,10 @@ SoftBody build_elements(const SoftEntry& entry) {
     material.stretch_stiffness = rod_stiffness(*cloth, body);
     return mesh_cloth(places, corners, material);
   }
-  return tetrahedral_solid(places, corners, material_of(std::get<SolidDef>(*entry.def)));
+  const SolidDef& solid = std::get<SolidDef>(*entry.def);
+  Array<std::uint32_t> groups;
+  if (solid.box) groups = box_groups({solid.box->cells[0], solid.box->cells[1], solid.box->cells[2]});
+  return tetrahedral_solid(places, corners, material_of(solid), groups);
 }
 
 void build_surface(SoftEntry& entry) {

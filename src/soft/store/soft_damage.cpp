@@ -2,6 +2,7 @@
 
 #include "base/container/sort.h"
 #include "math/dense.h"
+#include "soft/body/deformation.h"
 #include "soft/contact/surface_crossings.h"
 #include "soft/elements/crack_gap.h"
 #include "soft/elements/solid.h"
@@ -17,7 +18,7 @@ namespace {
 
 constexpr int kMaxSplits = 64;   // of vertices in one step, those of their neighbours apart
 constexpr float kMaxGap = 0.2f;  // of the mean edge: more is not made by moving vertices
-constexpr int kHalvings = 4;  // of the moves of parts that would cross others
+constexpr int kHalvings = 4;     // of the moves of parts that would cross others
 constexpr int kTetsAtOnce = 256;
 
 struct Excess {
@@ -72,19 +73,9 @@ struct ElementStress {
   double stress[6] = {};
 };
 
-void deformation_of(const Particles& p, const TetBlock& block, int lane, DVec3 (&f)[3]) {
-  const DVec3 origin = p.place(block.corner[0][lane]);
-  DVec3 edge[3];
-  for (int c = 0; c < 3; ++c) edge[c] = p.place(block.corner[c + 1][lane]) - origin;
-  for (int c = 0; c < 3; ++c) {
-    f[c] = {};
-    for (int k = 0; k < 3; ++k) f[c] += double(block.inverse[3 * c + k][lane]) * edge[k];
-  }
-}
-
-ElementStress stress_of(const SoftBody& body, const TetBlock& block, int lane) {
+ElementStress stress_of(const SoftBody& body, std::size_t tetrahedron) {
   DVec3 f[3];
-  deformation_of(body.particles, block, lane, f);
+  find_stressed_deformation(body, tetrahedron, f);
   double left[6] = {}, moments[3], axes[9];
   for (const DVec3& c : f) {
     left[0] += c.x * c.x, left[1] += c.y * c.y, left[2] += c.z * c.z;
@@ -95,7 +86,7 @@ ElementStress stress_of(const SoftBody& body, const TetBlock& block, int lane) {
   double strain[3], trace = 0.0;
   for (int k = 0; k < 3; ++k) trace += strain[k] = std::sqrt(max(moments[k], 0.0)) - 1.0;
   ElementStress out;
-  out.volume = double(block.volume[lane]);
+  out.volume = double(body.continuum.tetrahedra[tetrahedron / kTetLanes].volume[tetrahedron % kTetLanes]);
   for (int k = 0; k < 3; ++k) {
     const double pull = out.volume * (2.0 * mu * strain[k] + lambda * trace);
     const double x = axes[3 * k], y = axes[3 * k + 1], z = axes[3 * k + 2];
@@ -112,8 +103,7 @@ void find_stressed_vertices(const SoftEntry& entry, TaskSystem& tasks, Array<Exc
   Array<ElementStress> elements, vertices;
   elements.resize(std::size_t(count));
   for_blocks(tasks, count, kTetsAtOnce, [&](int begin, int end, int) {
-    for (int t = begin; t < end; ++t)
-      elements[t] = stress_of(entry.body, entry.body.continuum.tetrahedra[t / kTetLanes], t % kTetLanes);
+    for (int t = begin; t < end; ++t) elements[t] = stress_of(entry.body, std::size_t(t));
   });
   vertices.resize(std::size_t(entry.body.particles.count));
   for (std::size_t k = 0; k < corners.size(); ++k) {

@@ -1,6 +1,7 @@
 // Plastic flow of solids. See soft_damage.h.
 #include "math/dense.h"
 #include "math/trig.h"
+#include "soft/body/deformation.h"
 #include "soft/store/soft_damage.h"
 #include "task/parallel.h"
 
@@ -11,6 +12,7 @@ namespace gyre {
 namespace {
 
 constexpr int kBlocksOfFlow = 16;
+constexpr int kCellsOfFlow = 64;
 // Beyond this |P|^2 a tetrahedron flows no further: it is drawn out to several times its length.
 constexpr double kMaxFlow = 40.0;
 
@@ -22,7 +24,7 @@ void set_rest_shape(const SoftDamage& damage, TetBlock& block, std::size_t tetra
     for (int r = 0; r < 3; ++r) {
       double sum = 0.0;
       for (int k = 0; k < 3; ++k) sum += double(rest[3 * k + r]) * double(flow[3 * c + k]);
-      block.inverse[3 * c + r][lane] = float(sum);
+      block.gradient[3 * c + r][lane] = float(sum);
     }
   }
 }
@@ -37,14 +39,8 @@ class Flow {
   void flow(std::size_t tetrahedron) {
     TetBlock& block = entry_.body.continuum.tetrahedra[tetrahedron / kTetLanes];
     const int lane = int(tetrahedron % kTetLanes);
-    const Particles& p = entry_.body.particles;
-    const DVec3 origin = p.place(block.corner[0][lane]);
-    DVec3 edge[3], f[3];
-    for (int c = 0; c < 3; ++c) edge[c] = p.place(block.corner[c + 1][lane]) - origin;
-    for (int c = 0; c < 3; ++c) {
-      f[c] = {};
-      for (int k = 0; k < 3; ++k) f[c] += double(block.inverse[3 * c + k][lane]) * edge[k];
-    }
+    DVec3 f[3];
+    find_stressed_deformation(entry_.body, tetrahedron, f);
     if (!(dot(f[0], cross(f[1], f[2])) > 0.0)) return;  // inside out
     const double right[6] = {dot(f[0], f[0]), dot(f[1], f[1]), dot(f[2], f[2]),
                              dot(f[0], f[1]), dot(f[0], f[2]), dot(f[1], f[2])};
@@ -102,9 +98,10 @@ void renew_flow(SoftEntry& entry) {
   for (std::size_t t = 0; t < damage.flow.size() / 9; ++t) {
     TetBlock& block = blocks[t / kTetLanes];
     const int lane = int(t % kTetLanes);
-    for (int k = 0; k < 9; ++k) damage.rest_inverse[9 * t + std::size_t(k)] = block.inverse[k][lane];
+    for (int k = 0; k < 9; ++k) damage.rest_inverse[9 * t + std::size_t(k)] = block.gradient[k][lane];
     set_rest_shape(damage, block, t, lane);
   }
+  for (int c = 0; c < entry.body.continuum.cell_count(); ++c) renew_cell(entry.body.continuum, c);
 }
 
 void begin_flow(SoftEntry& entry) {
@@ -125,6 +122,10 @@ void flow_soft(SoftEntry& entry, float seconds, TaskSystem& tasks) {
   const int count = int(entry.damage.flow.size() / 9);
   for_blocks(tasks, count, kBlocksOfFlow * kTetLanes, [&](int begin, int end, int) {
     for (int t = begin; t < end; ++t) flow.flow(std::size_t(t));
+  });
+  Continuum& continuum = entry.body.continuum;
+  for_blocks(tasks, continuum.cell_count(), kCellsOfFlow, [&](int begin, int end, int) {
+    for (int c = begin; c < end; ++c) renew_cell(continuum, c);
   });
 }
 
