@@ -366,7 +366,7 @@ class ContactFinder {
       keep_grip(k < before.size() && key(before[k]) == key(contact) ? &before[k] : nullptr, contact);
     }
   }
-  // What a contact goes on with: the impulse and the grip of the last step. What begins inside a shape, before any sub-step has moved it, emerges.
+  // A contact goes on with the impulse and the grip of the last step. A vertex or face that begins inside a shape, before any sub-step has moved it, emerges.
   void keep_grip(const SoftContact* last, SoftContact& contact) const {
     const bool is_new = is_implicit(entry_.settings().integrator) && entry_.body.pull[0].empty();
     if (last != nullptr) contact.impulse = last->impulse, contact.grip = last->grip;

@@ -73,7 +73,6 @@ struct SoftWork {
   SoftBody before;                            // what a sub-step that is solved anew begins with
   Array<Vec3> impulses, change;               // by particle
   std::uint32_t first_row = 0, last_row = 0;  // in SoftScratch::rows
-  Array<std::uint32_t> pressed;               // by particle: a row of a body that does not yield
   Array<Vec3> field_forces;   // N, by particle, of a visual entry: those of the whole step; else none
   std::uint32_t carried = 0;  // rows that carry, from first_row on in SoftScratch::carried
 };

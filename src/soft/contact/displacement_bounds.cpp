@@ -13,7 +13,7 @@ constexpr double kSafe = 1.0 - 0x1p-20;  // more than any rounding here takes
 constexpr int kBlockPairs = 1024;        // that one worker takes at a time
 constexpr int kAdvances = 6;             // in which the room that others have left is given anew
 
-// What flies together does not move for bounds: takes from the moves of the vertices that pairs connect, or a stiff piece, their mean. Where a pair has no room, its vertices
+// Features that fly together do not move for bounds. This takes from the moves of the vertices that pairs connect, or a stiff piece, their mean. Where a pair has no room, its vertices
 // would else be held back against all others. Sets the mean of each vertex.
 void take_means(std::span<const SurfacePair> pairs, std::span<const std::uint32_t> stiff,
                 std::span<DVec3> moves, std::span<DVec3> means, Arena& arena) {

@@ -391,7 +391,7 @@ TEST(DisplacementBounds, DoNotHoldBackWhatFliesTogether) {
   EXPECT_EQ(report.crossed, 2);
   EXPECT_EQ(report.shortened, 0);
   for (int v = 0; v < 4; ++v) EXPECT_EQ(moves[v], (DVec3{0.01, -0.07, 0.02}));
-  // What moves against the rest does not.
+  // A vertex that moves against the rest does not.
   moves[0].y += 0.01;
   bound_moves(pairs, positions, {}, held, {}, {}, moves, arena, tasks);
   for (int v = 1; v < 4; ++v) EXPECT_NEAR(moves[v].y, moves[0].y, 1.0e-12);

@@ -155,7 +155,7 @@ class CoupledSolve {
       if (group.gave_in) return true;
     return false;
   }
-  // What is not met so far is not to be met.
+  // Groups that miss their targets so far give in.
   void give_in() {
     for (std::uint32_t g = 0; g < std::uint32_t(groups_.size()); ++g)
       if (groups_[g].missed > 0.0 && !groups_[g].yields) give_in(g);

@@ -22,7 +22,7 @@ class RigidCorrection {
   void add_mass(double mass, DVec3 place);
   void set_center();
   void add_inertia(double mass, DVec3 place);
-  // What the elements resist of a rotation about one of the axes: the answer of a particle to that rotation of all.
+  // The resistance of the elements to a rotation about one of the axes: the answer of a particle to that rotation of all.
   static DVec3 rotation(int axis, DVec3 arm) {
     return cross(DVec3{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}, arm);
   }
