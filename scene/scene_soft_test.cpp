@@ -116,6 +116,10 @@ TEST(SceneSoft, RefusesBadCloths) {
        "an array of 15 positions"},
       {cloth_with(R"("mesh": "sheet", "links": "membrane", "shear_stiffness": 1, "stretch_stiffness": 1000)"),
        at + "/shear_stiffness", "shear_stiffness is 1", "a quarter"},
+      {grid_with(R"("links": "membrane", "tear_strain": 0.5, "shear_stiffness": 200)"), at + "/shear_stiffness",
+       "shear_stiffness is 200", "a quarter"},
+      {grid_with(R"("links": "membrane", "integrator": "visual")"), at + "/integrator", "is visual",
+       "springs or rods"},
   };
   for (const Refused& bad : table) expect_refused(bad);
 }
@@ -229,6 +233,10 @@ TEST(SceneSoft, AMembraneOfAMeshNeedsNoShearStiffness) {
       shear_of(R"("mesh": "sheet", "links": "membrane", "stretch_stiffness": 600, "shear_stiffness": 200)"),
       200.0f);
   EXPECT_EQ(shear_of(R"("mesh": "sheet", "stretch_stiffness": 600)"), 200.0f);
+  // A grid that may tear is one of triangles.
+  const std::string grid = R"("grid": {"size": [1, 1], "cells": [2, 2]}, "links": "membrane", )";
+  EXPECT_EQ(shear_of(grid + R"("stretch_stiffness": 600)"), 200.0f);
+  EXPECT_EQ(shear_of(grid + R"("stretch_stiffness": 600, "tear_strain": 0.5)"), 300.0f);
 }
 
 // Every member of the three kinds.

@@ -342,7 +342,10 @@ void read_cloth(SceneReading& reading, const Field& field) {
   if (const auto links = members.find("links"))
     cloth.def.links = links->choice<ClothLinks>(
         {{"springs", ClothLinks::springs}, {"rods", ClothLinks::rods}, {"membrane", ClothLinks::membrane}});
-  const bool is_membrane_of_mesh = cloth.mesh >= 0 && cloth.def.links == ClothLinks::membrane;
+  members.read("tear_strain", cloth.def.tear_strain, kNotNegative);
+  // A grid that may tear is made of triangles.
+  const bool is_membrane_of_mesh =
+      (cloth.mesh >= 0 || cloth.def.tear_strain > 0.0f) && cloth.def.links == ClothLinks::membrane;
   members.read("area_density", cloth.def.area_density, kPositive);
   members.read("stretch_stiffness", cloth.def.stretch_stiffness,
                cloth.def.links == ClothLinks::rods ? kNotNegative : kPositive);
@@ -353,7 +356,6 @@ void read_cloth(SceneReading& reading, const Field& field) {
   members.read("thickness", cloth.def.thickness, kNotNegative);
   members.read("self_collision", cloth.def.self_collision);
   read_gas(members, cloth.def);
-  members.read("tear_strain", cloth.def.tear_strain, kNotNegative);
   read_settings(members, vertices, cloth.def.settings);
   read_holds(reading, members, vertices, cloth);
   members.finish();

@@ -236,7 +236,8 @@ Error check_soft(const ClothDef& def) {
   if (e.ok())
     e = def.links == ClothLinks::rods ? not_negative("stretch_stiffness", def.stretch_stiffness)
                                       : above_zero("stretch_stiffness", def.stretch_stiffness);
-  const bool needs_shear = !def.grid && def.links == ClothLinks::membrane;
+  // A grid that may tear is made of triangles.
+  const bool needs_shear = def.links == ClothLinks::membrane && (!def.grid || def.tear_strain > 0.0f);
   if (e.ok())
     e = needs_shear ? above_zero("shear_stiffness", def.shear_stiffness)
                     : not_negative("shear_stiffness", def.shear_stiffness);

@@ -360,7 +360,8 @@ class Tear {
     return way;
   }
 
-  // Takes the mean from the moves of the parts of each vertex that was split, so that their centre of mass stays. One that is held stays itself.
+  // Takes the mean from the moves of the parts of each vertex that was split, so that their centre of mass stays; of one that is held, the move of the
+  // part that stays held.
   void take_means(Array<DVec3>& way) const {
     const Particles& p = entry_.body.particles;
     Array<DVec3> moment;
@@ -369,18 +370,14 @@ class Tear {
     Array<std::uint8_t> parted;
     parted.resize(count_);
     for (const std::uint32_t one : made_) parted[splitter_.source(one)] = 1;
-    const auto moves = [&](std::uint32_t v) {
-      const std::uint32_t source = splitter_.source(v);
-      return parted[source] != 0 && p.loose[source] != 0.0f;
-    };
     for (std::uint32_t v = 0; v < way.size(); ++v) {
-      if (!moves(v)) continue;
       const std::uint32_t source = splitter_.source(v);
-      moment[source] += double(p.mass[v]) * way[v], mass[source] += double(p.mass[v]);
+      const double weight = p.loose[source] != 0.0f ? double(p.mass[v]) : v == source ? 1.0 : 0.0;
+      moment[source] += weight * way[v], mass[source] += weight;
     }
     for (std::uint32_t v = 0; v < way.size(); ++v) {
       const std::uint32_t source = splitter_.source(v);
-      way[v] = moves(v) ? way[v] - (1.0 / mass[source]) * moment[source] : DVec3{};
+      way[v] = parted[source] != 0 ? way[v] - (1.0 / mass[source]) * moment[source] : DVec3{};
     }
   }
 

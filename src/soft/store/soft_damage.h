@@ -6,7 +6,8 @@
 // excess goes first, equal ones by their numbers. Elements around a vertex that was split wait for the next step, so a crack runs on at its tip.
 //
 // New vertices have the velocity of the old one and a share of its mass, rounded so that the sum is exactly that of before. They move apart by the
-// gap that surfaces keep, about their common centre of mass: linear and angular momentum stay.
+// gap that surfaces keep, about their common centre of mass: linear and angular momentum stay. Parts of a vertex that is held move away from the part
+// that stays held.
 //
 // A solid flows where the stress of von Mises exceeds the yield stress: F = Fe Fp, and Fp takes up a share of the deviator of ln Fe, at constant volume
 // (J. Simo, 1992). Each tetrahedron keeps P = Fp^-1; its rest shape is Dm^-1 P.
