@@ -2,6 +2,21 @@
 
 namespace gyre {
 
+namespace {
+
+// N/kg: EA by the mass of a rope that keeps its length but is held at several vertices, about that of steel. These may be further apart
+// than it is long, and bodies between them must not be pulled by the rounding of its length.
+constexpr double kHeldRodStiffness = 1.0e7;
+
+}  // namespace
+
+double SoftBody::rope_stiffness() const {
+  if (chain.stretch_stiffness > 0.0 || held.size() < 2) return chain.stretch_stiffness;
+  double mass = 0.0;
+  for (int i = 0; i < particles.count; ++i) mass += double(particles.mass[i]);
+  return kHeldRodStiffness * mass;
+}
+
 void Particles::resize(int particles) {
   count = particles;
   const std::size_t rows = std::size_t(padded_rows(particles));

@@ -128,6 +128,8 @@ struct SoftBody {
   VisualLinks visual;    // of the visual scheme; derived
   float damping = 0.0f;  // s: stress grows by this times its rate of change
 
+  // N: EA of the segments of a rope; 0 where they keep their length.
+  double rope_stiffness() const;
   int pieces() const { return continuum.piece.empty() ? 1 : continuum.pieces; }
   std::size_t piece_of(int particle) const {
     return continuum.piece.empty() ? 0 : continuum.piece[std::size_t(particle)];

@@ -122,8 +122,14 @@ double membrane_energy(const Particles& particles, const Continuum& continuum) {
 
 double elastic_energy(const SoftBody& body) {
   double twice = 0.0;  // each pair stands in two rows
-  const bool keeps_length = !body.chain.rest_length.empty() && body.chain.stretch_stiffness == 0.0;
-  if (!keeps_length)
+  const Chain& chain = body.chain;
+  const double stiffness = body.rope_stiffness();
+  for (std::size_t k = 0; k < chain.rest_length.size(); ++k) {
+    const double rest = chain.rest_length[k];
+    const double span = length(body.particles.place(int(k) + 1) - body.particles.place(int(k)));
+    twice += stiffness / rest * square(span - rest);
+  }
+  if (chain.rest_length.empty())
     each_pair(body.particles, body.springs.rows, [&](int place, double span) {
       twice += 0.5 * double(body.springs.stiffness[place]) *
                square(span - double(body.springs.rest_length[place]));

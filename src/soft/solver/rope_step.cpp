@@ -96,13 +96,8 @@ class RopeSolver {
         right_(step.right),
         place_(step.place),
         speed_(step.velocity) {
-    if (chain_.stretch_stiffness > 0.0) {
-      compliance_ = 1.0 / chain_.stretch_stiffness, damping_ = double(body.damping);
-    } else if (body.held.size() > 1) {
-      double mass = 0.0;
-      for (int i = 0; i < particles_.count; ++i) mass += double(particles_.mass[i]);
-      compliance_ = 1.0 / (kHeldRodStiffness * mass);
-    }
+    if (const double stiffness = body.rope_stiffness(); stiffness > 0.0) compliance_ = 1.0 / stiffness;
+    if (chain_.stretch_stiffness > 0.0) damping_ = double(body.damping);
   }
 
   RopeReport run() {
@@ -154,9 +149,6 @@ class RopeSolver {
  private:
   // Errors of length, as shares of a segment, that are left as they are: those of the next sub-step's linearisation.
   static constexpr double kSmallError = 1.0e-4;
-  // N/kg: EA by the mass of a rope that keeps its length but is held at several vertices, about that of steel. These may be further apart
-  // than it is long, and bodies between them must not be pulled by the rounding of its length.
-  static constexpr double kHeldRodStiffness = 1.0e7;
 
   template <class T>
   static T& at(std::span<T> items, int i) {

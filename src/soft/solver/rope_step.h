@@ -22,7 +22,8 @@ namespace gyre {
 struct RopeSettings {
   float step = 0.0f;  // s
   Vec3 gravity{};     // m/s^2
-  int most_iterations = 3;
+  int most_iterations =
+      10;  // with 3, ropes of rods that strike the ground are thrown by lengths that do not fit
   int least_iterations = 1;  // the stiffness of the tension is that of the iteration before
   std::span<const CarriedInertia> carried{};
 };
