@@ -116,8 +116,7 @@ void expect_bridge_gains_nothing(const Stepping& stepping, RopeLinks links) {
 }
 TEST(SoftMatter, ABridgeGainsNoEnergyWithAnySolverAndSteps) {
   for (const RopeLinks links : {RopeLinks::springs, RopeLinks::rods}) {
-    for (const SolverKind solver :
-         {SolverKind::soft_step, SolverKind::sequential_impulses, SolverKind::lcp}) {
+    for (const SolverKind solver : {SolverKind::soft_step, SolverKind::sequential_impulses, SolverKind::lcp}) {
       SCOPED_TRACE(std::string(to_string(solver)) + ", " + to_string(links));
       expect_bridge_gains_nothing({.solver = solver}, links);
     }
@@ -214,14 +213,9 @@ TEST(SoftMatter, ATrampolineThrowsBallsOfAnyMass) {
 }
 
 TEST(SoftMatter, ClothRestsOnShapesOfEveryKind) {
-  const auto hull = cook_hull(std::vector<Vec3>{{-0.4f, -0.3f, -0.4f},
-                                                {0.4f, -0.3f, -0.4f},
-                                                {0.4f, -0.3f, 0.4f},
-                                                {-0.4f, -0.3f, 0.4f},
-                                                {-0.3f, 0.3f, -0.3f},
-                                                {0.3f, 0.3f, -0.3f},
-                                                {0.3f, 0.3f, 0.3f},
-                                                {-0.3f, 0.3f, 0.3f}});
+  const auto hull = cook_hull(std::vector<Vec3>{{-0.4f, -0.3f, -0.4f}, {0.4f, -0.3f, -0.4f}, {0.4f, -0.3f, 0.4f},
+                                                          {-0.4f, -0.3f, 0.4f}, {-0.3f, 0.3f, -0.3f}, {0.3f, 0.3f, -0.3f},
+                                                          {0.3f, 0.3f, 0.3f}, {-0.3f, 0.3f, 0.3f}});
   ASSERT_TRUE(hull);
   std::vector<float> heights(25, 0.0f);
   heights[12] = 0.3f;
@@ -231,15 +225,8 @@ TEST(SoftMatter, ClothRestsOnShapesOfEveryKind) {
   const std::vector<std::uint32_t> faces{0, 4, 1, 1, 4, 2, 2, 4, 3, 3, 4, 0};
   const auto mesh = cook_mesh({.vertices = corners, .indices = faces});
   ASSERT_TRUE(mesh);
-  const AnyShape shapes[] = {Sphere{0.4f},
-                             Box{{0.4f, 0.3f, 0.4f}},
-                             Capsule{0.3f, 0.3f},
-                             Cylinder{0.4f, 0.3f},
-                             Cone{0.4f, 0.3f},
-                             *hull,
-                             Plane{},
-                             *mesh,
-                             *field};
+  const AnyShape shapes[] = {Sphere{0.4f}, Box{{0.4f, 0.3f, 0.4f}}, Capsule{0.3f, 0.3f}, Cylinder{0.4f, 0.3f},
+                             Cone{0.4f, 0.3f}, *hull, Plane{}, *mesh, *field};
   for (const AnyShape& shape : shapes) {
     World world = make_world();
     scenes::add_fixed(world, {0, 0, 0}, shape);
@@ -264,8 +251,7 @@ TEST(SoftMatter, ClothRestsOnShapesOfEveryKind) {
 TEST(SoftMatter, MomentumIsKept) {
   World world = make_world({});
   const SoftId cloth = world.add_cloth(sheet(1, 10, {0, 0, 0}));
-  const BodyId a = add_box(world, {-0.7, 0, 0}, {0.1f, 0.2f, 0.3f}, 3.0f),
-               b = add_ball(world, {0.7, 0, 0}, 0.1f, 0.5f);
+  const BodyId a = add_box(world, {-0.7, 0, 0}, {0.1f, 0.2f, 0.3f}, 3.0f), b = add_ball(world, {0.7, 0, 0}, 0.1f, 0.5f);
   for (const int j : {0, 5, 10}) world.attach(cloth, 11 * j, a);
   world.attach(cloth, 11 * 5 + 10, b);
   const BodyId thrown = add_ball(world, {0, 1, 0}, 0.15f, 2.0f);
@@ -291,8 +277,7 @@ TEST(SoftMatter, PinsFollowAMovingBodyWithoutLag) {
   const SoftId cloth = world.add_cloth(sheet(1, 8, {-0.5, -0.6, 0}));
   ASSERT_TRUE(world.attach(rope, 0, arm));
   ASSERT_TRUE(world.attach(cloth, 0, arm));
-  const Vec3 local = rotate_inverse(world.pose(arm).orientation,
-                                    to_float(world.vertices(cloth).position(0) - world.pose(arm).position));
+  const Vec3 local = rotate_inverse(world.pose(arm).orientation, to_float(world.vertices(cloth).position(0) - world.pose(arm).position));
   for (int i = 0; i < 60; ++i) {
     world.step(kStep);
     const Pose pose = world.pose(arm);
@@ -376,15 +361,13 @@ TEST(SoftMatter, VerticesKeepTheirLimits) {
     for (int k = 1; k <= 60; ++k) {
       targets = rest;
       for (DVec3& one : targets) one.x += 0.03 * k, one.y += 0.2 * std::sin(0.2 * k);
-      ASSERT_TRUE(world.set_vertex_limits(cloth, targets, distances,
-                                          k % 2 == 0 ? normals : std::vector<Vec3>{},
+      ASSERT_TRUE(world.set_vertex_limits(cloth, targets, distances, k % 2 == 0 ? normals : std::vector<Vec3>{},
                                           k % 2 == 0 ? backstops : std::vector<float>{}));
       world.step(kStep);
       const SoftVertices v = world.vertices(cloth);
       for (std::size_t i = 0; i < 121; ++i) {
         const DVec3 off = v.position(i) - targets[i];
-        const double far = distances[i] >= 0.0f ? double(distances[i]) : 1.0e9,
-                     low = k % 2 == 0 ? -0.02 : -1.0e9;
+        const double far = distances[i] >= 0.0f ? double(distances[i]) : 1.0e9, low = k % 2 == 0 ? -0.02 : -1.0e9;
         ASSERT_LT(length(off), far + 1.0e-6) << to_string(integrator) << k << ' ' << i;
         ASSERT_GT(off.y, low - 1.0e-6) << to_string(integrator) << k << ' ' << i;
       }
@@ -404,10 +387,8 @@ TEST(SoftMatter, BadLimitsAreRefused) {
   EXPECT_FALSE(world.set_vertex_limits(rope, {two.data(), 1}, std::vector<float>{1}, {}, {}));
   EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1}, {}, {}));
   EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1, NAN}, {}, {}));
-  EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1, 1},
-                                       std::vector<Vec3>{{0, 2, 0}, {0, 1, 0}}, std::vector<float>{0, 0}));
-  EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1, 1},
-                                       std::vector<Vec3>{{0, 1, 0}, {0, 1, 0}}, std::vector<float>{0, -1}));
+  EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1, 1}, std::vector<Vec3>{{0, 2, 0}, {0, 1, 0}}, std::vector<float>{0, 0}));
+  EXPECT_FALSE(world.set_vertex_limits(rope, two, std::vector<float>{1, 1}, std::vector<Vec3>{{0, 1, 0}, {0, 1, 0}}, std::vector<float>{0, -1}));
   EXPECT_TRUE(world.set_vertex_limits(rope, two, std::vector<float>{1, -1}, {}, {}));
 }
 
@@ -429,11 +410,9 @@ TEST(SoftMatter, AVisualFlagKeepsItsSizeAndTouchesShapes) {
     world.step(kStep);
     const SoftVertices v = world.vertices(flag);
     for (std::size_t k = 0; k < v.size(); ++k)
-      ASSERT_LT(length(v.position(k) - v.position(k / 41 * 41)), 2.0 * 1.35)
-          << i;  // along the links, which run over corners
+      ASSERT_LT(length(v.position(k) - v.position(k / 41 * 41)), 2.0 * 1.35) << i;  // along the links, which run over corners
     const SoftVertices b = world.vertices(blanket);
-    for (std::size_t k = 0; i < 60 && k < b.size(); ++k)
-      ASSERT_GT(length(b.position(k) - DVec3{20, 0, 20}), 0.9) << i;
+    for (std::size_t k = 0; i < 60 && k < b.size(); ++k) ASSERT_GT(length(b.position(k) - DVec3{20, 0, 20}), 0.9) << i;
   }
   SolidDef solid;
   solid.box = SolidBox{};
@@ -447,8 +426,7 @@ World make_mixture(int threads, int width) {
   ClothDef cloth = sheet(2, 14, {0, 2, 0});
   cloth.links = ClothLinks::membrane;
   world.add_cloth(cloth);
-  const SoftId rope =
-      world.add_rope({.points = {{2, 3, 0}, {2, 1, 0}}, .segments = 16, .bend_stiffness = 0.01f});
+  const SoftId rope = world.add_rope({.points = {{2, 3, 0}, {2, 1, 0}}, .segments = 16, .bend_stiffness = 0.01f});
   world.pin(rope, 0);
   world.attach(rope, 16, add_ball(world, {2, 0.8, 0}, 0.2f, 5.0f));
   SolidDef jelly;
@@ -470,8 +448,8 @@ World make_mixture(int threads, int width) {
   for (const SoftId one : {first, second}) world.pin(one, 0), world.pin(one, 6);
   std::vector<DVec3> targets;
   for (std::size_t i = 0; i < 49; ++i) targets.push_back(world.vertices(second).position(i));
-  world.set_vertex_limits(second, targets, std::vector<float>(49, 0.25f),
-                          std::vector<Vec3>(49, Vec3{0, 1, 0}), std::vector<float>(49, 0.1f));
+  world.set_vertex_limits(second, targets, std::vector<float>(49, 0.25f), std::vector<Vec3>(49, Vec3{0, 1, 0}),
+                          std::vector<float>(49, 0.1f));
   add_ball(world, {0.1, 1.2, 0.05}, 0.4f, 2.0f);
   add_box(world, {-1.5, 1.6, 0}, {0.2f, 0.2f, 0.2f}, 3.0f);
   for (int i = 0; i < 6; ++i) add_box(world, {0.5, 0.2 + 0.42 * i, 1.5}, {0.2f, 0.2f, 0.2f}, 1.0f);
@@ -525,11 +503,8 @@ TEST(SoftMatter, ExplicitEulerExplodesAndTheOthersUpToTheirStep) {
   const double w = 2.0 * std::sqrt(double(stiffness / cell) / double(density * cell));
   const auto grows = [&](SoftIntegrator integrator, double share) {
     World world = make_world({});
-    RopeDef def{.points = {{0, 0, 0}, {1, 0, 0}},
-                .segments = 10,
-                .links = RopeLinks::springs,
-                .linear_density = density,
-                .stretch_stiffness = stiffness};
+    RopeDef def{.points = {{0, 0, 0}, {1, 0, 0}}, .segments = 10, .links = RopeLinks::springs,
+                .linear_density = density, .stretch_stiffness = stiffness};
     def.settings.integrator = integrator;
     const SoftId rope = world.add_rope(def);
     world.pin(rope, 0), world.pin(rope, 10);
@@ -558,11 +533,8 @@ TEST(SoftMatter, AnExplosionBeyondTheRangeOfFloatsIsReported) {
   world.add_body({.type = BodyType::fixed}, {.geometry = Plane{}});
   world.add_body({.pose = {{1, 2, 0}}, .mass = 2.0f}, {.geometry = Sphere{0.1f}});
   const BodyId load = world.add_body({.pose = {{0, 1.9, 0}}, .mass = 2.0f}, {.geometry = Sphere{0.1f}});
-  RopeDef def{.points = {{0, 3, 0}, {0, 2, 0}},
-              .segments = 10,
-              .links = RopeLinks::springs,
-              .linear_density = 0.2f,
-              .stretch_stiffness = 1.0e5f};
+  RopeDef def{.points = {{0, 3, 0}, {0, 2, 0}}, .segments = 10, .links = RopeLinks::springs,
+              .linear_density = 0.2f, .stretch_stiffness = 1.0e5f};
   def.settings.integrator = SoftIntegrator::semi_implicit_euler;
   const SoftId rope = world.add_rope(def);
   world.pin(rope, 0), world.attach(rope, 10, load);
@@ -581,32 +553,18 @@ TEST(SoftMatter, BadDefinitionsAreRefusedWithTheReason) {
     const bool done = bool(call());
     EXPECT_FALSE(done) << words;
     ASSERT_FALSE(world.problems().empty()) << words;
-    EXPECT_NE(std::string(world.problems().back().message).find(words), std::string::npos)
-        << world.problems().back().message;
+    EXPECT_NE(std::string(world.problems().back().message).find(words), std::string::npos) << world.problems().back().message;
   };
   refused([&] { return world.add_rope({.points = {{0, 0, 0}}}); }, "at least 2");
   refused([&] { return world.add_rope({.points = {{0, 0, 0}, {0, 0, 0}}}); }, "needs a length");
   refused([&] { return world.add_cloth({}); }, "neither grid nor vertices");
-  refused(
-      [&] {
-        return world.add_cloth({.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, .triangles = {0, 1, 2}});
-      },
-      "no area");
-  refused(
-      [&] {
-        return world.add_cloth({.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, .triangles = {0, 1, 3}});
-      },
-      "has vertex 3");
+  refused([&] { return world.add_cloth({.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, .triangles = {0, 1, 2}}); }, "no area");
+  refused([&] { return world.add_cloth({.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, .triangles = {0, 1, 3}}); }, "has vertex 3");
   refused([&] { return world.add_cloth({.grid = ClothGrid{}, .area_density = 0.0f}); }, "area_density is 0");
   refused([&] { return world.add_solid({}); }, "neither box nor surface nor vertices");
-  refused([&] { return world.add_solid({.box = SolidBox{}, .poisson_ratio = 0.5f}); },
-          "poisson_ratio is 0.5");
-  refused(
-      [&] {
-        return world.add_solid(
-            {.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, .tetrahedra = {0, 1, 2, 3}});
-      },
-      "no volume");
+  refused([&] { return world.add_solid({.box = SolidBox{}, .poisson_ratio = 0.5f}); }, "poisson_ratio is 0.5");
+  refused([&] { return world.add_solid({.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, .tetrahedra = {0, 1, 2, 3}}); },
+          "no volume");
   const SoftId rope = world.add_rope({.points = {{0, 0, 0}, {1, 0, 0}}});
   refused([&] { return world.pin(rope, 2); }, "vertex is 2");
   refused([&] { return world.attach(rope, 0, BodyId{}); }, "does not exist");
