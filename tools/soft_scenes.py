@@ -178,7 +178,7 @@ def bag_of_balls():
         corners.append({"vertex": vertex_of(cells, cells * (x > 0), cells * (z > 0)), "body": f"clip {k + 1}"})
     colors = ("#d9604a", "#cfa349", "#5fae8b", "#5b8fb9", "#7d6fa8")
     balls = [{"name": f"ball {k + 1}", "position": [0.175 * (k % 3 - 1), 0.145 + 0.175 * (k // 9), 0.175 * (k // 3 % 3 - 1)],
-              "color": colors[k % 5], "shapes": [{"type": "sphere", "radius": 0.085, "density": 300, "rolling_friction": 0.01}]}
+              "color": colors[k % 5], "shapes": [{"type": "sphere", "radius": 0.085, "density": 300, "rolling_friction": 0.02}]}
              for k in range(20)]
     cloth = {"name": "bag", "grid": {"size": [2 * half, 2 * half], "cells": [cells, cells]}, "position": [0, 0.05, 0], "links": "springs",
              "area_density": 0.3, "stretch_stiffness": 4000, "shear_stiffness": 80, "bend_stiffness": 5e-5, "damping": 0.01,
