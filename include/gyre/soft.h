@@ -123,7 +123,7 @@ struct SolidSurface {
 struct SolidDef {
   std::optional<SolidBox> box{};            // or tetrahedra, used as they are:
   std::vector<Vec3> vertices{};             // m, in the frame of the pose
-  std::vector<std::uint32_t> tetrahedra{};  // four indices each
+  std::vector<std::uint32_t> tetrahedra{};  // four indices each, of either handedness
   std::optional<SolidSurface> surface{};    // or a surface to be filled
   Pose pose{};
   SolidModel model = SolidModel::neo_hookean;
