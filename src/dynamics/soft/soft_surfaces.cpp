@@ -375,6 +375,7 @@ void begin_soft_surfaces(SoftSolve& s) {
     vertices += std::size_t(entry.contact_surface->vertices);
   }
   all.active = any_self || all.placed.size() > 1;
+  all.unmet = false;
   if (all.surfaces != before) {
     all.contacts.search.candidates.surfaces.clear();
     all.may_cross = true;
