@@ -288,7 +288,7 @@ float BodyCoupling::velocity_of(const CutFace& face) const {
 }
 
 void begin_motions(const GasBox& box, std::span<const FluidBody> bodies, int labels, BodyCoupling& coupling) {
-  coupling.solids.clear();
+  coupling.solids.clear(), coupling.faces.clear();
   coupling.any_moves = false;
   for (int label = 0; label < labels; ++label) {
     SolidMotion solid;
