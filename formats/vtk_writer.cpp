@@ -138,6 +138,9 @@ const char* soft_file(const World& world, SoftId soft, std::string& bytes) {
     std::vector<std::uint32_t> corners(world.solid_tetrahedra(soft, {}));
     (void)world.solid_tetrahedra(soft, corners);
     add_cells(corners, 4);
+    std::vector<float> stress(world.solid_stress(soft, {}));
+    (void)world.solid_stress(soft, stress);
+    piece.cell_data = data_array("Float32", "stress", 1, stress);
     bytes = tetrahedra(piece);
     return ".vtu";
   }

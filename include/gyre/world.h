@@ -334,6 +334,10 @@ class World {
   // The elements of a solid as it is now, also of one made from a box or a surface. Copies up to out.size() numbers, four vertices a
   // tetrahedron; returns how many numbers there are, 0 for ropes and cloths. At rest each tetrahedron has a positive volume.
   std::size_t solid_tetrahedra(SoftId solid, std::span<std::uint32_t> out) const;
+  // The stress in these elements, Pa, in their order: that of von Mises, sqrt(3/2 s:s) with s the deviator of the stress of the corotated law. It is what
+  // SolidDef::yield_stress is compared with, for small strain; turning and even pressure leave it at zero. Copies up to out.size() numbers; returns how many there are, one a
+  // tetrahedron. Source: R. von Mises, 1913.
+  std::size_t solid_stress(SoftId solid, std::span<float> out) const;
   // The surface that a solid was made of (SolidDef::surface), carried along by its tetrahedra: for pictures. Copies up to out.size() places of
   // its vertices, in the order of the definition; returns how many there are, 0 without such a surface.
   std::size_t soft_surface(SoftId soft, std::span<DVec3> out) const;

@@ -4,6 +4,7 @@
 #include "dynamics/soft/soft_contacts.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
+#include "soft/body/element_stress.h"
 #include "soft/body/enclosed_gas.h"
 #include "soft/body/soft_energy.h"
 #include "soft/store/soft_builder.h"
@@ -314,6 +315,18 @@ std::size_t World::solid_tetrahedra(SoftId solid, std::span<std::uint32_t> out) 
         if (count < out.size()) out[count] = std::uint32_t(block.corner[corner][lane]);
       }
     }
+  }
+  return count;
+}
+std::size_t World::solid_stress(SoftId solid, std::span<float> out) const {
+  if (!exists(solid)) return 0;
+  const FloatMode mode;
+  const SoftBody& body = state_->soft.entries[solid.index].body;
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < body.continuum.tetrahedra.size() * kTetLanes; ++t) {
+    if (!(body.continuum.tetrahedra[t / kTetLanes].volume[t % kTetLanes] > 0.0f)) continue;
+    if (count < out.size()) out[count] = float(von_mises(stress_of(body, t)));
+    ++count;
   }
   return count;
 }

@@ -239,6 +239,37 @@ TEST(SolidRest, ATurnGivesNoForce) {
   }
 }
 
+// A bar drawn by a strain e that contracts by nu e has E e in each tetrahedron, also when it is turned; what is pressed from all sides has none.
+TEST(SolidRest, StressIsThatOfTheMaterial) {
+  constexpr double kYoung = 2.0e5, kRatio = 0.3, kStrain = 0.01;
+  const Quat turn = normalized(Quat{0.3f, -0.2f, 0.4f, 0.8f});
+  const DVec3 drawn{1.0 + kStrain, 1.0 - kRatio * kStrain, 1.0 - kRatio * kStrain}, pressed{0.98, 0.98, 0.98};
+  for (const SolidModel model : {SolidModel::corotated, SolidModel::neo_hookean}) {
+    World world = make_world({.gravity = {}});
+    const SoftId bar = world.add_solid({.box = SolidBox{{0.5f, 0.1f, 0.1f}, {5, 2, 2}},
+                                        .model = model,
+                                        .young_modulus = float(kYoung),
+                                        .poisson_ratio = float(kRatio)});
+    std::vector<DVec3> rest;
+    for (std::size_t i = 0; i < world.vertices(bar).size(); ++i)
+      rest.push_back(world.vertices(bar).position(i));
+    for (const auto& [scale, expected] : {std::pair{drawn, kYoung * kStrain}, std::pair{pressed, 0.0}}) {
+      std::vector<DVec3> places;
+      for (const DVec3 p : rest)
+        places.push_back(turned(turn, {scale.x * p.x, scale.y * p.y, scale.z * p.z}));
+      ASSERT_TRUE(world.set_vertices(bar, places, {}));
+      std::vector<float> stress(world.solid_stress(bar, {}));
+      EXPECT_EQ(4 * stress.size(), world.solid_tetrahedra(bar, {}));
+      ASSERT_EQ(world.solid_stress(bar, stress), stress.size());
+      double worst = 0.0;
+      for (const float one : stress) worst = std::fmax(worst, std::fabs(double(one) - expected));
+      EXPECT_TRUE(limit_row("S-49 stress of a bar that is drawn or pressed: error, share of E e",
+                            worst / (kYoung * kStrain), 1e-4, 1e-5))
+          << int(model);
+    }
+  }
+}
+
 // The neo-Hookean law tells at a stretch how far a bar contracts across, and its force over the area at rest. The side t across solves
 // mu t + stiff (stretch t^2 - a) stretch t = 0.
 struct Uniaxial {

@@ -2,7 +2,7 @@
 
 #include "base/container/sort.h"
 #include "math/dense.h"
-#include "soft/body/deformation.h"
+#include "soft/body/element_stress.h"
 #include "soft/contact/surface_crossings.h"
 #include "soft/elements/crack_gap.h"
 #include "soft/elements/solid.h"
@@ -65,35 +65,6 @@ void find_strained_edges(const SoftEntry& entry, std::span<const DVec3> rest, Ar
     const bool ordered = a < b;
     out.push_back({strain, {ordered ? a : b, ordered ? b : a}, (ordered ? 1.0 : -1.0) / now * way});
   }
-}
-
-// Adds the volume and the stress times volume of a tetrahedron (xx, yy, zz, xy, xz, yz), by the corotated law.
-struct ElementStress {
-  double volume = 0.0;
-  double stress[6] = {};
-};
-
-ElementStress stress_of(const SoftBody& body, std::size_t tetrahedron) {
-  DVec3 f[3];
-  find_stressed_deformation(body, tetrahedron, f);
-  double left[6] = {}, moments[3], axes[9];
-  for (const DVec3& c : f) {
-    left[0] += c.x * c.x, left[1] += c.y * c.y, left[2] += c.z * c.z;
-    left[3] += c.x * c.y, left[4] += c.x * c.z, left[5] += c.y * c.z;
-  }
-  symmetric_eigen(left, moments, axes);
-  const double mu = double(body.continuum.material.mu), lambda = double(body.continuum.material.lambda);
-  double strain[3], trace = 0.0;
-  for (int k = 0; k < 3; ++k) trace += strain[k] = std::sqrt(max(moments[k], 0.0)) - 1.0;
-  ElementStress out;
-  out.volume = double(body.continuum.tetrahedra[tetrahedron / kTetLanes].volume[tetrahedron % kTetLanes]);
-  for (int k = 0; k < 3; ++k) {
-    const double pull = out.volume * (2.0 * mu * strain[k] + lambda * trace);
-    const double x = axes[3 * k], y = axes[3 * k + 1], z = axes[3 * k + 2];
-    const double parts[6] = {x * x, y * y, z * z, x * y, x * z, y * z};
-    for (int i = 0; i < 6; ++i) out.stress[i] += pull * parts[i];
-  }
-  return out;
 }
 
 void find_stressed_vertices(const SoftEntry& entry, TaskSystem& tasks, Array<Excess>& out) {
