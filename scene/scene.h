@@ -179,11 +179,20 @@ struct SceneHold {
   bool operator==(const SceneHold&) const = default;
 };
 
+// A point between vertices, held likewise: the one that is nearest to `place` at the start.
+struct SceneHeldPoint {
+  DVec3 place{};  // m, in the world
+  int body = -1;  // -1 is the world
+
+  bool operator==(const SceneHeldPoint&) const = default;
+};
+
 // Data that ropes, cloths and soft bodies have in common beside their definitions.
 struct SceneSoft {
   std::string name;
   std::optional<SceneColor> color;
-  std::vector<SceneHold> holds;  // each vertex at most once
+  std::vector<SceneHold> holds;        // each vertex at most once
+  std::vector<SceneHeldPoint> points;  // none of a rope
 };
 struct SceneRope : SceneSoft {
   RopeDef def;

@@ -37,6 +37,7 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
   runner.soft_bodies_ = builder.take_soft_bodies();
   runner.gases_ = builder.take_gases();
   runner.liquids_ = builder.take_liquids();
+  runner.anchors_ = builder.take_anchors();
   runner.region_pins_ = builder.take_region_pins();
   for (std::size_t i = 0; i < runner.scene_.bodies.size(); ++i) {
     const SceneBody& body = runner.scene_.bodies[i];
@@ -245,6 +246,17 @@ void SceneRunner::put_present_state(SceneSoft& soft, SoftSettings& settings, Sof
     if (!is_to_body || hold.body >= 0) left.push_back(hold);
   }
   soft.holds = std::move(left);
+  std::vector<SceneHeldPoint> points;
+  for (std::size_t k = 0; k < soft.points.size(); ++k) {
+    const DVec3 anchor = anchors_[id.index][k];
+    const int body = soft.points[k].body;
+    if (body < 0) {
+      points.push_back({anchor, -1});
+    } else if (places[std::size_t(body)] >= 0) {
+      points.push_back({world_.pose(bodies_[std::size_t(body)]) * to_float(anchor), places[std::size_t(body)]});
+    }
+  }
+  soft.points = std::move(points);
   const SoftVertices vertices = world_.vertices(id);
   settings.positions.resize(vertices.size());
   settings.velocities.resize(vertices.size());

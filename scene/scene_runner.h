@@ -100,6 +100,7 @@ class SceneRunner {
   std::vector<CouplingId> couplings_;
   std::vector<SoftId> ropes_, cloths_, soft_bodies_;
   std::vector<FluidId> gases_, liquids_;
+  std::vector<std::vector<DVec3>> anchors_;  // by index of the id: of held points, m, in the frame of what holds them
   std::vector<std::vector<int>> region_pins_;  // of each soft body: vertices that its region alone pins
   std::vector<std::size_t> forced_;  // bodies with forces
   std::vector<double> lengths_;      // of distance joints at the start

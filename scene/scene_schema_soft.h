@@ -27,12 +27,17 @@ inline constexpr char kSchemaOfRopes[] = R"json(    "factor_or_null": { "type": 
     },
     "pinned_to": {
       "type": ["array", "null"],
-      "description": "vertices that keep their place in the frame of a body, or in the world",
+      "description": "vertices, or points of triangles and tetrahedra, that keep their place in the frame of a body, or in the world",
       "items": {
         "type": "object",
-        "required": ["vertex", "body"],
+        "required": ["body"],
         "additionalProperties": false,
-        "properties": { "vertex": { "$ref": "#/$defs/index" }, "body": { "type": "string", "description": "a body, or world" } }
+        "properties": {
+          "vertex": { "$ref": "#/$defs/index" },
+          "point": { "$ref": "#/$defs/vector", "description": "instead of a vertex, m in the world: the point of the cloth or soft body that is nearest to this, at most an edge away" },
+          "body": { "type": "string", "description": "a body, or world" }
+        },
+        "oneOf": [{ "required": ["vertex"] }, { "required": ["point"] }]
       }
     },
     "rope": {

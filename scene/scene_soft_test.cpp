@@ -112,6 +112,15 @@ TEST(SceneSoft, RefusesBadCloths) {
        "the name of a body"},
       {grid_with(R"("pinned": [1], "pinned_to": [{"vertex": 1, "body": "pole"}])"),
        at + "/pinned_to/0/vertex", "a second time", "once"},
+      {grid_with(R"("pinned_to": [{"vertex": 1, "point": [0, 0, 0], "body": "pole"}])"),
+       at + "/pinned_to/0/vertex", "beside \"point\"", "one of the two"},
+      {grid_with(R"("pinned_to": [{"point": [0, 0, 0], "body": "mast"}])"), at + "/pinned_to/0/body", "\"mast\"",
+       "the name of a body"},
+      {grid_with(R"("pinned_to": [{"point": [0, 0, 0]}])"), at + "/pinned_to/0/body", "found nothing", "\"body\""},
+      {grid_with(R"("integrator": "visual", "pinned_to": [{"point": [0, 0, 0], "body": "pole"}])"),
+       at + "/pinned_to/0/point", "found a point", "expected \"vertex\""},
+      {grid_with(R"("pinned_to": [{"point": [0, 9, 0], "body": "pole"}])"), at + "/pinned_to", "m away",
+       "within an edge"},
       {grid_with(R"("state": {"positions": []})"), at + "/state/positions", "an array of 0",
        "an array of 15 positions"},
       {cloth_with(R"("mesh": "sheet", "links": "membrane", "shear_stiffness": 1, "stretch_stiffness": 1000)"),
@@ -254,7 +263,8 @@ const std::string kAll = R"({"gyre_scene": 1, "name": "all", )" + kMeshes + kBod
        "integrator": "rk4",
        "state": {"positions": [[0,5,0],[1,5,0],[2,5,0],[0,5,1],[1,5,1],[2,5,1]],
                  "velocities": [[0,0,0],[0.1,0.2,0.3],[0,0,0],[0,0,0],[0,0,0],[0,0,0]]}},
-      {"name": "d", "mesh": "sheet", "position": [0, 8, 0], "links": "rods"}],
+      {"name": "d", "mesh": "sheet", "position": [0, 8, 0], "links": "rods",
+       "pinned_to": [{"point": [0.25, 8, 0.125], "body": "pole"}, {"point": [0.75, 8, 0.5], "body": "world"}]}],
     "soft_bodies": [
       {"name": "e", "box": {"half_extents": [0.5, 0.25, 0.5], "cells": [2, 1, 1]}, "position": [0, 12, 0], "density": 900,
        "young_modulus": 20000, "poisson_ratio": -0.2, "model": "corotated", "pinned_region": {"box": [[-1, 12.1, -1], [1, 13, 0]]}},
@@ -289,6 +299,7 @@ TEST(SceneSoft, WritesWhatItRead) {
   EXPECT_EQ(c.def.settings.velocities[1], (Vec3{0.1f, 0.2f, 0.3f}));
   EXPECT_FALSE(c.def.self_collision);
   EXPECT_EQ(c.holds.size(), 4u);
+  EXPECT_EQ(second->cloths[1].points, (std::vector<SceneHeldPoint>{{{0.25, 8, 0.125}, 0}, {{0.75, 8, 0.5}, -1}}));
   EXPECT_EQ(second->cloths[1].mesh, first->cloths[1].mesh);
   EXPECT_EQ(second->soft_bodies[0].def.poisson_ratio, -0.2f);
   EXPECT_EQ(second->soft_bodies[0].pinned_region->high, (DVec3{1, 13, 0}));
@@ -402,6 +413,20 @@ TEST(SceneSoft, GoesOnFromAFinalScene) {
   EXPECT_EQ(scene->ropes[0].def.points[2], (DVec3{2, 0, 0}));
   EXPECT_FALSE(scene->soft_bodies[0].pinned_region);
   EXPECT_EQ(scene->soft_bodies[0].holds, (std::vector<SceneHold>{{3, -1}, {4, -1}, {5, -1}}));
+}
+
+// The nearest point is held where it is, and the final scene names where that is then.
+TEST(SceneSoft, APointIsHeldByABody) {
+  const SceneRunner runner =
+      run(box_with(R"("young_modulus": 1e6, "position": [0, 5, 0], "pinned_to": [{"point": [0.3, 5.2, 1.1], "body": "load"}])"), 20);
+  const Pose load = runner.world().pose(runner.bodies()[1]);
+  const DVec3 held = load * inverse_times(Pose{{2, 0, 0}, {}}, DVec3{0.3, 5.2, 1});
+  const Scene left = runner.final_scene();
+  ASSERT_EQ(left.soft_bodies[0].points.size(), 1u);
+  EXPECT_LT(length(left.soft_bodies[0].points[0].place - held), 1e-5);
+  const SceneRunner rest = run(write_scene(left), 1);
+  ASSERT_EQ(rest.final_scene().soft_bodies[0].points.size(), 1u);
+  EXPECT_LT(length(rest.final_scene().soft_bodies[0].points[0].place - held), 0.1);
 }
 
 // Explicit schemes without contacts remember nothing: the motion is the same to the bit.

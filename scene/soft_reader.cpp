@@ -100,12 +100,23 @@ void read_pinned(const Field& field, int vertices, std::vector<bool>& held, Scen
   }
 }
 
+// Between vertices are no points of a rope, and none of what is visual.
 void read_pinned_to(SceneReading& reading, const Field& field, int vertices, std::vector<bool>& held,
-                    SceneSoft& soft) {
-  const std::size_t count = field.array("an array of vertices and the bodies that hold them");
+                    bool has_points, SceneSoft& soft) {
+  const std::size_t count = field.array("an array of vertices or points and the bodies that hold them");
   for (std::size_t i = 0; i < count; ++i) {
     const Field element = field.element(i);
-    Members members(element, "a vertex and the body that holds it");
+    Members members(element, "a vertex or a point, and the body that holds it");
+    const auto point = members.find_value("point");
+    if (point && !has_points)
+      point->fail("found a point, expected \"vertex\": ropes and what has the integrator visual are held at vertices");
+    if (point) {
+      soft.points.push_back({point->place(), read_holder(reading, members.need("body"))});
+      if (const auto vertex = members.find_value("vertex"))
+        vertex->fail("found this beside \"point\", expected one of the two");
+      members.finish();
+      continue;
+    }
     const Field number = members.need("vertex");
     const int vertex = int(number.integer(0, vertices - 1));
     add_hold(soft, held, number, {vertex, read_holder(reading, members.need("body"))});
@@ -129,12 +140,13 @@ void read_attach(SceneReading& reading, const Field& field, int vertices, std::v
   }
 }
 
-std::vector<bool> read_holds(SceneReading& reading, Members& members, int vertices, SceneSoft& soft) {
+std::vector<bool> read_holds(SceneReading& reading, Members& members, int vertices, bool has_points,
+                             SceneSoft& soft) {
   if (vertices == kUnknown) vertices = int(kMostVertices);
   std::vector<bool> held(std::size_t(vertices), false);
   if (const auto pinned = members.find_value("pinned")) read_pinned(*pinned, vertices, held, soft);
   if (const auto pinned = members.find_value("pinned_to"))
-    read_pinned_to(reading, *pinned, vertices, held, soft);
+    read_pinned_to(reading, *pinned, vertices, held, has_points, soft);
   return held;
 }
 
@@ -314,7 +326,7 @@ void read_rope(SceneReading& reading, const Field& field) {
                rope.def.links == RopeLinks::springs ? kPositive : kNotNegative);
   members.read("bend_stiffness", rope.def.bend_stiffness, kNotNegative);
   read_settings(members, vertices, rope.def.settings);
-  std::vector<bool> held = read_holds(reading, members, vertices, rope);
+  std::vector<bool> held = read_holds(reading, members, vertices, false, rope);
   if (const auto attach = members.find_value("attach")) read_attach(reading, *attach, vertices, held, rope);
   members.finish();
   reading.scene.ropes.push_back(std::move(rope));
@@ -357,7 +369,7 @@ void read_cloth(SceneReading& reading, const Field& field) {
   members.read("self_collision", cloth.def.self_collision);
   read_gas(members, cloth.def);
   read_settings(members, vertices, cloth.def.settings);
-  read_holds(reading, members, vertices, cloth);
+  read_holds(reading, members, vertices, cloth.def.settings.integrator != SoftIntegrator::visual, cloth);
   members.finish();
   reading.scene.cloths.push_back(std::move(cloth));
 }
@@ -370,7 +382,7 @@ void read_soft_body(SceneReading& reading, const Field& field) {
   read_pose(members, solid.def.pose);
   read_material_of_solid(members, solid.def);
   read_settings(members, vertices, solid.def.settings);
-  read_holds(reading, members, vertices, solid);
+  read_holds(reading, members, vertices, solid.def.settings.integrator != SoftIntegrator::visual, solid);
   if (const auto region = members.find_value("pinned_region")) {
     Members parts(*region, "a region, {\"box\": [low, high]}");
     solid.pinned_region = read_bounds(parts.need("box"));

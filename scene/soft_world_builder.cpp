@@ -1,6 +1,8 @@
 // Ropes, cloths and soft bodies of a scene in a world that has its bodies. See world_builder.h.
 #include "scene/world_builder.h"
 
+#include "scene/number_text.h"
+
 #include <string_view>
 
 namespace gyre {
@@ -93,6 +95,32 @@ bool WorldBuilder::hold(const SceneSoft& soft, SoftId id, const std::string& poi
     const bool done = one.body < 0 ? world_.pin(id, one.vertex)
                                    : world_.attach(id, one.vertex, bodies_[std::size_t(one.body)]);
     if (!done) return fail(pointer, last_refusal());
+  }
+  return hold_points(soft, id, pointer);
+}
+
+bool WorldBuilder::hold_points(const SceneSoft& soft, SoftId id, const std::string& pointer) {
+  if (anchors_.size() <= id.index) anchors_.resize(id.index + 1);
+  const SoftVertices vertices = world_.vertices(id);
+  const std::span<const std::uint32_t> corners = world_.soft_triangles(id);
+  double edges = 0.0;
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    edges += length(vertices.position(corners[k]) - vertices.position(corners[k % 3 == 2 ? k - 2 : k + 1]));
+  const double edge = edges / double(corners.size());
+  for (std::size_t i = 0; i < soft.points.size(); ++i) {
+    const SceneHeldPoint& one = soft.points[i];
+    const SoftPoint point = world_.nearest_soft_point(id, one.place);
+    DVec3 place{};
+    for (std::size_t k = 0; k < 4; ++k)
+      place += double(point.weights[k]) * vertices.position(std::size_t(point.vertices[k]));
+    const double apart = length(place - one.place);
+    if (!(apart <= edge))
+      return fail(pointer + "/pinned_to", "found a point " + rounded(apart) + " m away from it, expected one within an edge (" +
+                                              rounded(edge) + " m)");
+    const BodyId body = one.body < 0 ? BodyId{} : bodies_[std::size_t(one.body)];
+    const bool done = one.body < 0 ? world_.pin_point(id, point) : world_.attach_point(id, point, body);
+    if (!done) return fail(pointer + "/pinned_to", last_refusal());
+    anchors_[id.index].push_back(one.body < 0 ? place : DVec3(inverse_times(world_.pose(body), place)));
   }
   return true;
 }

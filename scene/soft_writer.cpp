@@ -20,23 +20,26 @@ void write_settings(JsonWriter& json, const SoftSettings& settings) {
 }
 
 void write_holds(JsonWriter& json, const Scene& scene, const SceneSoft& soft) {
-  const auto write_all = [&](const char* key, bool to_world, const auto& write) {
-    bool any = false;
-    for (const SceneHold& hold : soft.holds) {
-      if ((hold.body < 0) != to_world) continue;
-      if (!any) json.key(key).begin_array(kInline);
-      any = true;
-      write(hold);
-    }
-    if (any) json.end_array();
-  };
-  write_all("pinned", true, [&](const SceneHold& hold) { json.value(hold.vertex); });
-  write_all("pinned_to", false, [&](const SceneHold& hold) {
+  bool any_pinned = false, any_held = !soft.points.empty();
+  for (const SceneHold& hold : soft.holds) (hold.body < 0 ? any_pinned : any_held) = true;
+  if (any_pinned) {
+    json.key("pinned").begin_array(kInline);
+    for (const SceneHold& hold : soft.holds)
+      if (hold.body < 0) json.value(hold.vertex);
+    json.end_array();
+  }
+  if (!any_held) return;
+  const auto write = [&](const char* key, const auto& value, int body) {
     json.begin_object(kInline);
-    json.field("vertex", hold.vertex);
-    json.field("body", scene.bodies[std::size_t(hold.body)].name);
+    json.field(key, value);
+    json.field("body", body < 0 ? "world" : scene.bodies[std::size_t(body)].name);
     json.end_object();
-  });
+  };
+  json.key("pinned_to").begin_array(kInline);
+  for (const SceneHold& hold : soft.holds)
+    if (hold.body >= 0) write("vertex", hold.vertex, hold.body);
+  for (const SceneHeldPoint& point : soft.points) write("point", point.place, point.body);
+  json.end_array();
 }
 
 void write_pose(JsonWriter& json, const Pose& pose) {

@@ -26,6 +26,7 @@ class WorldBuilder {
   std::vector<SoftId> take_soft_bodies() { return std::move(soft_bodies_); }
   std::vector<FluidId> take_gases() { return std::move(gases_); }
   std::vector<FluidId> take_liquids() { return std::move(liquids_); }
+  std::vector<std::vector<DVec3>> take_anchors() { return std::move(anchors_); }
   std::vector<std::vector<int>> take_region_pins() { return std::move(region_pins_); }
 
  private:
@@ -38,6 +39,7 @@ class WorldBuilder {
   bool add_fields();
   bool add_soft_matter();
   bool hold(const SceneSoft& soft, SoftId id, const std::string& pointer);
+  bool hold_points(const SceneSoft& soft, SoftId id, const std::string& pointer);
   bool pin_region(const SceneSoftBody& solid, SoftId id, const std::string& pointer);
   bool blame_soft(const std::string& pointer, const SceneSoft& soft);
   bool add_fluids();
@@ -59,6 +61,7 @@ class WorldBuilder {
   std::vector<SoftId> ropes_, cloths_, soft_bodies_;
   std::vector<FluidId> gases_, liquids_;
   std::vector<std::vector<int>> region_pins_;
+  std::vector<std::vector<DVec3>> anchors_;  // by index of the id: of held points, m, in the frame of what holds them
   std::vector<Geometry> mesh_cache_, hull_cache_;  // by mesh
 };
 

@@ -4,6 +4,7 @@
 //   SoftId flag = world.add_cloth({.grid = ClothGrid{.size = {2, 1}, .cells = {40, 20}}, .pose = {{0, 3, 0}}});
 //   world.attach(flag, 0, pole);       // vertex 0 keeps its place in the frame of the pole
 //   world.pin(flag, 40);               // vertex 40 stays where it is
+//   world.attach_point(flag, world.nearest_soft_point(flag, {0, 3, 0}), ball);  // a point between vertices
 //   SoftVertices v = world.vertices(flag);  // in place: v.x[i], v.y[i], v.z[i]
 //
 // Stiffness is that of the material (N, N/m, Pa): it does not change with cells, segments, sub-steps or damping. Vertices keep the numbers
@@ -134,6 +135,13 @@ struct SolidDef {
   float yield_stress = 0.0f;                // Pa, of von Mises: beyond it the rest shape yields; 0: never. Not of the linear model
   float creep_time = 0.0f;                  // s, in which stress beyond the yield stress falls to 1/e; 0: at once
   SoftSettings settings{};
+};
+
+// A point of a triangle of a cloth, or of a tetrahedron or a triangle of the surface of a solid: the mean of its corners by weight. The weights add up to 1; the fourth
+// of a triangle is 0, and what has no weight may be any vertex. A ray's hit has them: CastHit::weights of the vertices of its triangle.
+struct SoftPoint {
+  std::array<int, 4> vertices{};
+  std::array<float, 4> weights{};
 };
 
 // The vertices of one of them, in place: valid until the next change or step of the world.

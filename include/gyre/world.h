@@ -242,6 +242,11 @@ class World {
   bool attach(SoftId soft, int vertex, BodyId body);
   bool pin(SoftId soft, int vertex);      // to the world: it stays where it is
   bool release(SoftId soft, int vertex);  // from a body or the world; true if it was free already
+  // The same of a point between vertices of a cloth or solid, which turns freely about it: a ball joint between the point and the body. Both ways: the body hangs on the point, too.
+  // A point stays with its element where something tears. There may be several of one element. Ropes and what is visual are held at vertices: they refuse.
+  bool attach_point(SoftId soft, const SoftPoint& point, BodyId body);
+  bool pin_point(SoftId soft, const SoftPoint& point);
+  bool release_points(SoftId soft, BodyId body);  // all that this body holds, or the world if it is null; true also if there are none
   // Positions (m) and velocities (m/s) of all vertices at once; either may be empty and stays then. Attached vertices stay attached, where
   // they are put.
   bool set_vertices(SoftId soft, std::span<const DVec3> positions, std::span<const Vec3> velocities);
@@ -331,6 +336,8 @@ class World {
   SoftVertices vertices(SoftId soft) const;
   // The surface: three vertices each, counter-clockwise seen from outside (of a cloth: from one side). None of a rope.
   std::span<const std::uint32_t> soft_triangles(SoftId soft) const;
+  // The point of a cloth or solid that is nearest to a place, m in the world: inside a solid the place itself. Its weights are zero of a rope.
+  SoftPoint nearest_soft_point(SoftId soft, DVec3 place) const;
   // The elements of a solid as it is now, also of one made from a box or a surface. Copies up to out.size() numbers, four vertices a
   // tetrahedron; returns how many numbers there are, 0 for ropes and cloths. At rest each tetrahedron has a positive volume.
   std::size_t solid_tetrahedra(SoftId solid, std::span<std::uint32_t> out) const;

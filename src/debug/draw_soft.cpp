@@ -2,6 +2,7 @@
 #include "debug/draw_soft.h"
 
 #include "base/container/flat_map.h"
+#include "soft/store/soft_point.h"
 
 namespace gyre {
 
@@ -48,6 +49,8 @@ void draw_soft_edges(const SoftStore& softs, Painter& paint) {
     for (const SoftAttachment& attachment : entry.attachments.view())
       paint.point(place_of(entry, attachment.particle, paint),
                   attachment.body == kWorldAnchor ? kPinned : kAttached);
+    for (const SoftPointAttachment& point : entry.points.view())
+      paint.point(difference(place_of(entry, point), paint.options().origin), point.body == kWorldAnchor ? kPinned : kAttached);
   });
 }
 

@@ -260,6 +260,16 @@ struct SetEnabled {
 struct AddCoupling {
   CouplingDef def;
 };
+// A null body is the world.
+struct AttachPoint {
+  SoftId soft;
+  SoftPoint point;
+  BodyId body;
+};
+struct ReleasePoints {
+  SoftId soft;
+  BodyId body;
+};
 struct RemoveCoupling {
   CouplingId coupling;
 };
@@ -272,7 +282,7 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              SetMotion, SetSolver, AddSoft, RemoveSoft, AttachSoft, ReleaseSoft, SetVertices, AddFluid, RemoveFluid, SetEmitters,
                              SetSleepShare, SetSleepSpeed, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetShape,
                              SetBodyUserData, SetShapeUserData, SetBreakLoad, SetPairIgnored, SetEnabled, AddCoupling,
-                             RemoveCoupling, SetFluidPose, SetFluidVelocity, SetVertexLimits>;
+                             RemoveCoupling, SetFluidPose, SetFluidVelocity, SetVertexLimits, AttachPoint, ReleasePoints>;
 
 // The result of a command: success, and the id of the new object.
 struct CommandResult {

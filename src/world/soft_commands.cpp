@@ -1,13 +1,14 @@
 #include "world/soft_commands.h"
 
 #include "base/float_mode.h"
-#include "dynamics/soft/soft_contacts.h"
+#include "dynamics/soft/soft_inside.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
 #include "soft/body/element_stress.h"
 #include "soft/body/enclosed_gas.h"
 #include "soft/body/soft_energy.h"
 #include "soft/store/soft_builder.h"
+#include "soft/store/soft_point.h"
 #include "world/refusal.h"
 #include "world/soft_events.h"
 #include "world/world_state.h"
@@ -17,6 +18,8 @@ namespace gyre {
 namespace {
 
 constexpr std::size_t kMaxSofts = 1u << 16;
+// Weights of a point may be wrong by the rounding of a hit.
+constexpr float kWeightError = 1.0e-4f;
 
 Error check_id(const WorldState& s, SoftId id, const char* what) {
   if (is_soft(s, id)) return {};
@@ -31,6 +34,14 @@ Error check_vertex(const WorldState& s, SoftId id, int vertex, const char* what)
   return refuse("%s: vertex is %d; it must lie within 0 and %d", what, vertex, count - 1);
 }
 
+Error check_holder(const WorldState& s, BodyId body, const char* what) {
+  const IdPool& ids = s.rigid.bodies.ids;
+  if (!body || (body.world == s.number && ids.live(body.index) && std::uint16_t(ids.generation(body.index)) == body.generation))
+    return {};
+  return make_error(ErrorCode::stale_id, "%s: body %u (generation %u) does not exist in this world", what, body.index,
+                    unsigned(body.generation));
+}
+
 std::size_t find_attachment(const SoftEntry& entry, std::uint32_t particle) {
   std::size_t at = 0;
   while (at < entry.attachments.size() && entry.attachments[at].particle < particle) ++at;
@@ -40,28 +51,48 @@ bool has_attachment(const SoftEntry& entry, std::size_t at, std::uint32_t partic
   return at < entry.attachments.size() && entry.attachments[at].particle == particle;
 }
 
-// Lets an attachment stand where its vertex is now.
-void anchor_here(const RigidWorld& w, const SoftEntry& entry, SoftAttachment& attachment) {
-  attachment.place = entry.body.particles.place(int(attachment.particle));
-  attachment.impulse = {};
-  if (attachment.body == kWorldAnchor) return;
-  const BodyPose& pose = w.bodies.poses[std::size_t(attachment.body)];
-  attachment.local = rotate(conjugate(pose.orientation), difference(attachment.place, pose.center));
+DVec3 place_of(const SoftEntry& entry, const SoftAttachment& attachment) {
+  return entry.body.particles.place(int(attachment.particle));
+}
+
+// Lets an attachment of a vertex or a point stand where that is now.
+template <class Held>
+void anchor_here(const RigidWorld& w, const SoftEntry& entry, Held& held) {
+  held.place = place_of(entry, held);
+  held.impulse = {};
+  if (held.body == kWorldAnchor) return;
+  const BodyPose& pose = w.bodies.poses[std::size_t(held.body)];
+  held.local = rotate(conjugate(pose.orientation), difference(held.place, pose.center));
 }
 
 // Vertices that begin inside bodies that hold them do not touch these.
+void add_inside(const RigidWorld& w, SoftEntry& entry, const SoftPointAttachment& point) {
+  const ElementCorners corners = corners_of(entry, point.element);
+  for (int k = 0; k < corners.count && point.body != kWorldAnchor; ++k)
+    add_inside(w, entry, std::uint32_t(point.body), corners.corner[k]);
+}
 void find_inside_again(const RigidWorld& w, SoftEntry& entry) {
   entry.inside.clear();
   for (const SoftAttachment& one : entry.attachments)
     if (one.body != kWorldAnchor) add_inside(w, entry, std::uint32_t(one.body), one.particle);
+  for (const SoftPointAttachment& one : entry.points) add_inside(w, entry, one);
 }
 
 // A body that holds nothing any more pushes out what is inside it.
 void let_out(SoftEntry& entry, std::int32_t body) {
-  for (const SoftAttachment& one : entry.attachments)
-    if (one.body == body) return;
+  bool holds = false;
+  for_each_attachment(entry, [&](const auto& one) { holds = holds || one.body == body; });
+  if (holds) return;
   for (std::size_t k = entry.inside.size(); k-- > 0;)
     if (entry.inside[k].body == body) entry.inside.erase_at(k);
+}
+
+// Lets points go that a body or the world holds; true if there are any.
+bool let_points_go(SoftEntry& entry, std::int32_t body) {
+  const std::size_t before = entry.points.size();
+  for (std::size_t k = before; k-- > 0;)
+    if (entry.points[k].body == body) entry.points.erase_at(k);
+  return entry.points.size() != before;
 }
 
 }  // namespace
@@ -82,12 +113,37 @@ Error check(const WorldState& s, const AddSoft& c) {
 Error check(const WorldState& s, const RemoveSoft& c) { return check_id(s, c.soft, "remove_soft"); }
 Error check(const WorldState& s, const AttachSoft& c) {
   const Error e = check_vertex(s, c.soft, c.vertex, c.body ? "attach" : "pin");
-  if (e || !c.body) return e;
-  const IdPool& ids = s.rigid.bodies.ids;
-  if (c.body.world == s.number && ids.live(c.body.index) && std::uint16_t(ids.generation(c.body.index)) == c.body.generation)
-    return {};
-  return make_error(ErrorCode::stale_id, "attach: body %u (generation %u) does not exist in this world", c.body.index,
-                    unsigned(c.body.generation));
+  return e ? e : check_holder(s, c.body, "attach");
+}
+Error check(const WorldState& s, const AttachPoint& c) {
+  const char* const what = c.body ? "attach_point" : "pin_point";
+  if (const Error e = check_id(s, c.soft, what)) return e;
+  if (const Error e = check_holder(s, c.body, what)) return e;
+  const SoftEntry& entry = s.soft.entries[c.soft.index];
+  if (entry.kind == SoftKind::rope) return refuse("%s: a rope is held at its vertices", what);
+  if (entry.settings().integrator == SoftIntegrator::visual)
+    return refuse("%s: what has the integrator visual is held at its vertices", what);
+  float sum = 0.0f;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const float weight = c.point.weights[k];
+    if (!(weight >= -kWeightError && weight <= 1.0f + kWeightError))
+      return refuse("%s: weights[%d] is %g; it must lie within 0 and 1", what, int(k), double(weight));
+    sum += weight;
+    if (weight == 0.0f) continue;
+    if (const Error e = check_vertex(s, c.soft, c.point.vertices[k], what)) return e;
+    for (std::size_t n = 0; n < k; ++n)
+      if (c.point.weights[n] != 0.0f && c.point.vertices[n] == c.point.vertices[k])
+        return refuse("%s: vertex %d is named twice", what, c.point.vertices[k]);
+  }
+  if (!(absolute(sum - 1.0f) <= 4.0f * kWeightError)) return refuse("%s: the weights add up to %g; it must be 1", what, double(sum));
+  SoftPointAttachment found;
+  if (!find_element(entry, c.point, found))
+    return refuse("%s: no %s has all of these vertices as its corners", what, entry.kind == SoftKind::cloth ? "triangle" : "tetrahedron");
+  return {};
+}
+Error check(const WorldState& s, const ReleasePoints& c) {
+  const Error e = check_id(s, c.soft, "release_points");
+  return e ? e : check_holder(s, c.body, "release_points");
 }
 Error check(const WorldState& s, const ReleaseSoft& c) { return check_vertex(s, c.soft, c.vertex, "release"); }
 Error check(const WorldState& s, const SetVertices& c) {
@@ -151,9 +207,9 @@ CommandResult execute(WorldState& s, const RemoveSoft& c) {
   for_each_contact(s.soft.entries[c.soft.index], [&](const SoftContact& contact) {
     if (contact.body != kWorldAnchor) wake(s.rigid, std::uint32_t(contact.body));
   });
-  for (const SoftAttachment& attachment : s.soft.entries[c.soft.index].attachments) {
-    if (attachment.body != kWorldAnchor) wake(s.rigid, std::uint32_t(attachment.body));
-  }
+  for_each_attachment(s.soft.entries[c.soft.index], [&](const auto& one) {
+    if (one.body != kWorldAnchor) wake(s.rigid, std::uint32_t(one.body));
+  });
   s.soft.entries[c.soft.index] = {};
   s.soft.ids.release(c.soft.index);
   return {true, {}, {}, {}};
@@ -184,6 +240,26 @@ CommandResult execute(WorldState& s, const ReleaseSoft& c) {
   wake(entry);
   return {true, {}, {}, {}};
 }
+CommandResult execute(WorldState& s, const AttachPoint& c) {
+  SoftEntry& entry = s.soft.entries[c.soft.index];
+  SoftPointAttachment point;
+  find_element(entry, c.point, point);
+  point.body = c.body ? std::int32_t(c.body.index) : kWorldAnchor;
+  anchor_here(s.rigid, entry, point);
+  entry.points.push_back(point);
+  add_inside(s.rigid, entry, point);
+  wake(entry);
+  return {true, {}, {}, {}};
+}
+CommandResult execute(WorldState& s, const ReleasePoints& c) {
+  SoftEntry& entry = s.soft.entries[c.soft.index];
+  const std::int32_t body = c.body ? std::int32_t(c.body.index) : kWorldAnchor;
+  if (!let_points_go(entry, body)) return {true, {}, {}, {}};
+  if (body != kWorldAnchor) wake(s.rigid, std::uint32_t(body));
+  let_out(entry, body);
+  wake(entry);
+  return {true, {}, {}, {}};
+}
 CommandResult execute(WorldState& s, const SetVertices& c) {
   SoftEntry& entry = s.soft.entries[c.soft.index];
   for (std::size_t i = 0; i < c.positions.size(); ++i) entry.body.particles.set_place(int(i), c.positions[i]);
@@ -192,7 +268,7 @@ CommandResult execute(WorldState& s, const SetVertices& c) {
   forget_motion(entry);
   entry.rest[0] = {};
   if (!c.positions.empty()) {
-    for (SoftAttachment& attachment : entry.attachments) anchor_here(s.rigid, entry, attachment);
+    for_each_attachment(entry, [&](auto& one) { anchor_here(s.rigid, entry, one); });
     find_inside_again(s.rigid, entry);
   }
   return {true, {}, {}, {}};
@@ -214,7 +290,7 @@ void wake_touching(SoftStore& soft, std::uint32_t body) {
   soft.for_each([&](SoftEntry& entry) {
     bool touches = false;
     for_each_contact(entry, [&](const SoftContact& one) { touches = touches || one.body == std::int32_t(body); });
-    for (const SoftAttachment& one : entry.attachments) touches = touches || one.body == std::int32_t(body);
+    for_each_attachment(entry, [&](const auto& one) { touches = touches || one.body == std::int32_t(body); });
     if (touches) wake(entry);
   });
 }
@@ -228,6 +304,9 @@ void forget_body(SoftStore& soft, std::uint32_t body) {
       let_out(entry, std::int32_t(body));
       wake(entry);
     }
+    if (!let_points_go(entry, std::int32_t(body))) return;
+    let_out(entry, std::int32_t(body));
+    wake(entry);
   });
 }
 
@@ -287,6 +366,11 @@ SoftInfo World::soft_info(SoftId soft) const {
     info.kinetic_energy += 0.5 * double(p.mass[i]) * length_squared(DVec3(p.velocity(i)));
   }
   return info;
+}
+SoftPoint World::nearest_soft_point(SoftId soft, DVec3 place) const {
+  if (!exists(soft)) return {};
+  const FloatMode mode;
+  return find_nearest_point(state_->soft.entries[soft.index], place);
 }
 SoftVertices World::vertices(SoftId soft) const {
   if (!exists(soft)) return {};
@@ -401,6 +485,12 @@ Error check_soft_columns(const RigidWorld& w, const SoftStore& soft) {
       if (one.particle >= count || !good_body(one.body)) return bad("an attachment without its vertex or body");
       if (k > 0 && entry.attachments[k - 1].particle >= one.particle) return bad("attachments out of order");
       if (!is_finite(one.place) || !is_finite(one.local) || !is_finite(one.impulse)) return bad("an attachment that is not finite");
+    }
+    for (const SoftPointAttachment& one : entry.points) {
+      if (corners_of(entry, one.element).count == 0 || !good_body(one.body)) return bad("an attached point without its element or body");
+      bool finite = is_finite(one.place) && is_finite(one.local) && is_finite(one.impulse);
+      for (const float weight : one.weight) finite = finite && is_finite(weight);
+      if (!finite) return bad("an attached point that is not finite");
     }
     for (std::size_t k = 0; k < entry.inside.size(); ++k) {
       const SoftInside& one = entry.inside[k];

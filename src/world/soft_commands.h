@@ -11,6 +11,8 @@ Error check(const WorldState& state, const AddSoft& c);
 Error check(const WorldState& state, const RemoveSoft& c);
 Error check(const WorldState& state, const AttachSoft& c);
 Error check(const WorldState& state, const ReleaseSoft& c);
+Error check(const WorldState& state, const AttachPoint& c);
+Error check(const WorldState& state, const ReleasePoints& c);
 Error check(const WorldState& state, const SetVertices& c);
 Error check(const WorldState& state, const SetVertexLimits& c);
 
@@ -18,6 +20,8 @@ CommandResult execute(WorldState& state, const AddSoft& c);
 CommandResult execute(WorldState& state, const RemoveSoft& c);
 CommandResult execute(WorldState& state, const AttachSoft& c);
 CommandResult execute(WorldState& state, const ReleaseSoft& c);
+CommandResult execute(WorldState& state, const AttachPoint& c);
+CommandResult execute(WorldState& state, const ReleasePoints& c);
 CommandResult execute(WorldState& state, const SetVertices& c);
 CommandResult execute(WorldState& state, const SetVertexLimits& c);
 

@@ -223,6 +223,12 @@ template <Is<SoftAttachment> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.body), for_each_field(r.place, f), for_each_field(r.local, f), for_each_field(r.impulse, f);
 }
+template <Is<SoftPointAttachment> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.element), f(r.body);
+  for (auto& one : r.weight) f(one);
+  for_each_field(r.place, f), for_each_field(r.local, f), for_each_field(r.impulse, f);
+}
 template <Is<SoftInside> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.particle), f(r.body);

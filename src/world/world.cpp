@@ -126,14 +126,28 @@ bool World::set_fluid_pose(FluidId fluid, const Pose& pose) {
 bool World::set_fluid_velocity(FluidId fluid, Vec3 linear, Vec3 angular) {
   return submit(*state_, SetFluidVelocity{fluid, linear, angular}).done;
 }
+namespace {
+
+// A null body of a command is the world, that of a caller is an error.
+bool refuses_holder(WorldState& s, BodyId body, bool exists, const char* what) {
+  if (!exists)
+    report_problem(s, ErrorCode::stale_id, body, "%s: body %u (generation %u) does not exist in this world", what, body.index,
+                   unsigned(body.generation));
+  return !exists;
+}
+
+}  // namespace
+
 bool World::attach(SoftId soft, int vertex, BodyId body) {
-  if (!exists(body)) {
-    report_problem(*state_, ErrorCode::stale_id, body, "attach: body %u (generation %u) does not exist in this world",
-                   body.index, unsigned(body.generation));
-    return false;
-  }
+  if (refuses_holder(*state_, body, exists(body), "attach")) return false;
   return submit(*state_, AttachSoft{soft, vertex, body}).done;
 }
+bool World::attach_point(SoftId soft, const SoftPoint& point, BodyId body) {
+  if (refuses_holder(*state_, body, exists(body), "attach_point")) return false;
+  return submit(*state_, AttachPoint{soft, point, body}).done;
+}
+bool World::pin_point(SoftId soft, const SoftPoint& point) { return submit(*state_, AttachPoint{soft, point, {}}).done; }
+bool World::release_points(SoftId soft, BodyId body) { return submit(*state_, ReleasePoints{soft, body}).done; }
 bool World::pin(SoftId soft, int vertex) { return submit(*state_, AttachSoft{soft, vertex, {}}).done; }
 bool World::release(SoftId soft, int vertex) { return submit(*state_, ReleaseSoft{soft, vertex}).done; }
 bool World::set_vertices(SoftId soft, std::span<const DVec3> positions, std::span<const Vec3> velocities) {

@@ -59,6 +59,7 @@ class HashVisitor {
       for_each_damage_array(entry, add_array);
       for_each_soft_array(entry, add_array);
       if (!entry.faces.empty()) add_array(entry.faces);
+      if (!entry.points.empty()) add_array(entry.points);
     });
   }
   void operator()(const char*, const FluidStore& fluids) {

@@ -2,11 +2,13 @@
 
 #include "collision/broadphase/fat_box.h"
 #include "dynamics/soft/soft_groups.h"
+#include "dynamics/soft/soft_inside.h"
 #include "geometry/query/face_query.h"
 #include "geometry/query/point_query.h"
 #include "geometry/shape/mesh.h"
 #include "math/rotation.h"
 #include "rigid/sleep/island.h"
+#include "soft/store/soft_point.h"
 #include "task/parallel.h"
 
 #include <cmath>
@@ -30,8 +32,6 @@ constexpr float kAttachedShare = 1.1f;
 constexpr double kFaceShare = 0.9;
 // A face that is nearer than this share of the length of an edge is pushed along its own normal: the shape's is not to be trusted there.
 constexpr double kTooNear = 1.0e-3;
-
-constexpr double kAnyDepth = 1.0e9;  // m, more than any shape has
 
 // A plane is touched by corners alone. A double-sided mesh has no outside.
 bool may_touch_faces(const Shape& shape) {
@@ -86,9 +86,11 @@ class ContactFinder {
   bool is_anything_moving() const {
     for (const Candidate& candidate : candidates_)
       if (can_wake_others(w_, candidate.body)) return true;
-    for (const SoftAttachment& one : entry_.attachments)
-      if (one.body != kWorldAnchor && can_wake_others(w_, std::uint32_t(one.body))) return true;
-    return false;
+    bool any = false;
+    for_each_attachment(entry_, [&](const auto& one) {
+      any = any || (one.body != kWorldAnchor && can_wake_others(w_, std::uint32_t(one.body)));
+    });
+    return any;
   }
 
  private:
@@ -132,11 +134,18 @@ class ContactFinder {
   }
 
   bool is_attached_near(int i, std::uint32_t body) const {
+    const DVec3 place = p_.place(i);
+    const auto is_near = [&](DVec3 held) {
+      return length(place - held) <= double(kAttachedShare * entry_.size);
+    };
     for (const SoftAttachment& one : entry_.attachments) {
       if (one.body != std::int32_t(body)) continue;
-      if (one.particle == std::uint32_t(i)) return true;
-      const double apart = length(p_.place(i) - p_.place(int(one.particle)));
-      if (apart <= double(kAttachedShare * entry_.size)) return true;
+      if (one.particle == std::uint32_t(i) || is_near(p_.place(int(one.particle)))) return true;
+    }
+    for (const SoftPointAttachment& one : entry_.points) {
+      if (one.body != std::int32_t(body)) continue;
+      if (corners_of(entry_, one.element).has(std::uint32_t(i)) || is_near(place_of(entry_, one)))
+        return true;
     }
     return false;
   }
@@ -395,9 +404,9 @@ void wake_bodies(RigidWorld& w, const SoftEntry& entry) {
   for_each_contact(entry, [&](const SoftContact& contact) {
     if (contact.gap <= 0.0f || contact.impulse != Vec3{}) wake(w, std::uint32_t(contact.body));
   });
-  for (const SoftAttachment& attachment : entry.attachments) {
-    if (attachment.body != kWorldAnchor) wake(w, std::uint32_t(attachment.body));
-  }
+  for_each_attachment(entry, [&](const auto& one) {
+    if (one.body != kWorldAnchor) wake(w, std::uint32_t(one.body));
+  });
 }
 
 // The speed below which a vertex is still: that of bodies of the size of what it belongs to.
@@ -425,10 +434,10 @@ bool do_all_rest(const RigidWorld& w, const SoftEntry& entry) {
   for_each_contact(entry, [&](const SoftContact& contact) {
     all = all && (contact.impulse == Vec3{} || !can_wake_others(w, std::uint32_t(contact.body)));
   });
-  if (!all) return false;
-  for (const SoftAttachment& one : entry.attachments)
-    if (one.body != kWorldAnchor && can_wake_others(w, std::uint32_t(one.body))) return false;
-  return true;
+  for_each_attachment(entry, [&](const auto& one) {
+    all = all && (one.body == kWorldAnchor || !can_wake_others(w, std::uint32_t(one.body)));
+  });
+  return all;
 }
 
 void fall_asleep(SoftEntry& entry) {
@@ -454,101 +463,7 @@ void wake_groups(SoftStore& soft, float gravity, Arena& arena, float seconds) {
   }
 }
 
-// --------------------------------------------------------------------------- vertices inside bodies that hold them
-
-// Signed distance of a vertex to the shapes of a body that it may touch.
-double distance_to(const RigidWorld& w, const SoftEntry& entry, std::uint32_t body, std::uint32_t particle) {
-  Proxy own;
-  own.filter = entry.settings().filter, own.body = kNoIndex, own.motion = ProxyMotion::moving;
-  double nearest = kAnyDepth;
-  for (const ShapeId id : w.bodies.shapes[body]) {
-    const Proxy& proxy = w.shapes.proxies[id.index];
-    if (proxy.sensor || !may_pair(own, proxy)) continue;
-    const Pose pose = origin_pose(w.bodies, body) * w.shapes.body_from_shape[id.index];
-    const DVec3 local = rotate_inverse(to_double(pose.orientation),
-                                       entry.body.particles.place(int(particle)) - pose.position);
-    PointDistance found;
-    if (find_point_distance(w.shapes.colliders[id.index].shape, local, kAnyDepth, found))
-      nearest = min(nearest, found.distance);
-  }
-  return nearest;
-}
-
-template <class IsThere, class Visit>
-void visit_row(const SlicedRows& rows, std::uint32_t row, IsThere&& is_there, Visit&& visit) {
-  if (rows.slots.empty()) return;
-  const std::uint32_t slice = row / kSliceRows, lane = row % kSliceRows;
-  for (std::int32_t s = rows.slot_begin[slice]; s < rows.slot_begin[slice + 1]; ++s) {
-    const RowSlot slot = rows.slots[s];
-    if (!is_there(std::size_t(s) * kSliceRows + lane)) continue;
-    visit(std::uint32_t(slot.columns < 0 ? std::int32_t(row) + slot.offset
-                                         : rows.columns[std::size_t(slot.columns) + lane]));
-  }
-}
-
-// Calls visit(other) for each vertex that an element holds together with this one.
-template <class Visit>
-void for_each_neighbour(const SoftBody& body, std::uint32_t particle, Visit&& visit) {
-  if (!body.chain.rest_length.empty()) {
-    if (particle > 0) visit(particle - 1);
-    if (particle < body.chain.rest_length.size()) visit(particle + 1);
-    return;
-  }
-  visit_row(
-      body.springs.rows, particle, [&](std::size_t place) { return body.springs.stiffness[place] > 0.0f; },
-      visit);
-  visit_row(
-      body.continuum.rows, particle,
-      [&](std::size_t place) { return body.continuum.edge_of_place[place] >= 0; }, visit);
-}
-
 }  // namespace
-
-void add_inside(const RigidWorld& w, SoftEntry& entry, std::uint32_t body, std::uint32_t particle) {
-  const std::uint32_t count = std::uint32_t(entry.body.particles.count);
-  Array<std::uint8_t> seen;
-  seen.assign(count, std::uint8_t(0));
-  Array<SoftInside> others;
-  for (const SoftInside& one : entry.inside) {
-    if (one.body != std::int32_t(body)) others.push_back(one);
-    if (one.body == std::int32_t(body)) seen[one.particle] = 1;
-  }
-  Array<std::uint32_t> open;  // of which the neighbours are still to be seen
-  seen[particle] = 1;
-  open.push_back(particle);
-  for (std::size_t next = 0; next < open.size(); ++next) {
-    for_each_neighbour(entry.body, open[next], [&](std::uint32_t other) {
-      if (other >= count || seen[other] != 0) return;
-      const double distance = distance_to(w, entry, body, other);
-      if (distance >= double(entry.radius) && distance >= 0.0) return;
-      seen[other] = 1;
-      if (distance < 0.0) open.push_back(other);
-    });
-  }
-  // Both lists ascend.
-  entry.inside.clear();
-  std::size_t k = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    for (; k < others.size() &&
-           (others[k].particle < i || (others[k].particle == i && others[k].body < std::int32_t(body)));
-         ++k)
-      entry.inside.push_back(others[k]);
-    if (seen[i] != 0) entry.inside.push_back({i, std::int32_t(body)});
-  }
-  for (; k < others.size(); ++k) entry.inside.push_back(others[k]);
-}
-
-bool is_inside(const SoftEntry& entry, std::uint32_t particle, std::uint32_t body) {
-  const std::span<const SoftInside> all = entry.inside;
-  std::size_t low = 0, high = all.size();
-  while (low < high) {
-    const std::size_t middle = (low + high) / 2;
-    const SoftInside& one = all[middle];
-    const bool before = one.particle != particle ? one.particle < particle : one.body < std::int32_t(body);
-    (before ? low : high) = before ? middle + 1 : middle;
-  }
-  return low < all.size() && all[low].particle == particle && all[low].body == std::int32_t(body);
-}
 
 void rest_soft(RigidWorld& w, SoftStore& soft, Arena& arena, float seconds) {
   if (w.settings.sleeping == 0) return;

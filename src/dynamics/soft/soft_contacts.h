@@ -20,13 +20,6 @@ constexpr int kMaxVertexContacts = 4;
 void rest_soft(RigidWorld& w, SoftStore& soft, Arena& arena, float seconds);
 void wake_all(SoftStore& soft);
 
-// Vertices that begin inside a body that holds them, as those of a rope that is attached to the middle of a ball, make no contacts with that body: its surface
-// and the attachment would pull them in opposite directions for ever. SoftEntry::inside has them: from each vertex that is attached to the body, along the elements, all vertices whose
-// middle is inside the body, and the first ones outside that overlap it. Vertices that get into the body later are pushed out as ever.
-// Adds those of a vertex that is attached to the body now.
-void add_inside(const RigidWorld& w, SoftEntry& entry, std::uint32_t body, std::uint32_t particle);
-bool is_inside(const SoftEntry& entry, std::uint32_t particle, std::uint32_t body);
-
 void find_soft_contacts(RigidWorld& w, SoftStore& soft, Array<std::uint32_t>& shapes_near, Arena& arena,
                         TaskSystem& tasks, float seconds);
 

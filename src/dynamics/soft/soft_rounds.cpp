@@ -156,7 +156,7 @@ void set_grips(SoftSolve& s) {
   const float slow = kStickSpeedShare * s.h * reference_gravity(s.w->settings);
   for (std::uint32_t& grips : s.scratch->grips) grips = 0;
   for (SoftRow& row : s.scratch->rows) {
-    if (row.is_contact && !row.coupled) {
+    if (row.is_contact() && !row.coupled) {
       const float normal = dot(row.normal, row.impulse);
       const float across = length(row.impulse - normal * row.normal);
       const float sliding = row.dynamic_friction * normal;
@@ -177,7 +177,7 @@ namespace {
 
 void sweep_contacts(SoftSolve& s) {
   for (SoftRow& row : s.scratch->rows) {
-    if (!row.is_contact || row.coupled) continue;
+    if (!row.is_contact() || row.coupled) continue;
     const Vec3 before = row.impulse + row.step;
     const Vec3 change = next_impulse(row, before, row.error + tried_change(s, row)) - before;
     if (change == Vec3{}) continue;

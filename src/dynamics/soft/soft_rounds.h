@@ -20,18 +20,16 @@ inline bool is_exact_rope(const SoftEntry& entry) {
 template <class Visit>
 void for_each_vertex(const SoftRow& row, Visit&& visit) {
   visit(row.particle, row.weight[0]);
-  if (!row.is_face) return;
-  visit(row.others[0], row.weight[1]);
-  visit(row.others[1], row.weight[2]);
+  for (int k = 1; k < row.corners; ++k) visit(row.others[k - 1], row.weight[k]);
 }
 // The value at the point of the row, of values by vertex.
 template <class At>
 auto mean_of(const SoftRow& row, At&& at) {
   auto sum = at(row.particle);
-  if (!row.is_face) return sum;
   using Weight = decltype(sum.x);
-  return Weight(row.weight[0]) * sum + Weight(row.weight[1]) * at(row.others[0]) +
-         Weight(row.weight[2]) * at(row.others[1]);
+  sum = Weight(row.weight[0]) * sum;
+  for (int k = 1; k < row.corners; ++k) sum = sum + Weight(row.weight[k]) * at(row.others[k - 1]);
+  return sum;
 }
 // With what the body is still to get in this sub-step.
 template <class Row>

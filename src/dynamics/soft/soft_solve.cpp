@@ -6,6 +6,7 @@
 #include "rigid/batch/solve_batch.h"
 #include "soft/solver/soft_pass.h"
 #include "soft/solver/vertex_limits.h"
+#include "soft/store/soft_point.h"
 #include "task/parallel.h"
 
 #include <cmath>
@@ -27,8 +28,11 @@ constexpr float kFaceRate = 0.2f;
 // Largest speed of removal of penetration, as a share of the speed of a fall from the length of an edge: as for contacts of bodies.
 constexpr float kSoftPushShare = 0.4f;
 
+// A point is held in all directions; its row takes them as one along this and two across.
+constexpr Vec3 kAnyNormal{0.0f, 1.0f, 0.0f};
+
 const SoftContact& contact_of(const SoftEntry& entry, const SoftRow& row) {
-  return row.is_face ? entry.faces[row.source].at : entry.contacts[row.source];
+  return row.kind == SoftRowKind::face ? entry.faces[row.source].at : entry.contacts[row.source];
 }
 
 // True if the motion of the body changes within the step.
@@ -54,6 +58,16 @@ DVec3 center_now(const RigidWorld& w, std::int32_t body) {
 Quat orientation_now(const RigidWorld& w, std::int32_t body) {
   const std::size_t b = std::size_t(body);
   return moves(w, body) ? w.bodies.orientations[b] : w.bodies.poses[b].orientation;
+}
+
+// Where a body or the world holds what is attached to it; `held` is an attachment of a vertex or a point.
+template <class Held>
+Vec3 arm_now(const RigidWorld& w, const Held& held) {
+  return held.body == kWorldAnchor ? Vec3{} : rotate(orientation_now(w, held.body), held.local);
+}
+template <class Held>
+DVec3 anchor_now(const RigidWorld& w, const Held& held) {
+  return held.body == kWorldAnchor ? held.place : center_now(w, held.body) + DVec3(arm_now(w, held));
 }
 
 // The index of a body that is touched and moves; -1 if it is none.
@@ -122,12 +136,15 @@ float error_rate(const SoftSolve& s) { return min(kErrorRate, kErrorShare / s.h)
 void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
   const RigidWorld& w = *s.w;
   const DVec3 place = mean_of(row, [&](std::uint32_t v) { return entry.body.particles.place(int(v)); });
-  if (!row.is_contact) {
-    row.arm = rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
-    const DVec3 point = center_now(w, row.body) + DVec3(row.arm);
+  if (row.kind == SoftRowKind::attachment) {
+    row.arm = arm_now(w, entry.attachments[row.source]);
+    const DVec3 point = anchor_now(w, entry.attachments[row.source]);
     // Each of several vertices moves a part of the body; together they would remove more than there is.
     const float rate = error_rate(s) / float(s.scratch->grips[row.touched]);
     row.bias = rate * difference(place, point);
+  } else if (row.kind == SoftRowKind::point) {
+    row.arm = arm_now(w, entry.points[row.source]);
+    row.bias = error_rate(s) * difference(place, anchor_now(w, entry.points[row.source]));
   } else {
     const SoftContact& contact = contact_of(entry, row);
     row.normal = turned_now(w, contact.body, contact.normal);
@@ -138,7 +155,9 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     // A vertex that is free may come as near as it likes; one that is held goes to the surface from either side.
     const bool is_free = (row.coupled || row.grip == SoftGrip::open) && gap > 0.0f;
     const float wanted =
-        is_free ? gap / s.h : clamp((row.is_face ? kFaceRate : 1.0f) * error_rate(s) * gap, -most, most);
+        is_free
+            ? gap / s.h
+            : clamp((row.kind == SoftRowKind::face ? kFaceRate : 1.0f) * error_rate(s) * gap, -most, most);
     row.bias = wanted * row.normal - contact.surface_velocity;
   }
   row.body_compliance = body_compliance(w, row);
@@ -152,7 +171,7 @@ Sym3 along(Vec3 n, float scale) {
 // The inertia that the vertex of a row which grips carries.
 Sym3 gripped_inertia(const SoftSolve& s, const SoftRow& row, float mass) {
   const float shares = row.touched >= 0 && row.pushes ? float(s.scratch->grips[row.touched]) : 0.0f;
-  const float give = row.is_contact ? 1.0f / (kGripShare * mass) : 0.0f;
+  const float give = row.is_contact() ? 1.0f / (kGripShare * mass) : 0.0f;
   if (row.grip == SoftGrip::slides)
     return along(row.normal, 1.0f / (shares * dot(row.normal, row.body_compliance * row.normal) + give));
   return inverse(shares * row.body_compliance + Sym3{give, give, give, 0.0f, 0.0f, 0.0f});
@@ -188,7 +207,7 @@ bool loosen_grips(SoftSolve& s, std::uint32_t member) {
   bool any = false;
   for (std::uint32_t k = work.first_row; k < work.last_row; ++k) {
     SoftRow& row = s.scratch->rows[k];
-    if (!row.is_contact || row.carried < 0) continue;
+    if (!row.is_contact() || row.carried < 0) continue;
     const Vec3 impulse = row.impulse + row.carried_step;
     const float normal = dot(row.normal, impulse);
     SoftGrip grip = row.grip;
@@ -261,7 +280,7 @@ void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   store.for_each([&](const SoftEntry& entry) {
     if (!entry.is_awake()) return;
     for_each_contact(entry, [&](const SoftContact& contact) { touch(contact.body); });
-    for (const SoftAttachment& attachment : entry.attachments) touch(attachment.body);
+    for_each_attachment(entry, [&](const auto& one) { touch(one.body); });
   });
   for (const std::uint32_t body : w.bodies.awake) {
     if (w.bodies.flags[body].constraint_use == kPoseRead) scratch.touched.push_back(body);
@@ -301,9 +320,22 @@ void make_soft_rows(SoftSolve& s) {
       row.arm = rotate(orientation_now(w, row.body), one.local);
       row.impulse = s.warm_scale * one.impulse;
     }
+    for (std::uint32_t k = 0; k < entry.points.size(); ++k) {
+      const SoftPointAttachment& one = entry.points[k];
+      const ElementCorners corners = corners_of(entry, one.element);
+      SoftRow& row = add(corners.corner[0], one.body, k);
+      row.kind = SoftRowKind::point;
+      row.coupled = true;
+      row.corners = corners.count;
+      for (int n = 1; n < corners.count; ++n) row.others[n - 1] = corners.corner[n];
+      for (int n = 0; n < corners.count; ++n) row.weight[n] = one.weight[n];
+      row.normal = kAnyNormal;
+      row.arm = arm_now(w, one);
+      row.impulse = s.warm_scale * one.impulse;
+    }
     const auto add_contact = [&](const SoftContact& one, std::uint32_t source) -> SoftRow& {
       SoftRow& row = add(one.particle, one.body, source);
-      row.is_contact = true;
+      row.kind = SoftRowKind::contact;
       row.coupled = !is_exact_rope(entry);
       row.static_friction = one.static_friction, row.dynamic_friction = one.dynamic_friction;
       row.normal = one.normal, row.arm = one.from_body;
@@ -315,7 +347,8 @@ void make_soft_rows(SoftSolve& s) {
     for (std::uint32_t k = 0; k < entry.faces.size(); ++k) {
       const SoftFaceContact& face = entry.faces[k];
       SoftRow& row = add_contact(face.at, k);
-      row.is_face = true;
+      row.kind = SoftRowKind::face;
+      row.corners = 3;
       for (int n = 0; n < 2; ++n) row.others[n] = face.others[n];
       for (int n = 0; n < 3; ++n) row.weight[n] = face.weight[n];
     }
@@ -332,9 +365,9 @@ void turn_soft_rows(SoftSolve& s, int, int) {
   for (SoftRow& row : s.scratch->rows) {
     if (row.touched < 0) continue;
     const SoftEntry& entry = entry_of(s, row.member);
-    const Vec3 arm = row.is_contact
-                         ? turned_now(w, row.body, contact_of(entry, row).from_body)
-                         : rotate(orientation_now(w, row.body), entry.attachments[row.source].local);
+    const Vec3 arm = row.is_contact() ? turned_now(w, row.body, contact_of(entry, row).from_body)
+                     : row.kind == SoftRowKind::point ? arm_now(w, entry.points[row.source])
+                                                      : arm_now(w, entry.attachments[row.source]);
     const Vec3 moment = cross(arm - row.arm, (-1.0f / float(s.parts)) * row.impulse);
     if (row.pushes)
       s.w->bodies.motion[std::size_t(row.body)].angular_velocity +=
@@ -382,7 +415,7 @@ void step_members(SoftSolve& s, Step&& step) {
 // True if contacts may act on a member within the step: with shapes, or of a solid with soft matter.
 bool touches(SoftSolve& s, std::uint32_t m) {
   const SoftEntry& entry = entry_of(s, m);
-  return !entry.contacts.empty() || !entry.faces.empty() ||
+  return !entry.contacts.empty() || !entry.faces.empty() || !entry.points.empty() ||
          (entry.kind == SoftKind::solid && s.scratch->surfaces.near[m] != 0);
 }
 
@@ -432,7 +465,7 @@ void warm_start_soft_rows(SoftSolve& s, int, int) {
 void solve_soft_rows(SoftSolve& s, int, int) {
   bool any_contact = false;
   for (SoftRow& row : s.scratch->rows) {
-    if (row.coupled || !row.is_contact) continue;
+    if (row.coupled || !row.is_contact()) continue;
     prepare_row(s, row);
     any_contact = true;
   }
@@ -449,12 +482,19 @@ void keep_soft_rows(SoftSolve& s) {
   end_soft_surfaces(s);
   for (const SoftRow& row : s.scratch->rows) {
     SoftEntry& entry = entry_of(s, row.member);
-    if (row.is_face) {
-      entry.faces[row.source].at.impulse = row.impulse;
-    } else if (row.is_contact) {
-      entry.contacts[row.source].impulse = row.impulse, entry.contacts[row.source].grip = row.grip;
-    } else {
-      entry.attachments[row.source].impulse = row.impulse;
+    switch (row.kind) {
+      case SoftRowKind::attachment:
+        entry.attachments[row.source].impulse = row.impulse;
+        break;
+      case SoftRowKind::point:
+        entry.points[row.source].impulse = row.impulse;
+        break;
+      case SoftRowKind::contact:
+        entry.contacts[row.source].impulse = row.impulse, entry.contacts[row.source].grip = row.grip;
+        break;
+      case SoftRowKind::face:
+        entry.faces[row.source].at.impulse = row.impulse;
+        break;
     }
   }
 }

@@ -1,11 +1,11 @@
 // Ropes, cloths and solids within the sub-steps of a batch: their own step, and the rows that couple them with bodies and with each other.
 //
-// A row is a vertex against a point of a body: an attachment, or a contact with friction; or a point of a face, the mean of its corners.
+// A row is a vertex against a point of a body: an attachment, or a contact with friction; or a point of an element, the mean of its corners: attached, or in contact.
 //
-// Contacts of cloths and solids are solved in one system with the stiffness of soft bodies and the inertia of rigid ones, and with those among themselves
+// Contacts of cloths and solids, and attachments of their points, are solved in one system with the stiffness of soft bodies and the inertia of rigid ones, and with those among themselves
 // (dynamics/soft/soft_surfaces.h).
 //
-// An attachment, and a contact of a rope that bore load in the last sub-step, lets its vertex carry inertia of the body: K^-1 / n, with K the compliance of the point and n
+// An attachment of a vertex, and a contact of a rope that bore load in the last sub-step, lets its vertex carry inertia of the body: K^-1 / n, with K the compliance of the point and n
 // the number of rows that grip the body; of a fixed body kGripShare times its own mass. A contact that sticks does so in all directions, one that slides
 // along its normal. The vertex and this part move as one through the whole solve, so a rope between heavy bodies, or over a pulley with loads
 // of a thousand times its mass, knows what it is held by. The body then gets the momentum that its part has gained, and the difference
@@ -34,21 +34,23 @@
 
 namespace gyre {
 
+enum class SoftRowKind : std::uint8_t { attachment, point, contact, face };
+
 // A row of three.
 struct SoftRow {
   std::uint32_t member = 0;  // index in SoftSolve::members
   std::uint32_t particle = 0;
   std::int32_t body = -1;     // -1: it does not move
   std::int32_t touched = -1;  // index of the body in SoftScratch::touched
-  std::uint32_t source = 0;   // index among the entry's attachments or contacts
-  bool is_contact = false;
-  bool coupled =
-      false;  // a contact of anything but an exact rope, which is solved with the stiffness of all that it touches; it carries nothing
+  std::uint32_t source = 0;   // index among the entry's attachments, points, contacts or faces
+  SoftRowKind kind = SoftRowKind::attachment;
+  // A point, or a contact of anything but an exact rope: it is solved with the stiffness of all that it touches, and carries nothing.
+  bool coupled = false;
   bool pushes = true;  // false: the body does not feel it, since the member is visual
-  // Of a face: its other corners, and the weights of all three; the point of the row is their mean. Its vertices carry nothing.
-  bool is_face = false;
-  std::uint32_t others[2] = {};
-  float weight[3] = {1.0f, 0.0f, 0.0f};
+  // Of a point or a face: the other corners, and the weights of all; the point of the row is their mean. The vertices carry nothing.
+  int corners = 1;
+  std::uint32_t others[3] = {};
+  float weight[4] = {1.0f, 0.0f, 0.0f, 0.0f};
   SoftGrip grip = SoftGrip::open;
   std::int32_t carried = -1;  // index in SoftScratch::carried
   float static_friction = 0.0f, dynamic_friction = 0.0f;
@@ -62,6 +64,8 @@ struct SoftRow {
   Vec3 error{};             // m/s: relative velocity and bias when the round began
   Vec3 step{};              // N s: the change of impulse that is tried
   Vec3 carried_step{};      // N s: on the vertex, by what it carries
+
+  bool is_contact() const { return kind == SoftRowKind::contact || kind == SoftRowKind::face; }
 };
 
 // Memory of one body of soft matter, which lasts; its arena is used within a half-step.

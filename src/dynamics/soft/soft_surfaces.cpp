@@ -18,6 +18,8 @@ constexpr double kStiffShare = 100.0;
 // A vertex that began inside a shape and does not move is pushed out by so many times its weight. More would press a stiff solid out of shape where its vertices are nearest to
 // different sides of the shape.
 constexpr float kEmergeWeights = 5.0f;
+// An attached point may miss the motion of what holds it by this share of what gravity gives in the sub-step.
+constexpr float kHoldShare = 0.03f;
 // Errors of what moves more slowly than this share of what gravity gives in the sub-step do not matter. With 0.1 a sheet that friction holds on a slope creeps by 0.1 mm in two seconds.
 constexpr float kRestShare = 0.03f;
 // A contact that still closes faster than this share of what gravity gives in the sub-step is not met.
@@ -107,7 +109,7 @@ std::span<const RigidInertia> gather_rigid(SoftSolve& s) {
   return rigid;
 }
 
-// The coupling row of a contact with a shape.
+// The coupling row of a contact with a shape, or of a point that a body holds.
 CouplingRow coupling_row(SoftSolve& s, const SoftRow& row, std::uint32_t first) {
   CouplingRow out;
   int k = 0;
@@ -118,14 +120,21 @@ CouplingRow coupling_row(SoftSolve& s, const SoftRow& row, std::uint32_t first) 
     mobility += weight * weight * s.scratch->surfaces.inverse_mass[first + v];
   });
   if (row.pushes && row.body_compliance != Sym3{}) out.body = row.touched;
-  const float wanted = dot(row.normal, row.bias);
   out.arm = row.arm;
+  out.impulse = row.impulse;
+  if (row.kind == SoftRowKind::point) {
+    out.holds = true;
+    out.passing = velocity_of_body(s, row) - row.bias;
+    out.normal = row.normal;
+    out.slow = out.allowed = kHoldShare * s.h * reference_gravity(s.w->settings);
+    return out;
+  }
+  const float wanted = dot(row.normal, row.bias);
   out.passing = velocity_of_body(s, row) - (row.bias - wanted * row.normal);
   out.normal = row.normal, out.target = -wanted;
   out.friction[0] = row.static_friction, out.friction[1] = row.dynamic_friction;
   out.slides = row.grip == SoftGrip::slides;
   out.slow = out.allowed = kUnmetShare * s.h * reference_gravity(s.w->settings);
-  out.impulse = row.impulse;
   if (row.grip == SoftGrip::emerges && out.target > 0.0f)
     out.damper = kEmergeWeights * s.h * reference_gravity(s.w->settings) / (mobility * out.target);
   return out;
@@ -162,7 +171,7 @@ bool is_squeezed(SoftSolve& s, std::span<const std::uint32_t> numbers, std::span
   bool squeezed = false;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const SoftRow& row = s.scratch->rows[numbers[i]];
-    if (row.body_compliance != Sym3{}) continue;
+    if (row.body_compliance != Sym3{} || !row.is_contact()) continue;
     for_each_vertex(row, [&](std::uint32_t v, float) {
       if (first[v] == nullptr) first[v] = &rows[i];
       squeezed = squeezed || (dot(first[v]->normal, rows[i].normal) < kOpposite &&
@@ -192,7 +201,7 @@ std::span<const std::uint8_t> find_loaded(SoftSolve& s, std::span<const std::uin
   return loaded;
 }
 
-// Impulses on what does not yield are not remembered by members that are squeezed, or of which one closes more than it may: they would grow without bound and throw what comes
+// Impulses of contacts with what does not yield are not remembered by members that are squeezed, or of which one closes more than it may: they would grow without bound and throw what comes
 // free, and one that stays alone would throw it at once. Nor are those of stiff solids that bear nothing but themselves: where two sides hold one, impulses that
 // were in balance are not when it has turned. Nor are those of visual members, whose velocities come from places that were moved to fit.
 void forget_squeezes(SoftSolve& s, std::span<const std::uint32_t> numbers,
@@ -203,12 +212,13 @@ void forget_squeezes(SoftSolve& s, std::span<const std::uint32_t> numbers,
     const std::uint32_t member = s.scratch->rows[numbers[begin]].member;
     bool forgets = !s.scratch->rows[numbers[begin]].pushes;
     for (; end < numbers.size() && s.scratch->rows[numbers[end]].member == member; ++end)
-      forgets = forgets || (rows[end].is_closing && !yields(s.scratch->rows[numbers[end]]));
+      forgets =
+          forgets || (rows[end].is_closing && !rows[end].holds && !yields(s.scratch->rows[numbers[end]]));
     forgets = forgets || !loaded[rows[begin].vertex[0]] ||
               is_squeezed(s, numbers.subspan(begin, end - begin), rows.subspan(begin, end - begin));
     for (std::size_t i = begin; i < end && forgets; ++i) {
       SoftRow& row = s.scratch->rows[numbers[i]];
-      if (!row.pushes || !yields(row)) row.impulse = {};
+      if (row.is_contact() && (!row.pushes || !yields(row))) row.impulse = {};
     }
   }
 }
@@ -221,7 +231,7 @@ void take_shape_rows(SoftSolve& s, std::span<const std::uint32_t> numbers,
     SoftRow& row = s.scratch->rows[numbers[i]];
     try_on_body(s, row, rows[i].impulse - row.impulse);
     row.impulse = rows[i].impulse;
-    if (row.grip == SoftGrip::emerges) continue;
+    if (row.grip == SoftGrip::emerges || !row.is_contact()) continue;
     const bool pushes = dot(row.normal, row.impulse) > 0.0f;
     row.grip = !pushes ? SoftGrip::open : rows[i].slides ? SoftGrip::slides : SoftGrip::sticks;
   }

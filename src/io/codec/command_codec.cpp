@@ -252,8 +252,8 @@ void fields(C& c, T& v) {
 // -------------------------------------------------------------------------------------------------------- soft matter
 
 template <class C, class T>
-requires(Is<T, std::array<float, 2>> || Is<T, std::array<int, 2>> ||
-         Is<T, std::array<int, 3>>) void fields(C& c, T& values) {
+requires(Is<T, std::array<float, 2>> || Is<T, std::array<int, 2>> || Is<T, std::array<int, 3>> ||
+         Is<T, std::array<float, 4>> || Is<T, std::array<int, 4>>) void fields(C& c, T& values) {
   for (auto& value : values) all(c, value);
 }
 template <class C, Is<SoftSettings> T>
@@ -481,11 +481,16 @@ void fields(C& c, T& v) {
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
                  SetAwake, SetField, SetSleepSpeed, SetCombineRules, SetDrive, SetJointEnabled, SetSolver, ReleaseSoft,
-                 SetEmitters, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetBodyUserData,
+                 SetEmitters, SetMass, SetDensity, SetLockedAxes, SetContinuous, SetCanSleep, SetSensor, SetBodyUserData, ReleasePoints,
                   SetShapeUserData, SetEnabled, SetFluidPose>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
+}
+template <class C, Is<SoftPoint> T>
+void fields(C& c, T& v) {
+  auto& [vertices, weights] = v;
+  all(c, vertices, weights);
 }
 template <class C, Is<SetVertexLimits> T>
 void fields(C& c, T& v) {
@@ -498,7 +503,7 @@ void fields(C& c, T& v) {
   all(c, integrator, springs, time, tolerance, max_impacts);
 }
 template <class C, class T>
-requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis, AttachSoft,
+requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis, AttachSoft, AttachPoint,
                  SetVertices, SetShape, SetBreakLoad, SetPairIgnored, SetFluidVelocity>
 void fields(C& c, T& v) {
   auto& [first, second, third] = v;

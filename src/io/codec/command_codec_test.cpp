@@ -123,7 +123,9 @@ std::vector<Command> all_commands() {
           RemoveCoupling{CouplingId{4, 3, kWorld}},
           SetFluidPose{FluidId{2, 1, kWorld}, Pose{{1, 2, 3}, {0, 1, 0, 0}}},
           SetFluidVelocity{FluidId{2, 1, kWorld}, {1, 2, 3}, {4, 5, 6}},
-          SetVertexLimits{SoftId{3, 1, kWorld}, {{1, 2, 3}}, {0.5f}, {{0, 1, 0}}, {0.25f}}};
+          SetVertexLimits{SoftId{3, 1, kWorld}, {{1, 2, 3}}, {0.5f}, {{0, 1, 0}}, {0.25f}},
+          AttachPoint{SoftId{3, 1, kWorld}, {{1, 2, 3, 0}, {0.25f, 0.25f, 0.5f, 0.0f}}, BodyId{5, 3, kWorld}},
+          ReleasePoints{SoftId{3, 1, kWorld}, BodyId{5, 3, kWorld}}};
 }
 
 // Fields of certain kinds of joints are restored as well.

@@ -32,19 +32,22 @@ void write_soft(ByteWriter& out, const SoftStore& soft) {
     for_each_damage_array(entry, [&](const auto& array) { write_array(out, array); });
     for_each_soft_array(entry, [&](const auto& array) { write_array(out, array); });
   });
-  // By slot; left out if there are none.
-  bool any = false;
-  bool any_faces = false;
+  // By slot, up to the last part that one of them has.
+  int parts = 0;
   soft.for_each([&](const SoftEntry& entry) {
-    any_faces = any_faces || !entry.faces.empty();
-    any = any || has_rare_state(entry) || any_faces;
+    parts = max(parts, has_rare_state(entry) ? 1 : 0);
+    parts = max(parts, entry.faces.empty() ? 0 : 2);
+    parts = max(parts, entry.points.empty() ? 0 : 3);
   });
-  if (!any) return;
   soft.for_each([&](const SoftEntry& entry) {
-    for_each_rare_array(entry, [&](const auto& array) { write_array(out, array); });
+    if (parts >= 1) for_each_rare_array(entry, [&](const auto& array) { write_array(out, array); });
   });
-  if (!any_faces) return;
-  soft.for_each([&](const SoftEntry& entry) { write_array(out, entry.faces); });
+  soft.for_each([&](const SoftEntry& entry) {
+    if (parts >= 2) write_array(out, entry.faces);
+  });
+  soft.for_each([&](const SoftEntry& entry) {
+    if (parts >= 3) write_array(out, entry.points);
+  });
 }
 
 bool read_soft(ByteReader& in, SoftStore& soft) {
@@ -70,6 +73,8 @@ bool read_soft(ByteReader& in, SoftStore& soft) {
   });
   if (!good || in.left() == 0) return good;
   soft.for_each([&](SoftEntry& entry) { good = good && read_array(in, entry.faces); });
+  if (!good || in.left() == 0) return good;
+  soft.for_each([&](SoftEntry& entry) { good = good && read_array(in, entry.points); });
   return good;
 }
 

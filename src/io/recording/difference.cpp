@@ -68,6 +68,7 @@ struct Tracer {
       for_each_soft_array(entry, add_array);
       for_each_rare_array(entry, add_array);
       add_array(entry.faces);
+      add_array(entry.points);
       out.rows.push_back(hash);
     });
   }

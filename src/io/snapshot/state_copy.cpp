@@ -199,7 +199,7 @@ struct OtherSize {
       for_each_damage_array(entry, [&](const auto& array) { bytes += array.bytes(); });
       for_each_soft_array(entry, [&](const auto& array) { bytes += array.bytes(); });
       for_each_rare_array(entry, [&](const auto& array) { bytes += array.bytes(); });
-      bytes += entry.faces.bytes();
+      bytes += entry.faces.bytes() + entry.points.bytes();
     });
   }
   void operator()(const char*, const FluidStore& fluids) {

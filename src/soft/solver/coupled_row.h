@@ -16,16 +16,18 @@ struct CoupledRow {
   int vertices = 0;
   std::int32_t body = -1;
   Vec3 arm{}, normal{};
-  float target = 0.0f, along = 0.0f, across = 0.0f, start_along = 0.0f;
+  float target = 0.0f, along = 0.0f, across = 0.0f, start_along = 0.0f, start_across = 0.0f;
   // Of the stage: its impulse when it began, and the bound of friction.
   float last_normal = 0.0f, bound = 0.0f;
   Vec3 last_friction{};
+  float least = 0.0f;  // N s: the least push, 0 of a contact, and no bound of what holds
   // Now.
   Vec3 velocity{};    // m/s, relative
   float push = 0.0f;  // N s: along the normal
   Vec3 friction{};
   bool sticks = false;
 
+  bool acts() const { return push > least; }
   // The push at a speed along the normal, before it is kept from pulling.
   float push_at(float speed) const { return last_normal + along * (target - speed); }
   // K of a row that pushes.
@@ -42,11 +44,11 @@ struct CoupledRowSlope {
   double speed = 0.0;                          // m/s: of the direction along the normal
   double size = 0.0, mixed = 0.0, rate = 0.0;  // of friction f + share g, before its bound: f.f, f.g, g.g
   double work = 0.0, work_rate = 0.0;          // f.w, g.w, with w the direction across the normal
-  double bound = 0.0;
+  double bound = 0.0, least = 0.0;
 
   double at(double share) const {
     const double normal = push + share * push_rate;
-    if (!(normal > 0.0)) return 0.0;
+    if (!(normal > least)) return 0.0;
     const double square = size + share * (2.0 * mixed + share * rate);
     const double kept = square > bound * bound ? bound / std::sqrt(square) : 1.0;
     return normal * speed + kept * (work + share * work_rate);

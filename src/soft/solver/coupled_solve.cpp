@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace gyre {
 
@@ -19,6 +20,7 @@ constexpr float kResistance = 2.0f;
 constexpr double kHopeless = 0.7;
 // A row that misses its target resists by so many times more in the next stage, where no rigid body yields. One that does may bear what the solve does not know, and would be thrown.
 constexpr float kStiffening = 4.0f;
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
 VectorRows from(const VectorRows& rows, std::size_t first) {
   return {rows.x + first, rows.y + first, rows.z + first};
@@ -129,16 +131,20 @@ class CoupledSolve {
       CouplingRow& row = rows_[r];
       const float speed = dot(state.normal, state.velocity);
       const Vec3 across = state.velocity - speed * state.normal;
-      row.slides = state.push > 0.0f && !state.sticks && dot(across, across) > row.slow * row.slow;
+      row.slides = state.acts() && !state.sticks && dot(across, across) > row.slow * row.slow;
       row.impulse = state.push * row.normal + state.friction;
-      row.is_missed = row.damper == 0.0f && row.target - speed > row.allowed;
-      row.is_closing = row.is_missed && min(row.target, 0.0f) - speed > row.allowed;
+      // m/s: by how much it misses its target, and by how much it closes beyond that.
+      const float missed = row.holds ? length(state.velocity) : row.target - speed;
+      const float closing = row.holds ? missed : min(row.target, 0.0f) - speed;
+      row.is_missed = row.damper == 0.0f && missed > row.allowed;
+      row.is_closing = row.is_missed && closing > row.allowed;
       CoupledGroup& group = groups_[group_of_[r]];
       met = met && (!row.is_closing || group.is_settled);
       begin_stage(r);
       if (!row.is_closing || group.is_settled) continue;
       if (!group.yields) states_[r].along *= kStiffening;
-      group.missed += double(min(row.target, 0.0f) - speed);
+      if (!group.yields && row.holds) states_[r].across *= kStiffening;
+      group.missed += double(closing);
     }
     for (std::uint32_t g = 0; g < std::uint32_t(groups_.size()); ++g) {
       CoupledGroup& group = groups_[g];
@@ -210,13 +216,18 @@ class CoupledSolve {
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       if (group_of_[r] != group) continue;
       CoupledRow& state = states_[r];
-      state.along = state.start_along;
-      state.last_normal = state.bound = 0.0f, state.last_friction = {};
+      state.along = state.start_along, state.across = state.start_across;
+      state.last_normal = 0.0f, state.last_friction = {};
+      state.bound = bound_of(rows_[r], 0.0f);
     }
   }
 
   void add_to_vertices(const CouplingRow& row, Vec3 impulse) const {
     for (int k = 0; k < 5; ++k) vertices_.impulses[row.vertex[k]] += row.weight[k] * impulse;
+  }
+
+  static float bound_of(const CouplingRow& row, float normal) {
+    return row.holds ? kUnbounded : row.friction[row.slides ? 1 : 0] * max(normal, 0.0f);
   }
 
   void begin_stage(std::size_t r) {
@@ -225,7 +236,7 @@ class CoupledSolve {
     CoupledRow& state = states_[r];
     state.last_normal = row.damper == 0.0f ? dot(row.normal, row.impulse) : 0.0f;
     state.last_friction = row.damper == 0.0f ? row.impulse - state.last_normal * row.normal : Vec3{};
-    state.bound = row.friction[row.slides ? 1 : 0] * max(state.last_normal, 0.0f);
+    state.bound = bound_of(row, state.last_normal);
   }
 
   // The states of rows, and the vertices that they touch, each once, with its own block of A.
@@ -253,11 +264,13 @@ class CoupledSolve {
       state.velocity -= row.passing;
       state.body = row.body, state.arm = row.arm;
       state.normal = row.normal, state.target = row.target;
-      const float misses = max(row.target - dot(row.normal, state.velocity), rest_speed_);
+      state.least = row.holds ? -kUnbounded : 0.0f;
+      const float missed = row.holds ? length(state.velocity) : row.target - dot(row.normal, state.velocity);
+      const float misses = max(missed, rest_speed_);
       if (mobility > 0.0f) stake_ += double(misses * misses / mobility);
       if (row.damper == 0.0f) allowed_ = min(allowed_, row.allowed);
       set_resistance(row, state);
-      state.start_along = state.along;
+      state.start_along = state.along, state.start_across = state.across;
       begin_stage(r);
       state.push = state.last_normal, state.friction = state.last_friction;
       add_to_vertices(row, -row.impulse);
@@ -309,10 +322,10 @@ class CoupledSolve {
   void update_impulses() {
     for (Vec3& value : values_) value = {};
     for (CoupledRow& state : states_) {
-      const float speed = dot(state.normal, state.velocity), push = max(state.push_at(speed), 0.0f);
-      if (push == 0.0f && state.push == 0.0f) continue;
+      const float speed = dot(state.normal, state.velocity), push = max(state.push_at(speed), state.least);
+      if (push == state.least && state.push == state.least) continue;
       Vec3 friction{};
-      if (push > 0.0f) {
+      if (push > state.least) {
         friction = state.last_friction - state.across * (state.velocity - speed * state.normal);
         const float square = dot(friction, friction);
         state.sticks = square <= state.bound * state.bound;
@@ -331,7 +344,7 @@ class CoupledSolve {
     for (std::size_t t = 0; t < touched_.size(); ++t) with_rows_[t] = own_[t];
     for (CoupledRigid& one : rigid_) one.clear_rows();
     for (const CoupledRow& state : states_) {
-      if (!(state.push > 0.0f)) continue;
+      if (!state.acts()) continue;
       const Sym3 block = state.inertia();
       if (state.body >= 0) rigid_[std::size_t(state.body)].add_row(block, state.arm);
       for (int k = 0; k < state.vertices; ++k) {
@@ -389,7 +402,7 @@ class CoupledSolve {
   void set_corrections() {
     for (RigidCorrection& one : corrections_) one.clear_rows();
     for (const CoupledRow& state : states_) {
-      if (state.push > 0.0f) add_to_corrections(state);
+      if (state.acts()) add_to_corrections(state);
     }
     for (RigidCorrection& one : corrections_) one.factor();
   }
@@ -510,9 +523,8 @@ class CoupledSolve {
       slope.speed = double(speed);
       slope.size = double(dot(f, f)), slope.mixed = double(dot(f, g)), slope.rate = double(dot(g, g));
       slope.work = double(dot(f, across)), slope.work_rate = double(dot(g, across));
-      slope.bound = double(state.bound);
-      if (state.push > 0.0f)
-        resistance -= slope.push_rate * slope.speed + (state.sticks ? slope.work_rate : 0.0);
+      slope.bound = double(state.bound), slope.least = double(state.least);
+      if (state.acts()) resistance -= slope.push_rate * slope.speed + (state.sticks ? slope.work_rate : 0.0);
     }
     return resistance;
   }

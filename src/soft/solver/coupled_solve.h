@@ -7,7 +7,7 @@
 //
 //   p_n = max(0, l_n + along (target - u_n)),   p_t = l_t - across u_t, at most the friction times l_n
 //
-// with l the row's impulse at the start of a stage. This is convex and piecewise quadratic, and is minimised by nonlinear conjugate gradients
+// with l the row's impulse at the start of a stage. Of a row that holds, nothing bounds these: it is a bilateral constraint of all three directions. This is convex and piecewise quadratic, and is minimised by nonlinear conjugate gradients
 // with exact line searches: each iteration takes one product with A, as one of a linear system does. The preconditioner is the inverse of each vertex's own
 // block of A and of the rows that push, and the rigid motion of each body that nothing holds (soft/solver/rigid_correction.h). The impulses where a stage ends begin the next one; what a row misses falls by its resistance in each.
 //

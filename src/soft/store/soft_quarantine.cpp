@@ -15,7 +15,7 @@ void forget_infinite_impulses(SoftEntry& entry) {
   const auto keep_finite = [](Vec3& impulse) {
     if (!is_finite(impulse)) impulse = {};
   };
-  for (SoftAttachment& one : entry.attachments) keep_finite(one.impulse);
+  for_each_attachment(entry, [&](auto& one) { keep_finite(one.impulse); });
   for_each_contact(entry, [&](SoftContact& one) { keep_finite(one.impulse); });
 }
 
@@ -24,7 +24,7 @@ void freeze(SoftEntry& entry) {
   p.x = entry.good[0], p.y = entry.good[1], p.z = entry.good[2];
   for (int i = 0; i < p.count; ++i) p.set_velocity(i, {});
   forget_motion(entry);
-  for (SoftAttachment& one : entry.attachments) one.impulse = {};
+  for_each_attachment(entry, [&](auto& one) { one.impulse = {}; });
   for (double& tension : entry.body.chain.tension) tension = 0.0;
   entry.crossings = {};
   entry.rest[0] = {0.0f, kQuarantined};

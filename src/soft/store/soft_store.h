@@ -30,6 +30,17 @@ struct SoftAttachment {
   Vec3 impulse{};  // N s on the vertex in the last half-step, where the body yields: the warm start
 };
 
+// A point of an element that keeps its place in the frame of a body, or in the world: the mean of the element's corners by weight. Elements are triangles of a
+// cloth or tetrahedra of a solid; a crack leaves the point with its element.
+struct SoftPointAttachment {
+  std::uint32_t element = 0;
+  std::int32_t body = kWorldAnchor;
+  float weight[4] = {};  // of the corners in their order; that of a triangle's fourth is zero
+  DVec3 place{};         // as in SoftAttachment
+  Vec3 local{};
+  Vec3 impulse{};  // N s on the point
+};
+
 // A vertex that does not touch the body that holds it or its neighbours, since it began inside it.
 struct SoftInside {
   std::uint32_t particle = 0;
@@ -131,6 +142,7 @@ struct SoftEntry {
   SoftKind kind = SoftKind::rope;
   SoftBody body;
   Array<SoftAttachment> attachments;  // ascending by particle
+  Array<SoftPointAttachment> points;  // in the order in which they were attached
   Array<SoftContact> contacts;        // ascending by particle, then shape
   Array<SoftFaceContact> faces;       // ascending by face
   Array<SoftInside> inside;           // ascending by particle, then body
@@ -221,6 +233,12 @@ template <class Entry, class Visitor>
 void for_each_rare_array(Entry& entry, Visitor&& visit) {
   visit(entry.inside);
   visit(entry.limits);
+}
+// Calls visit(attachment) for those of vertices and of points.
+template <class Entry, class Visit>
+void for_each_attachment(Entry& entry, Visit&& visit) {
+  for (auto& one : entry.attachments) visit(one);
+  for (auto& one : entry.points) visit(one);
 }
 // Calls visit(contact) for the contacts of vertices and of faces.
 template <class Entry, class Visit>
