@@ -306,11 +306,13 @@ TEST(ExportVtk, FilesHoldTheStateOfEveryKind) {
   EXPECT_EQ(vtk_array<double>(line, "Points")[1], world.vertices(runner->ropes()[0]).position(0).y);
   EXPECT_EQ(vtk_array<std::int64_t>(line, "offsets"), (std::vector<std::int64_t>{5}));
   EXPECT_NE(line.find("NumberOfLines=\"1\""), std::string::npos);
+  EXPECT_EQ(vtk_array<float>(line, "strain").size(), world.vertices(runner->ropes()[0]).size());
 
   const std::string& tetra = files.at("tetra_2_000003.vtu");
   EXPECT_EQ(vtk_array<std::int64_t>(tetra, "connectivity"), (std::vector<std::int64_t>{0, 1, 2, 3}));
   EXPECT_EQ(vtk_array<std::uint8_t>(tetra, "types"), (std::vector<std::uint8_t>{10}));
   EXPECT_EQ(vtk_array<float>(tetra, "stress").size(), 1u);
+  EXPECT_EQ(vtk_array<float>(tetra, "strain").size(), 1u);
 
   const std::string& gas = files.at("air___smoke_3_000003.vti");
   EXPECT_NE(gas.find("WholeExtent=\"0 2 0 3 0 1\" Origin=\"-40 0 0\" Spacing=\"1 1 1\""), std::string::npos)

@@ -48,7 +48,7 @@ struct Piece {
   std::vector<double> points;
   std::vector<float> velocities;
   std::vector<std::int64_t> connectivity, offsets;
-  std::string cell_data;  // arrays
+  std::string point_data, cell_data;  // arrays
 
   std::int64_t count() const { return std::int64_t(points.size() / 3); }
   void add_point(DVec3 p, Vec3 v) {
@@ -60,7 +60,7 @@ struct Piece {
 
 std::string points_of(const Piece& piece) {
   return "<PointData Vectors=\"velocity\">\n" + data_array("Float32", "velocity", 3, piece.velocities) +
-         "</PointData>\n" + "<CellData>\n" + piece.cell_data + "</CellData>\n<Points>\n" +
+         piece.point_data + "</PointData>\n" + "<CellData>\n" + piece.cell_data + "</CellData>\n<Points>\n" +
          data_array("Float64", "Points", 3, piece.points) + "</Points>\n";
 }
 std::string cells_of(const Piece& piece) {
@@ -134,22 +134,32 @@ const char* soft_file(const World& world, SoftId soft, std::string& bytes) {
     }
   };
   const SoftKind kind = world.soft_info(soft).kind;
+  std::vector<float> strain(world.soft_strain(soft, {}));
+  (void)world.soft_strain(soft, strain);
   if (kind == SoftKind::solid) {
     std::vector<std::uint32_t> corners(world.solid_tetrahedra(soft, {}));
     (void)world.solid_tetrahedra(soft, corners);
     add_cells(corners, 4);
     std::vector<float> stress(world.solid_stress(soft, {}));
     (void)world.solid_stress(soft, stress);
-    piece.cell_data = data_array("Float32", "stress", 1, stress);
+    piece.cell_data = data_array("Float32", "stress", 1, stress) + data_array("Float32", "strain", 1, strain);
     bytes = tetrahedra(piece);
     return ".vtu";
   }
   if (kind == SoftKind::rope) {
     for (std::size_t i = 0; i < vertices.size(); ++i) piece.connectivity.push_back(std::int64_t(i));
     piece.close_cell();
+    // The line is one cell: a vertex has the mean of its segments.
+    std::vector<float> mean(vertices.size(), 0.0f);
+    for (std::size_t s = 0; s < strain.size(); ++s) {
+      mean[s] += s > 0 ? 0.5f * strain[s] : strain[s];
+      mean[s + 1] += s + 1 < strain.size() ? 0.5f * strain[s] : strain[s];
+    }
+    piece.point_data = data_array("Float32", "strain", 1, mean);
     bytes = poly_data(piece, "Lines");
   } else {
     add_cells(world.soft_triangles(soft), 3);
+    piece.cell_data = data_array("Float32", "strain", 1, strain);
     bytes = poly_data(piece, "Polys");
   }
   return ".vtp";

@@ -345,6 +345,10 @@ class World {
   // SolidDef::yield_stress is compared with, for small strain; turning and even pressure leave it at zero. Copies up to out.size() numbers; returns how many there are, one a
   // tetrahedron. Source: R. von Mises, 1913.
   std::size_t solid_stress(SoftId solid, std::span<float> out) const;
+  // The strain in the elements: of segments of a rope from its start on, triangles in the order of soft_triangles, tetrahedra in that of solid_tetrahedra. It is stretch less 1, so 0.01 where an element is 1 %
+  // longer than at rest and -0.01 where it is shorter; of the principal strains of a triangle or tetrahedron the one of largest size. What has flowed is at rest. Copies up to
+  // out.size() numbers; returns how many there are. Source: A. J. C. B. de Saint-Venant, 1855 (principal strains).
+  std::size_t soft_strain(SoftId soft, std::span<float> out) const;
   // The surface that a solid was made of (SolidDef::surface), carried along by its tetrahedra: for pictures. Copies up to out.size() places of
   // its vertices, in the order of the definition; returns how many there are, 0 without such a surface.
   std::size_t soft_surface(SoftId soft, std::span<DVec3> out) const;

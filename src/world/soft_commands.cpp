@@ -9,6 +9,7 @@
 #include "soft/body/soft_energy.h"
 #include "soft/store/soft_builder.h"
 #include "soft/store/soft_point.h"
+#include "soft/store/soft_strain.h"
 #include "world/refusal.h"
 #include "world/soft_events.h"
 #include "world/world_state.h"
@@ -413,6 +414,13 @@ std::size_t World::solid_stress(SoftId solid, std::span<float> out) const {
     ++count;
   }
   return count;
+}
+std::size_t World::soft_strain(SoftId soft, std::span<float> out) const {
+  if (!exists(soft)) return 0;
+  const FloatMode mode;
+  const Array<float> strains = find_strains(state_->soft.entries[soft.index]);
+  for (std::size_t i = 0; i < min(strains.size(), out.size()); ++i) out[i] = strains[i];
+  return strains.size();
 }
 std::size_t World::soft_surface(SoftId soft, std::span<DVec3> out) const {
   if (!exists(soft)) return 0;

@@ -278,7 +278,8 @@ SoftEntry build_soft(std::shared_ptr<const SoftDef> def) {
 
 Array<DVec3> whole_places(const SoftEntry& entry) {
   const ClothDef* const cloth = std::get_if<ClothDef>(entry.def.get());
-  const Array<DVec3> all = cloth != nullptr ? places_of(*cloth) : places_of(std::get<SolidDef>(*entry.def));
+  Array<DVec3> all = cloth != nullptr ? places_of(*cloth) : places_of(std::get<SolidDef>(*entry.def));
+  if (entry.damage.empty()) return all;
   Array<DVec3> places;
   places.reserve(entry.damage.roots.size());
   for (const std::uint32_t root : entry.damage.roots) places.push_back(all[root]);

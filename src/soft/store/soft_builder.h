@@ -20,7 +20,7 @@ SoftEntry build_soft(std::shared_ptr<const SoftDef> def);
 
 // The body of a cloth or solid from the elements of its damage. Springs of such a cloth lie along the edges of its triangles.
 SoftBody build_elements(const SoftEntry& entry);
-// Where the particles of such a body were at rest before it was torn or broken.
+// Where the particles of a cloth, or of a solid that may be damaged, were at rest before it was torn or broken.
 Array<DVec3> whole_places(const SoftEntry& entry);
 // Where the particles of such a body are at rest. The sides of the cracks of a solid are a thickness apart.
 Array<DVec3> rest_places(const SoftEntry& entry);
