@@ -97,6 +97,10 @@ TEST_F(Render, WrongUsageIsStatusTwoAndOneLine) {
   expect_refused({"box.gyre.json", "--out", "a.gif", "--to", "1", "--frames", "5"}, 2, "--frames");
   expect_refused({"box.gyre.json", "--out", "a.gif", "--fps", "100"}, 2, "50 frames");
   expect_refused({"box.gyre.json", "--out", "a.gif", "--frames", "0"}, 2, "found 0");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--color-by", "heat"}, 2, "stress or strain");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--color-range", "0,1"}, 2, "--color-by");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--color-by", "strain", "--color-range", "1,0"}, 2, "below");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--color-by", "strain", "--color-range", "1"}, 2, "2 numbers");
 }
 
 #ifndef GYRE_WITH_RENDER
@@ -461,6 +465,38 @@ TEST_F(Render, SmokeTakesLightWhereItIs) {
   EXPECT_LT(color_around(smoke, 48, 48)[0], 120.0);
   EXPECT_GT(color_around(smoke, 86, 48)[0], 200.0);
   EXPECT_GT(color_around(wall, 48, 48)[0], 150.0);
+}
+
+// A sheet that begins twice as long in its left half: red there, blue at the right, and the key says so.
+TEST_F(Render, StrainIsAColorOnAKey) {
+  write("drawn.gyre.json", R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0]}, "cloths": [
+    {"name": "sheet", "grid": {"size": [2, 1], "cells": [2, 1]}, "color": "#808080", "orientation": [0.70710678, 0, 0, 0.70710678],
+     "state": {"positions": [[-2, 0.5, 0], [0, 0.5, 0], [1, 0.5, 0], [-2, -0.5, 0], [0, -0.5, 0], [1, -0.5, 0]]}}]})");
+  const auto picture = [&](const char* range) {
+    EXPECT_EQ(draw({"drawn.gyre.json", "--out", "drawn.png", "--color-by", "strain", "--color-range", range, "--size", "192x120",
+                    "--samples", "8", "--camera", "0,0,6", "--look-at", "0,0,0"})
+                  .code,
+              0);
+    return read_png(folder_ / "drawn.png");
+  };
+  const Pixels all = picture("0,1");
+  const auto left = color_around(all, 50, 60), right = color_around(all, 125, 60);
+  EXPECT_GT(left[0], left[2] + 60.0);
+  EXPECT_GT(right[2], right[0] + 40.0);
+  const Pixels low = picture("0,10");
+  const auto pale = color_around(low, 50, 60);
+  EXPECT_GT(pale[2], pale[0] + 40.0);
+  // The key stands at the right, red above and blue below.
+  int red = 0, blue = 0;
+  for (int y = 30; y < 90; ++y) {
+    for (int x = 140; x < 192; ++x) {
+      const std::uint8_t* const at = &all.bytes[3 * (std::size_t(y) * all.width + std::size_t(x))];
+      red += y < 50 && at[0] > at[2] + 100 ? 1 : 0;
+      blue += y > 70 && at[2] > at[0] + 100 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(red, 50);
+  EXPECT_GT(blue, 50);
 }
 
 TEST_F(Render, AFlatGasIsAPictureAndALiquidASurface) {

@@ -55,23 +55,34 @@ void add_link(const SeenLink& link, Vec3 down, const Subject& subject, DrawList&
 }
 
 // A rope is drawn as the smooth line through its vertices.
-void add_rope(const SeenSoft& rope, const std::vector<Vec3>& vertices, float radius, DrawList& list) {
+void add_rope(const SeenSoft& rope, const std::vector<Vec3>& vertices, float radius,
+              std::span<const SceneColor> colors, DrawList& list) {
   constexpr int kSides = 16;
   constexpr int kPieces = 4;
   if (vertices.size() < 2) return;
   const auto first = std::uint32_t(list.vertices.size());
   const std::vector<TubePoint> tube = capped_tube(smooth_line(vertices, kPieces), radius, kSides);
-  for (const TubePoint& point : tube) {
+  const std::size_t rings = tube.size() / (kSides + 1), caps = (rings - (kPieces * (vertices.size() - 1) + 1)) / 2;
+  for (std::size_t i = 0; i < tube.size(); ++i) {
+    // The vertex that the ring is nearest to.
+    const std::size_t ring = i / (kSides + 1), along = ring > caps ? ring - caps : 0;
+    const std::size_t vertex = min((along + kPieces / 2) / kPieces, vertices.size() - 1);
+    const SceneColor color = colors.empty() ? rope.color : colors[vertex];
     list.vertices.push_back(
-        {point.position, point.normal, {rope.color.red, rope.color.green, rope.color.blue}, Paint::matter});
+        {tube[i].position, tube[i].normal, {color.red, color.green, color.blue}, Paint::matter});
   }
-  add_quads(list, first, std::uint32_t(tube.size()) / (kSides + 1), kSides + 1);
+  add_quads(list, first, std::uint32_t(rings), kSides + 1);
 }
 
-void add_mesh(const ShapeMesh& mesh, SceneColor color, Paint paint, DrawList& list) {
+// `color_of(i)`: of the i-th vertex of the mesh.
+template <class ColorOf>
+void add_mesh(const ShapeMesh& mesh, const ColorOf& color_of, Paint paint, DrawList& list) {
   const auto first = std::uint32_t(list.vertices.size());
-  for (const MeshVertex& vertex : mesh.vertices)
-    list.vertices.push_back({vertex.position, vertex.normal, {color.red, color.green, color.blue}, paint});
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const SceneColor color = color_of(i);
+    list.vertices.push_back(
+        {mesh.vertices[i].position, mesh.vertices[i].normal, {color.red, color.green, color.blue}, paint});
+  }
   for (const std::uint32_t index : mesh.indices) list.solid.push_back(first + index);
 }
 
@@ -81,22 +92,31 @@ SceneColor back_of(SceneColor color) {
   return {pale(color.red), pale(color.green), pale(color.blue)};
 }
 
-void add_soft(const Sight& sight, const SeenSoft& soft, const Subject& subject, DrawList& list) {
+void add_soft(const Sight& sight, const SeenSoft& soft, const ReadingRange& range, const Subject& subject,
+              DrawList& list) {
   std::vector<Vec3> vertices;
+  std::vector<SceneColor> colors;
+  for (const float reading : soft.readings) colors.push_back(reading_color(reading, range));
+  // By vertex of the soft matter.
+  const auto color_of = [&](std::size_t vertex) { return colors.empty() ? soft.color : colors[vertex]; };
   for (const DVec3& vertex : sight.vertices_of(soft)) vertices.push_back(difference(vertex, subject.origin));
   if (soft.kind == SoftKind::rope) {
     // A rope thinner than a pixel would not be seen.
-    add_rope(soft, vertices, max(soft.radius, 0.15f * subject.rod_radius), list);
+    add_rope(soft, vertices, max(soft.radius, 0.15f * subject.rod_radius), colors, list);
     return;
   }
   if (soft.kind == SoftKind::solid) {
-    add_mesh(solid_mesh(vertices, soft.triangles), soft.color, Paint::matter, list);
+    const auto color_of_corner = [&](std::size_t i) { return color_of(soft.triangles[i]); };
+    add_mesh(solid_mesh(vertices, soft.triangles), color_of_corner, Paint::matter, list);
     return;
   }
   const ClothMesh mesh = cloth_mesh(vertices, soft.triangles, soft.radius);
-  add_mesh(mesh.front, soft.color, Paint::sheet, list);
-  add_mesh(mesh.back, back_of(soft.color), Paint::sheet, list);
-  add_mesh(mesh.rim, soft.color, Paint::matter, list);
+  // Both sides of a cloth tell what is read.
+  const auto back_color_of = [&](std::size_t i) { return colors.empty() ? back_of(soft.color) : colors[i]; };
+  const auto rim_color_of = [&](std::size_t i) { return color_of(mesh.rim_of[i]); };
+  add_mesh(mesh.front, color_of, Paint::sheet, list);
+  add_mesh(mesh.back, back_color_of, Paint::sheet, list);
+  add_mesh(mesh.rim, rim_color_of, Paint::matter, list);
 }
 
 std::uint8_t toned(std::uint8_t part, float tone) { return std::uint8_t(float(part) * tone + 0.5f); }
@@ -179,7 +199,7 @@ DrawList DrawListMaker::make(const Sight& sight, const Camera& camera, const Sub
     }
   }
   for (const SeenLink& link : sight.links) add_link(link, sight.down, subject, list);
-  for (const SeenSoft& soft : sight.softs) add_soft(sight, soft, subject, list);
+  for (const SeenSoft& soft : sight.softs) add_soft(sight, soft, range_, subject, list);
   for (const SeenFluid& fluid : sight.fluids) add_fluid(fluid, subject, list);
   if (subject.floor && list.ground.empty()) {
     add_plane(subject, {subject.origin.x, *subject.floor, subject.origin.z}, {0, 1, 0}, kGroundColor,

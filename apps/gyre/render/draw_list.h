@@ -59,6 +59,8 @@ class DrawListMaker {
  public:
   // Shapes to be drawn as glass beside sensors.
   void set_glass(std::set<ShapeKey> glass) { glass_ = std::move(glass); }
+  // Between which numbers readings are coloured.
+  void set_range(const ReadingRange& range) { range_ = range; }
   DrawList make(const Sight& sight, const Camera& camera, const Subject& subject);
 
  private:
@@ -67,6 +69,7 @@ class DrawListMaker {
                  DrawList& list);
 
   std::set<ShapeKey> glass_;
+  ReadingRange range_;
   std::map<std::string, ShapeMesh> meshes_;
 };
 

@@ -26,7 +26,7 @@ class ScenePlayer : public Player {
   ScenePlayer(Scene scene, std::string path, int threads)
       : source_(std::move(scene)), path_(std::move(path)), threads_(threads) {}
 
-  void look(Sight& out) const override { look_at(runner_->world(), &source_, runner_->bodies(), out); }
+  void look(Sight& out) const override { look_at(runner_->world(), &source_, runner_->bodies(), reading_, out); }
   std::optional<SceneView> view() const override { return source_.view; }
   BodyId find(const std::string& name) const override { return find_body(source_, runner_->bodies(), name); }
   bool has_weight() const override { return !(runner_->world().gravity() == Vec3{}); }
@@ -67,7 +67,7 @@ class RecordingPlayer : public Player {
   }
 
   void look(Sight& out) const override {
-    look_at(replay_.world(), look_ ? &*look_ : nullptr, bodies_, out);
+    look_at(replay_.world(), look_ ? &*look_ : nullptr, bodies_, reading_, out);
     if (!look_ && track_) apply_track_colors(*track_, out);
   }
   std::optional<SceneView> view() const override {

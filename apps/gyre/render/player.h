@@ -19,6 +19,9 @@ class Player {
   virtual ~Player() = default;
 
   virtual void look(Sight& out) const = 0;
+  // Whether stress and strain can be read: a recording of poses alone does not know them.
+  virtual bool has_readings() const { return true; }
+  void read(SoftReading reading) { reading_ = reading; }
   // Where a good picture is taken from, if that is known.
   virtual std::optional<SceneView> view() const = 0;
   // The body of that name; null if there is none or names are not known.
@@ -47,6 +50,7 @@ class Player {
   bool (*watcher_)(void* user) = nullptr;
   void* user_ = nullptr;
   std::string problem_, note_;
+  SoftReading reading_ = SoftReading::none;
   double last_step_ = 0;  // s
 };
 

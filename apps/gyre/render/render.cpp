@@ -108,6 +108,7 @@ class Rendering {
   Camera camera_;
   Subject subject_;
   std::set<ShapeKey> glass_;
+  ReadingRange range_;
   BodyId followed_;
   std::string problem_;  // why the simulation ends before the plan does
 };
@@ -167,6 +168,7 @@ bool Rendering::prepare() {
   }
   subject_ = survey.subject(camera_);
   glass_ = survey.hiding(camera_);
+  range_ = options_.range.empty() ? survey.readings() : ReadingRange{options_.range[0], options_.range[1]};
   return true;
 }
 
@@ -174,6 +176,7 @@ int Rendering::draw_frames() {
   DrawListMaker maker;
   Sight sight;
   maker.set_glass(glass_);
+  maker.set_range(range_);
   Progress progress(!options_.quiet, plan_.count, "frames");
   Camera camera = camera_;
   Subject subject = subject_;
@@ -188,7 +191,9 @@ int Rendering::draw_frames() {
       camera.target = camera_.target + (place - *follow_start);
       subject.origin = camera.target;
     }
-    if (!output_.add(renderer_->draw(maker.make(sight, camera, subject), camera, subject))) {
+    Picture picture = renderer_->draw(maker.make(sight, camera, subject), camera, subject);
+    if (options_.reading != SoftReading::none) draw_key(range_, options_.reading, picture);
+    if (!output_.add(std::move(picture))) {
       progress.clear();
       return stop(output_.message());
     }
@@ -217,6 +222,11 @@ int Rendering::run() {
     say("--scene is for recordings; " + options_.source + " is a scene itself");
     return kExitUsage;
   }
+  if (options_.reading != SoftReading::none && !player_->has_readings()) {
+    say("--color-by: " + options_.source + " holds poses alone; record with all, or render the scene");
+    return kExitUsage;
+  }
+  player_->read(options_.reading);
   if (!find_follow()) return kExitUsage;
   plan_ = plan_frames(options_, player_->is_recording());
   const bool usual_movie = options_.out.kind == OutputKind::movie || options_.out.kind == OutputKind::video;

@@ -3,6 +3,7 @@
 
 #include "formats/import.h"
 #include "render/frame_path.h"
+#include "render/soft_reading.h"
 
 #include <gyre/math.h>
 
@@ -28,6 +29,8 @@ struct RenderOptions {
   std::optional<double> at, from, to, seconds;
   std::optional<std::uint64_t> frames;
   std::optional<double> frame_rate;
+  SoftReading reading = SoftReading::none;
+  std::vector<double> range;  // of what is read, in Pa or as a share: two numbers, or none
   double speed = 1;  // seconds of the scene in a second of the movie
   int threads = 1;
   bool quiet = false;

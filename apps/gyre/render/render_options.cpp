@@ -75,6 +75,21 @@ void add_camera_options(CLI::App& command, RenderOptions& options) {
   command.add_option("--follow", options.follow, "The camera moves with this body")->type_name("NAME");
 }
 
+void add_reading_options(CLI::App& command, RenderOptions& options) {
+  add_parsed(command, "--color-by", "stress|strain",
+             "Colour soft matter by the stress of von Mises (solids) or by strain, with a key",
+             [&options](const std::string& text) {
+               options.reading = text == "stress"   ? SoftReading::stress
+                                 : text == "strain" ? SoftReading::strain
+                                                    : SoftReading::none;
+               const bool good = options.reading != SoftReading::none;
+               return good ? std::string() : "found " + text + ", expected stress or strain";
+             });
+  add_parsed(command, "--color-range", "LOW,HIGH",
+             "What the ends of the key stand for, in Pa or as a share (0.05 is 5 %); left out: what is seen in all frames",
+             [&options](const std::string& text) { return parse_numbers(text, 2, options.range); });
+}
+
 void add_time_options(CLI::App& command, RenderOptions& options) {
   const CLI::Validator time = number_between(0, false, 1e9, "a number from 0 to 1e9");
   command.add_option("--at", options.at, "The moment of a single picture, in s (0)")
@@ -125,6 +140,10 @@ std::string check_together(const RenderOptions& options) {
   if (!options.eye.empty() && options.eye == options.target) {
     return "--camera must stand somewhere else than --look-at";
   }
+  if (!options.range.empty() && options.reading == SoftReading::none)
+    return "--color-range has no meaning without --color-by";
+  if (!options.range.empty() && !(options.range[0] < options.range[1]))
+    return "--color-range: the first number must be below the second";
   if (!options.direction.empty() && !options.eye.empty()) return "--direction has no meaning with --camera";
   if (!options.direction.empty() && std::abs(options.direction[1]) > 90) {
     return "--direction: the elevation goes from -90 to 90 degrees";
@@ -147,6 +166,7 @@ void add_render(CLI::App& app, int& exit_code) {
              [options](const std::string& text) { return parse_size(text, *options); });
   add_camera_options(*command, *options);
   add_time_options(*command, *options);
+  add_reading_options(*command, *options);
   command->add_option("--scene", options->look, "The scene of a recording, for its colours, names and ropes")
       ->type_name("SCENE");
   command

@@ -42,7 +42,7 @@ std::size_t count_of(const Scene& scene, SoftKind kind) {
 }
 
 // Ropes, cloths and soft bodies of a scene carry their number among their kind as user data.
-void look_at_softs(const World& world, const Scene* scene, Sight& out) {
+void look_at_softs(const World& world, const Scene* scene, SoftReading reading, Sight& out) {
   std::vector<SoftId> ids(world.softs({}));
   world.softs(ids);
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -51,15 +51,24 @@ void look_at_softs(const World& world, const Scene* scene, Sight& out) {
     const bool known = scene && info.user_data < count_of(*scene, info.kind);
     const SceneColor color = known ? resolved_soft_color(*scene, info.kind, std::size_t(info.user_data))
                                    : automatic_color(BodyType::dynamic, i);
-    out.softs.push_back({ids[i], info.kind, info.radius, world.soft_triangles(ids[i]), out.vertices.size(),
-                         vertices.size(), color});
-    for (std::size_t k = 0; k < vertices.size(); ++k) out.vertices.push_back(vertices.position(k));
+    SeenSoft soft{ids[i],          info.kind, info.radius, world.soft_triangles(ids[i]), out.vertices.size(),
+                  vertices.size(), color,     read_by_vertex(world, ids[i], reading)};
+    const std::size_t carried = reading == SoftReading::none ? world.soft_surface(ids[i], {}) : 0;
+    if (carried > 0) {
+      soft.triangles = world.soft_surface_triangles(ids[i]), soft.vertex_count = carried;
+      out.vertices.resize(soft.first_vertex + carried);
+      (void)world.soft_surface(ids[i], std::span(out.vertices).subspan(soft.first_vertex));
+    } else {
+      for (std::size_t k = 0; k < vertices.size(); ++k) out.vertices.push_back(vertices.position(k));
+    }
+    out.softs.push_back(std::move(soft));
   }
 }
 
 }  // namespace
 
-void look_at(const World& world, const Scene* scene, std::span<const BodyId> bodies, Sight& out) {
+void look_at(const World& world, const Scene* scene, std::span<const BodyId> bodies, SoftReading reading,
+             Sight& out) {
   out.bodies.clear();
   out.shapes.clear();
   out.links.clear();
@@ -84,7 +93,7 @@ void look_at(const World& world, const Scene* scene, std::span<const BodyId> bod
     }
   }
   look_at_links(world, scene, out);
-  look_at_softs(world, scene, out);
+  look_at_softs(world, scene, reading, out);
   out.fluids = look_at_fluids(world, scene);
 }
 

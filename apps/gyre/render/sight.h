@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/fluid_sight.h"
+#include "render/soft_reading.h"
 #include "scene/scene.h"
 
 #include <gyre/geometry.h>
@@ -45,6 +46,7 @@ struct SeenSoft {
   std::span<const std::uint32_t> triangles{};  // those of the world or the file
   std::size_t first_vertex = 0, vertex_count = 0;
   SceneColor color{};
+  std::vector<float> readings{};  // by vertex; none: it has its own colour
 };
 
 struct Sight {
@@ -65,7 +67,8 @@ struct Sight {
 };
 
 // Looks at a world. `scene` (may be null) tells colours, sensors and which rods are springs; `bodies` are the world's bodies in its
-// order. The geometries stay the world's.
-void look_at(const World& world, const Scene* scene, std::span<const BodyId> bodies, Sight& out);
+// order. The geometries stay the world's. A solid is seen as the surface it was made of, or where stress or strain is read as that of its elements.
+void look_at(const World& world, const Scene* scene, std::span<const BodyId> bodies, SoftReading reading,
+             Sight& out);
 
 }  // namespace gyre

@@ -91,6 +91,7 @@ ClothMesh cloth_mesh(std::span<const Vec3> vertices, std::span<const std::uint32
       const Vec3 outward = normalized(cross(along, over.normal), over.normal);
       mesh.rim.vertices.push_back({over.position, outward});
       mesh.rim.vertices.push_back({under.position, outward});
+      mesh.rim_of.insert(mesh.rim_of.end(), {vertex, vertex});
     }
     mesh.rim.indices.insert(mesh.rim.indices.end(),
                             {first, first + 1, first + 3, first, first + 3, first + 2});

@@ -53,6 +53,10 @@ Survey::Survey(Player& player, FramePlan& plan) {
     }
     if (frame % every_ != 0) continue;
     player.look(sight);
+    std::vector<float> readings;
+    for (const SeenSoft& soft : sight.softs)
+      readings.insert(readings.end(), soft.readings.begin(), soft.readings.end());
+    readings_.add(std::move(readings));
     if (frame == 0) look_at_still(sight);
     look_at_moving(sight);
   }

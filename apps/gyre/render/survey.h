@@ -42,6 +42,8 @@ class Survey {
   Subject subject(const Camera& camera) const;
   // Shapes that never move and hide much of what does.
   std::set<ShapeKey> hiding(const Camera& camera) const;
+  // The range of what was read of soft matter.
+  ReadingRange readings() const { return readings_.range(); }
 
  private:
   struct Ball {
@@ -65,6 +67,7 @@ class Survey {
   std::vector<std::size_t> ends_;  // of each moment, in moving_
   std::uint64_t every_ = 1;        // each so-manieth frame is kept
   std::vector<Ball> still_;
+  RangeFinder readings_;
   std::vector<Wall> walls_;
   std::optional<SceneView> view_;
   bool has_plane_ = false;

@@ -30,7 +30,7 @@ class TrackPlayer : public Player {
       const TrackSoft& soft = track_.softs()[frame.softs[i]];
       const std::span<const DVec3> vertices = track_.soft_vertices(i);
       out.softs.push_back({frame.soft_ids[i], soft.kind, soft.radius, soft.triangles, out.vertices.size(),
-                           vertices.size(), automatic_color(BodyType::dynamic, i)});
+                           vertices.size(), automatic_color(BodyType::dynamic, i), {}});
       out.vertices.insert(out.vertices.end(), vertices.begin(), vertices.end());
     }
     apply_track_colors(track_, out);
@@ -41,6 +41,7 @@ class TrackPlayer : public Player {
     look(sight);
     return find_in_track(track_, sight.bodies, name);
   }
+  bool has_readings() const override { return false; }
   bool has_weight() const override { return true; }
   bool is_recording() const override { return true; }
   double time() const override { return track_.time(track_.position()) - track_.time(0); }
