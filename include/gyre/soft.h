@@ -124,7 +124,9 @@ struct SolidSurface {
 struct SolidDef {
   std::optional<SolidBox> box{};            // or tetrahedra, used as they are:
   std::vector<Vec3> vertices{};             // m, in the frame of the pose
-  std::vector<std::uint32_t> tetrahedra{};  // four indices each, of either handedness
+  // Four indices each: seen from the last vertex the others go counter-clockwise, so that the volume is positive. Tetrahedra that are inverted are refused, and those that lie on the same
+  // side of a common face.
+  std::vector<std::uint32_t> tetrahedra{};
   std::optional<SolidSurface> surface{};    // or a surface to be filled
   Pose pose{};
   SolidModel model = SolidModel::neo_hookean;

@@ -8,6 +8,8 @@
 #include "world/soft_commands.h"
 #include "world/world_state.h"
 
+#include <utility>
+
 namespace gyre {
 
 namespace {
@@ -25,6 +27,16 @@ void put_present_state(const SoftEntry& entry, Def& def) {
 bool is_torn(const SoftEntry& entry) {
   const Array<std::uint32_t>& roots = entry.damage.roots;
   return !roots.empty() && roots.back() + 1 != roots.size();
+}
+
+// Tetrahedra of a box have either handedness, those of a definition are positive.
+void turn_upright(SolidDef& def) {
+  for (std::size_t t = 0; t < def.tetrahedra.size(); t += 4) {
+    const auto edge = [&](std::size_t k) {
+      return DVec3(def.vertices[def.tetrahedra[t + k]]) - DVec3(def.vertices[def.tetrahedra[t]]);
+    };
+    if (dot(edge(1), cross(edge(2), edge(3))) < 0.0) std::swap(def.tetrahedra[t + 2], def.tetrahedra[t + 3]);
+  }
 }
 
 // The places at rest in the frame of the pose.
@@ -61,6 +73,7 @@ SolidDef World::solid_def(SoftId solid) const {
   if (!is_torn(entry)) return def;
   def.vertices = local_rest_places(entry, def.pose);
   def.tetrahedra.assign(entry.damage.corners.begin(), entry.damage.corners.end());
+  turn_upright(def);
   def.box.reset();
   return def;
 }

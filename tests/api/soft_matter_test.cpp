@@ -565,6 +565,11 @@ TEST(SoftMatter, BadDefinitionsAreRefusedWithTheReason) {
   refused([&] { return world.add_solid({.box = SolidBox{}, .poisson_ratio = 0.5f}); }, "poisson_ratio is 0.5");
   refused([&] { return world.add_solid({.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, .tetrahedra = {0, 1, 2, 3}}); },
           "no volume");
+  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5f, 0.5f, 2}};
+  const std::vector<Vec3> both_sides{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.3f, 0.3f, -1}};
+  refused([&] { return world.add_solid({.vertices = both_sides, .tetrahedra = {0, 1, 2, 3, 0, 1, 2, 4}}); }, "tetrahedra[1] is inverted");
+  refused([&] { return world.add_solid({.vertices = corners, .tetrahedra = {0, 1, 2, 3, 0, 1, 2, 4}}); }, "tetrahedra[0] and tetrahedra[1] overlap");
+  EXPECT_TRUE(world.add_solid({.vertices = both_sides, .tetrahedra = {0, 1, 2, 3, 0, 2, 1, 4}}));
   const SoftId rope = world.add_rope({.points = {{0, 0, 0}, {1, 0, 0}}});
   refused([&] { return world.pin(rope, 2); }, "vertex is 2");
   refused([&] { return world.attach(rope, 0, BodyId{}); }, "does not exist");

@@ -9,6 +9,7 @@
 #include "soft/elements/rope.h"
 #include "soft/elements/solid.h"
 #include "soft/mesh/tetrahedral_fill.h"
+#include "soft/mesh/tetrahedron_faces.h"
 #include "soft/store/soft_damage.h"
 
 #include <cmath>
@@ -150,46 +151,22 @@ void build(const ClothDef& def, SoftEntry& entry) {
   if (def.pressure) set_gas(def, entry);
 }
 
-// A face of a tetrahedron, to be sorted by its vertices.
-struct Face {
-  std::uint32_t low, middle, high;  // its vertices
-  std::uint32_t tetrahedron, opposite;
-};
-
-Face make_face(std::span<const std::uint32_t> tetrahedra, std::uint32_t tetrahedron, std::uint32_t opposite) {
-  std::uint32_t v[3] = {};
-  for (std::uint32_t i = 0, n = 0; i < 4; ++i)
-    if (i != opposite) v[n++] = tetrahedra[4 * std::size_t(tetrahedron) + i];
-  const std::uint32_t low = min(min(v[0], v[1]), v[2]), high = max(max(v[0], v[1]), v[2]);
-  return {low, v[0] ^ v[1] ^ v[2] ^ low ^ high, high, tetrahedron, opposite};
-}
-
 // The faces that belong to one tetrahedron alone, seen from outside counter-clockwise, in the order of the tetrahedra.
 void add_outer_faces(std::span<const std::uint32_t> tetrahedra, std::span<const DVec3> places,
                      Array<std::uint32_t>& triangles) {
-  Array<Face> faces, scratch;
-  for (std::uint32_t t = 0; t < tetrahedra.size() / 4; ++t) {
-    for (std::uint32_t k = 0; k < 4; ++k) faces.push_back(make_face(tetrahedra, t, k));
-  }
-  scratch.resize(faces.size());
-  const auto same = [](const Face& a, const Face& b) {
-    return a.low == b.low && a.middle == b.middle && a.high == b.high;
-  };
-  merge_sort(faces.view(), scratch.view(), [](const Face& a, const Face& b) {
-    return a.low != b.low ? a.low < b.low : a.middle != b.middle ? a.middle < b.middle : a.high < b.high;
-  });
-  Array<Face> outer;
+  const Array<TetrahedronFace> faces = sorted_faces(tetrahedra);
+  Array<TetrahedronFace> outer, scratch;
   for (std::size_t i = 0; i < faces.size();) {
     std::size_t end = i + 1;
-    while (end < faces.size() && same(faces[i], faces[end])) ++end;
+    while (end < faces.size() && faces[i].has_vertices_of(faces[end])) ++end;
     if (end - i == 1) outer.push_back(faces[i]);
     i = end;
   }
   scratch.resize(outer.size());
-  merge_sort(outer.view(), scratch.view(), [](const Face& a, const Face& b) {
+  merge_sort(outer.view(), scratch.view(), [](const TetrahedronFace& a, const TetrahedronFace& b) {
     return a.tetrahedron != b.tetrahedron ? a.tetrahedron < b.tetrahedron : a.opposite < b.opposite;
   });
-  for (const Face& face : outer) {
+  for (const TetrahedronFace& face : outer) {
     const DVec3 a = places[face.low], b = places[face.middle], c = places[face.high],
                 inner = places[tetrahedra[4 * std::size_t(face.tetrahedron) + face.opposite]];
     const bool is_outward = dot(cross(b - a, c - a), inner - a) < 0.0;

@@ -1,6 +1,7 @@
 // The checks of definitions. See soft_builder.h.
 #include "base/container/sort.h"
 #include "soft/mesh/tetrahedral_fill.h"
+#include "soft/mesh/tetrahedron_faces.h"
 #include "soft/store/soft_builder.h"
 
 namespace gyre {
@@ -112,9 +113,36 @@ Error has_volumes(const SolidDef& def) {
     const DVec3 b = DVec3(def.vertices[def.tetrahedra[t + 1]]) - a,
                 c = DVec3(def.vertices[def.tetrahedra[t + 2]]) - a,
                 d = DVec3(def.vertices[def.tetrahedra[t + 3]]) - a;
-    const double longest = max(length(b), max(length(c), length(d)));
-    if (absolute(dot(b, cross(c, d))) > 1.0e-7 * longest * longest * longest) continue;
-    return refused("tetrahedra[%zu] has no volume", t / 4);
+    const double longest = max(length(b), max(length(c), length(d))), volume = dot(b, cross(c, d)) / 6.0;
+    if (!(absolute(6.0 * volume) > 1.0e-7 * longest * longest * longest))
+      return refused("tetrahedra[%zu] has no volume", t / 4);
+    if (volume < 0.0)
+      return refused(
+          "tetrahedra[%zu] is inverted: its volume is %g m^3; seen from its last corner the others go clockwise",
+          t / 4, volume);
+  }
+  return {};
+}
+
+// Tetrahedra that have a face in common lie on its two sides.
+Error has_separate_neighbours(const SolidDef& def) {
+  const Array<TetrahedronFace> faces = sorted_faces(def.tetrahedra);
+  const auto is_above = [&](const TetrahedronFace& face) {
+    const DVec3 a(def.vertices[face.low]);
+    const DVec3 b = DVec3(def.vertices[face.middle]) - a, c = DVec3(def.vertices[face.high]) - a;
+    return dot(cross(b, c),
+               DVec3(def.vertices[def.tetrahedra[4 * std::size_t(face.tetrahedron) + face.opposite]]) - a) >
+           0.0;
+  };
+  for (std::size_t begin = 0, end = 0; begin < faces.size(); begin = end) {
+    const TetrahedronFace* side[2] = {};  // below and above
+    for (; end < faces.size() && faces[end].has_vertices_of(faces[begin]); ++end) {
+      const TetrahedronFace*& here = side[is_above(faces[end]) ? 1 : 0];
+      if (here != nullptr)
+        return refused("tetrahedra[%u] and tetrahedra[%u] overlap: they lie on the same side of their common face",
+                       here->tetrahedron, faces[end].tetrahedron);
+      here = &faces[end];
+    }
   }
   return {};
 }
@@ -271,6 +299,7 @@ Error check_soft(const SolidDef& def) {
     vertices = def.vertices.size();
     e = good_elements(def.vertices, def.tetrahedra, 4, "tetrahedra");
     if (e.ok()) e = has_volumes(def);
+    if (e.ok()) e = has_separate_neighbours(def);
   }
   if (e.ok()) e = good_pose(def.pose);
   if (e.ok()) e = above_zero("density", def.density);

@@ -46,8 +46,22 @@ const scene = Buffer.from(JSON.stringify({
   soft_bodies: [{ name: 'jelly', box: { half_extents: [0.4, 0.4, 0.4], cells: [3, 3, 3] }, position: [2, 0.4, 0] }],
 }));
 
+// A sheet whose left half begins twice as long, beside a rope that is not drawn out, and a jelly, which alone has stress.
+const drawn = Buffer.from(JSON.stringify({
+  gyre_scene: 1,
+  name: 'drawn',
+  world: { gravity: [0, 0, 0] },
+  view: { eye: [0, 0, 6], target: [0, 0, 0] },
+  cloths: [{
+    name: 'sheet', grid: { size: [2, 1], cells: [2, 1] }, color: '#808080', orientation: [0.70710678, 0, 0, 0.70710678],
+    state: { positions: [[-2, 0.5, 0], [0, 0.5, 0], [1, 0.5, 0], [-2, -0.5, 0], [0, -0.5, 0], [1, -0.5, 0]] },
+  }],
+  ropes: [{ name: 'line', points: [[-1, 1.2, 0], [1, 1.2, 0]], segments: 4, radius: 0.1, color: '#808080' }],
+  soft_bodies: [{ name: 'jelly', box: { half_extents: [0.3, 0.3, 0.3], cells: [2, 2, 2] }, position: [0, -1.2, 0], color: '#808080' }],
+}));
+
 const banner = readFileSync(join(root, 'scenes/soft/tearing_banner.gyre.json'));
-const viewer = viewerTests({ files: { 'soft.gyrec': whole, 'soft.gyre.json': scene, 'banner.gyre.json': banner } });
+const viewer = viewerTests({ files: { 'soft.gyrec': whole, 'soft.gyre.json': scene, 'banner.gyre.json': banner, 'drawn.gyre.json': drawn } });
 
 test('a recording shows the vertices forward and back', async (t) => {
   const page = await viewer.open(t, 'file=/files/soft.gyrec&play=0&quality=low', { width: 640, height: 400 });
@@ -157,6 +171,35 @@ test('a cloth that tears is drawn anew, and is whole again where the scene goes 
   await page.evaluate(() => window.gyre.seek(30));
   await settled(page);
   assert.equal(await drawn(), torn);
+  viewer.noErrors(page);
+});
+
+test('strain and stress are colours on a key, on and off', async (t) => {
+  const page = await viewer.open(t, 'file=/files/drawn.gyre.json&play=0&quality=low&theme=light', { width: 640, height: 400 });
+  await settled(page);
+  const at = async (place) => {
+    const { x, y } = await page.evaluate((where) => window.gyre.onPage(...where), place);
+    return color(page, x, y);
+  };
+  const isGrey = ([red, green, blue]) => Math.max(red, green, blue) - Math.min(red, green, blue) < 40;
+  const key = () => page.evaluate(() => document.querySelector('.reading-key')?.getAttribute('aria-label') ?? null);
+  const places = { left: [-1.6, 0.2, 0], right: [0.9, 0.2, 0], line: [0.1, 1.2, 0.1] };
+  assert.ok(isGrey(await at(places.left)));
+  assert.equal(await key(), null);
+  await page.evaluate(() => window.gyre.overlay('strain', true));
+  await settled(page);
+  const [left, right, line] = [await at(places.left), await at(places.right), await at(places.line)];
+  assert.ok(left[0] > left[2] + 60, `drawn out: ${left}`);
+  assert.ok(right[2] > right[0] + 40, `at rest: ${right}`);
+  assert.ok(line[2] > line[0] + 40, `the rope at rest: ${line}`);
+  assert.equal(await key(), 'strain from 0 % to 100 %');
+  await page.evaluate(() => window.gyre.overlay('stress', true));
+  await settled(page);
+  assert.ok(isGrey(await at(places.left)), 'a sheet has no stress to show');
+  assert.match(await key(), /^stress from 0 Pa to/);
+  await page.evaluate(() => window.gyre.overlay('stress', false));
+  await settled(page);
+  assert.equal(await key(), null);
   viewer.noErrors(page);
 });
 

@@ -18,6 +18,17 @@ export function compact(value: number): string {
   return short(value);
 }
 
+// Stress with its unit, strain in percent; two digits.
+export function readingText(value: number, what: 'stress' | 'strain'): string {
+  const two = (number: number): string => short(Number(number.toPrecision(2)));
+  if (what === 'strain') return `${two(100 * value)} %`;
+  const size = Math.abs(value);
+  if (size >= 1e9) return `${two(value / 1e9)} GPa`;
+  if (size >= 1e6) return `${two(value / 1e6)} MPa`;
+  if (size >= 1e3) return `${two(value / 1e3)} kPa`;
+  return `${two(value)} Pa`;
+}
+
 export function fixed(value: number, digits: number): string {
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text;

@@ -176,7 +176,9 @@ export type OverlayName =
   | 'hulls'
   | 'flow'
   | 'speed'
-  | 'particles';
+  | 'particles'
+  | 'stress'
+  | 'strain';
 
 // Overlay data that only the engine knows, flat as the engine's tables are ("3 a point"), in the frame's coordinates. Present
 // when its switch is on.
@@ -213,6 +215,7 @@ export interface OverlayData {
   joints?: JointData;
   flow?: FlowData[]; // one a fluid
   particles?: Float32Array; // 3 a particle, of all liquids
+  readings?: Float32Array; // 1 a vertex of softVertices: stress (Pa) if that is switched on, else strain; NaN where there is none
 }
 
 export interface Frame {

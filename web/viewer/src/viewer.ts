@@ -183,7 +183,7 @@ export class Viewer {
   }
 
   private updateOverlays(frame: Frame): void {
-    const view: OverlayView = { frame, bodies: this.bodies, scale: this.radius };
+    const view: OverlayView = { frame, bodies: this.bodies, softs: this.softs, scale: this.radius };
     const moving = store.playing.peek() || this.dirty;
     this.dirty = false;
     this.selection.update();

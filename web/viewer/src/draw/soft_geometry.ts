@@ -14,6 +14,17 @@ export interface SoftMesh {
   readonly edge: number; // m, the mean length of its edges when it was first seen
   // `vertices`: 3 each, of this rope, cloth or solid alone.
   fill(vertices: Float32Array): void;
+  // 3 a vertex of this one: red, green, blue.
+  paint(colors: Float32Array): void;
+}
+
+// `source(i)`: the vertex of the soft matter that the i-th drawn one has its colour of.
+function paintVertices(geometry: BufferGeometry, colors: Float32Array, source: (drawn: number) => number): void {
+  const count = geometry.getAttribute('position').count;
+  if (!geometry.hasAttribute('color')) geometry.setAttribute('color', dynamic(count, 3));
+  const color = geometry.getAttribute('color') as BufferAttribute;
+  for (let i = 0; i < count; i++) color.array.set(colors.subarray(3 * source(i), 3 * source(i) + 3), 3 * i);
+  color.needsUpdate = true;
 }
 
 export function softMesh(soft: SoftDescription, vertices: Float32Array): SoftMesh {
@@ -87,6 +98,10 @@ class Skin implements SoftMesh {
     }
     position.needsUpdate = true;
     normal.needsUpdate = true;
+  }
+
+  paint(colors: Float32Array): void {
+    paintVertices(this.geometry, colors, (drawn) => this.sources[drawn]!);
   }
 }
 
@@ -178,6 +193,11 @@ class Tube implements SoftMesh {
     }
     (this.geometry.getAttribute('position') as BufferAttribute).needsUpdate = true;
     (this.geometry.getAttribute('normal') as BufferAttribute).needsUpdate = true;
+  }
+
+  paint(colors: Float32Array): void {
+    const last = this.soft.vertices - 1;
+    paintVertices(this.geometry, colors, (drawn) => Math.min(Math.max(Math.floor(drawn / (SIDES + 1)) - 2, 0), last));
   }
 
   private ring(ring: number, vertices: Float32Array, at: number, along: Triple, across: Triple, { bend, bent }: { bend: number; bent: Triple }): void {

@@ -1,8 +1,8 @@
 // Ropes, cloths and solids on the screen: one mesh each, whose vertices move with every picture.
-import { type Color, DoubleSide, Group, type Material, Mesh, MeshLambertMaterial, MeshStandardMaterial } from 'three';
+import { Color, DoubleSide, Group, type Material, Mesh, MeshLambertMaterial, MeshStandardMaterial } from 'three';
 import type { Frame, SoftDescription, SoftKind, Structure } from '../protocol';
 import type { Quality } from '../state/preferences';
-import { bodyColor } from './palette';
+import { bodyColor, heatColor } from './palette';
 import { type SoftMesh, softMesh } from './soft_geometry';
 
 export interface DrawnSoft {
@@ -18,6 +18,7 @@ interface Item extends DrawnSoft {
 }
 
 // The back of a cloth is paler, as in the pictures of `gyre render`; a rope has a stripe around it. Without textures, either lets the eye see a turn.
+// Where readings are shown, the colour is that of the key alone.
 const FRAGMENT: Record<SoftKind, string> = {
   cloth: 'if (!gl_FrontFacing) diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.73), 0.45);',
   rope: /* glsl */ `
@@ -42,7 +43,7 @@ function material(kind: SoftKind, quality: Quality, edge: number): MeshStandardM
   if (kind === 'cloth') made.side = DoubleSide;
   if (kind === 'rope') made.defines = { ...made.defines, USE_UV: '' };
   made.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace('#include <color_fragment>', `#include <color_fragment>\n${FRAGMENT[kind]}`);
+    shader.fragmentShader = shader.fragmentShader.replace('#include <color_fragment>', `#include <color_fragment>\n#ifndef USE_COLOR\n${FRAGMENT[kind]}\n#endif`);
     if (kind !== 'cloth') return;
     shader.uniforms.gyreNear = { value: NEARER * edge };
     shader.vertexShader = shader.vertexShader
@@ -93,8 +94,30 @@ export class Softs {
       const before = mesh.material as MeshStandardMaterial | MeshLambertMaterial;
       const next = material(soft.kind, quality, shape.edge);
       next.color.copy(before.color);
+      next.vertexColors = before.vertexColors;
       mesh.material = next;
       before.dispose();
+    }
+  }
+
+  // Colours vertices by readings, 1 a vertex of the frame, from `low` (blue) to `high` (red); null: everything has its own colour.
+  read(readings: Float32Array | null, low: number, high: number): void {
+    const color = new Color();
+    for (const item of this.items.values()) {
+      const material = item.mesh.material as MeshStandardMaterial | MeshLambertMaterial;
+      const count = item.soft.vertices;
+      const values = readings?.subarray(item.first, item.first + count);
+      const colored = values !== undefined && values.length === count && Number.isFinite(values[0]!);
+      if (material.vertexColors !== colored) {
+        material.vertexColors = colored;
+        material.needsUpdate = true;
+        if (colored) material.color.set(0xffffff);
+        else this.color(item);
+      }
+      if (!colored) continue;
+      const colors = new Float32Array(3 * count);
+      for (let i = 0; i < count; i++) heatColor(high > low ? (values[i]! - low) / (high - low) : 0, color).toArray(colors, 3 * i);
+      item.shape.paint(colors);
     }
   }
 

@@ -9,6 +9,7 @@ import { Joints } from './joints';
 import { Mass } from './mass';
 import type { OverlayKind } from './overlay';
 import { Particles } from './particles';
+import { Reading } from './reading';
 import { Speed } from './speed';
 import { Tree } from './tree';
 import { Velocities } from './velocities';
@@ -25,5 +26,7 @@ export const overlayKinds: readonly OverlayKind[] = [
   { name: 'hulls', label: 'Collision shapes', hint: 'what really collides, as wire', key: '9', make: () => new Hulls() },
   { name: 'flow', label: 'Flow', hint: 'velocity of fluids on a slice', key: 'v', fluid: true, make: () => new Flow() },
   { name: 'speed', label: 'Speed of gases', hint: 'on a slice, from still (blue) to fast (red)', key: 'x', fluid: true, make: () => new Speed() },
+  { name: 'strain', label: 'Strain', hint: 'of ropes, cloths and solids, on a key', key: 'n', soft: true, make: () => new Reading('strain') },
+  { name: 'stress', label: 'Stress', hint: 'of von Mises in solids, on a key', key: 'm', soft: true, make: () => new Reading('stress') },
   { name: 'particles', label: 'Particles of liquids', hint: 'instead of the surface', key: 'l', fluid: true, make: () => new Particles() },
 ];

@@ -1,11 +1,13 @@
 // An overlay: something drawn over the bodies that says what the engine knows about them. One file each; the list is in all.ts.
 import type { Object3D } from 'three';
 import type { Bodies } from '../draw/bodies';
+import type { Softs } from '../draw/softs';
 import type { Frame, OverlayName } from '../protocol';
 
 export interface OverlayView {
   frame: Frame;
   bodies: Bodies;
+  softs: Softs;
   scale: number; // m, the radius of the scene: how long an arrow of usual size may be
 }
 
@@ -24,5 +26,6 @@ export interface OverlayKind {
   hint: string;
   key: string; // on the keyboard
   fluid?: boolean; // only of use where there are gases or liquids
+  soft?: boolean; // only of use where there are ropes, cloths or solids
   make: () => Overlay;
 }

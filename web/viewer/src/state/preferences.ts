@@ -47,11 +47,14 @@ export const overlays = signal<ReadonlySet<OverlayName>>(new Set());
 if (oneOf('light', 'dark')(query.get('theme'))) theme.value = query.get('theme') as Theme;
 if (oneOf('high', 'low')(query.get('quality'))) quality.value = query.get('quality') as Quality;
 const asked = query.get('overlays');
-if (asked) overlays.value = new Set(asked.split(',').filter((name) => name in { contacts: 1, friction: 1, bounds: 1, tree: 1, islands: 1, mass: 1, joints: 1, velocities: 1, hulls: 1, flow: 1, speed: 1, particles: 1 }) as OverlayName[]);
+if (asked) overlays.value = new Set(asked.split(',').filter((name) => name in { contacts: 1, friction: 1, bounds: 1, tree: 1, islands: 1, mass: 1, joints: 1, velocities: 1, hulls: 1, flow: 1, speed: 1, particles: 1, stress: 1, strain: 1 }) as OverlayName[]);
 
 export function toggleOverlay(name: OverlayName): void {
   const next = new Set(overlays.value);
   if (!next.delete(name)) next.add(name);
+  // Soft matter has one colour.
+  if (name === 'stress') next.delete('strain');
+  if (name === 'strain') next.delete('stress');
   overlays.value = next;
 }
 

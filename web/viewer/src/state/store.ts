@@ -27,6 +27,12 @@ export interface Notice {
   fatal: boolean; // nothing is open behind it
 }
 
+export interface ReadingKey {
+  what: 'stress' | 'strain';
+  low: number; // Pa, or a share
+  high: number;
+}
+
 export const scene = signal<SceneDescription | null>(null);
 export const opening = signal<string | null>(null); // the name of what is being opened
 export const notice = signal<Notice | null>(null);
@@ -37,6 +43,7 @@ export const step = signal(0);
 export const lastStep = signal(0);
 export const time = signal(0);
 export const stats = signal<Stats | null>(null);
+export const readingKey = signal<ReadingKey | null>(null); // of the colours of soft matter; null: they are its own
 export const framesPerSecond = signal(0);
 
 export const selected = signal<number | null>(null); // key of a body

@@ -7,6 +7,7 @@ import { Help } from './help';
 import { NoticeCard } from './notice';
 import { toast } from './parts';
 import { Playbar } from './playbar';
+import { ReadingKey } from './reading_key';
 import { SceneDrawer } from './scene_drawer';
 import { SidePanel } from './side_panel';
 import { TopBar } from './top_bar';
@@ -18,6 +19,7 @@ export function App({ viewer }: { viewer: Viewer }): JSX.Element {
       <SceneDrawer viewer={viewer} />
       <SidePanel viewer={viewer} />
       <Playbar viewer={viewer} />
+      <ReadingKey />
       <Opening />
       <NoticeCard />
       <Help />

@@ -9,7 +9,8 @@ import { Section, Segments, Switch } from './parts';
 // What poses alone are enough for.
 const OF_POSES = new Set(['hulls']);
 
-const shown = ({ fluid }: OverlayKind): boolean => !fluid || (store.stats.value?.fluids ?? 0) > 0;
+const shown = ({ fluid, soft }: OverlayKind): boolean =>
+  (!fluid || (store.stats.value?.fluids ?? 0) > 0) && (!soft || (store.stats.value?.softs ?? 0) > 0);
 
 export function OverlaysPanel(): JSX.Element {
   const { overlays, colorBy, quality } = preferences;

@@ -351,7 +351,7 @@ export class LiveSession implements Session {
         stats: readStats(scene, this.stepMs),
         measured: true,
         links: readLinks(scene, this.origin),
-        overlays: readOverlays(scene, this.overlays, this.origin),
+        overlays: readOverlays(scene, this.overlays, this.origin, true),
         settings: this.runSettings(),
         problem: this.problem,
       },

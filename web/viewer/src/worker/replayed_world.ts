@@ -114,7 +114,7 @@ class WorldAtStep implements WorldAtFrame {
   }
 
   overlays(names: ReadonlySet<OverlayName>): OverlayData {
-    return readOverlays(this.world, names, this.origin);
+    return readOverlays(this.world, names, this.origin, false);
   }
 
   fluids(): FluidDescription[] {

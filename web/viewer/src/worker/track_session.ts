@@ -30,7 +30,7 @@ const NO_STATS: Stats = {
   linear: [0, 0, 0], angular: [0, 0, 0], maxPenetration: 0, softs: 0, softVertices: 0, fluids: 0,
 };
 
-const NEEDS_WORLD: ReadonlySet<OverlayName> = new Set<OverlayName>(['contacts', 'friction', 'bounds', 'tree', 'islands', 'mass', 'joints', 'velocities', 'flow', 'speed', 'particles']);
+const NEEDS_WORLD: ReadonlySet<OverlayName> = new Set<OverlayName>(['contacts', 'friction', 'bounds', 'tree', 'islands', 'mass', 'joints', 'velocities', 'flow', 'speed', 'particles', 'stress', 'strain']);
 
 // What `gyre simulate` writes down beside the poses.
 interface SceneNote {

@@ -5,6 +5,7 @@ import { BodyFlag, type BodyReport, type DoubleVec3, type OverlayData, type Over
 import { typeName } from './describe';
 import { readFlow, readParticles } from './fluids';
 import { slotOf } from './keys';
+import { readSoftReadings } from './softs';
 
 export interface Rows {
   ids: Float64Array;
@@ -85,7 +86,8 @@ function wayOf(kind: JointKind): number {
 
 const bit = (kind: number): number => 1 << kind;
 
-export function readOverlays(world: World, names: ReadonlySet<OverlayName>, origin: Vec3): OverlayData {
+// `carried`: solids are drawn as the surface that they carry.
+export function readOverlays(world: World, names: ReadonlySet<OverlayName>, origin: Vec3, carried: boolean): OverlayData {
   const data: OverlayData = {};
   if (names.has('contacts') || names.has('friction')) {
     const table = world.readContacts(origin);
@@ -123,6 +125,7 @@ export function readOverlays(world: World, names: ReadonlySet<OverlayName>, orig
     };
   }
   if (names.has('flow')) data.flow = readFlow(world, origin);
+  if (names.has('stress') || names.has('strain')) data.readings = readSoftReadings(world, names.has('stress') ? 'stress' : 'strain', carried);
   if (names.has('particles')) data.particles = readParticles(world, origin);
   return data;
 }
