@@ -460,7 +460,7 @@ void solve_step(RigidWorld& w, SoftStore& soft, const FluidStore& fluids, SolveS
   begin_workers(scratch, shared ? std::size_t(tasks.worker_count()) : 0);
   const ArenaScope scope(arena);
   scratch.soft.slots.clear(), scratch.soft.touched.clear();
-  if (!soft.empty()) gather_soft(w, soft, scratch.soft);
+  if (!soft.empty()) gather_soft(w, soft, scratch.soft, arena);
   const std::span<const std::uint32_t> united = list_united(w, scratch);
   const IslandBatches all = find_batches(w, united, arena, tasks, batch_size(tasks.worker_count(), shared));
   const auto describe = [&](const IslandBatch& members, BatchScratch& own) {

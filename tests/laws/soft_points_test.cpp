@@ -1,4 +1,5 @@
-// A body that hangs on a point between vertices, and soft matter that hangs on one: a ball joint that holds both ways at any ratio of masses.
+// A body that hangs on a point between vertices, and soft matter that hangs on one: a ball joint that holds both ways at any ratio of masses. Heavy loads on light bodies
+// that joints and contacts hold, too.
 // Sources: I. Newton, 1687 (weights, momentum); C. Huygens, 1673 (pendulum).
 #include "laws/soft_kit.h"
 
@@ -144,6 +145,75 @@ TEST(SoftPoints, ABodyOnASheetInSpaceKeepsMomentum) {
     EXPECT_TRUE(limit_row("S-68 body on a sheet in space: angular momentum, share",
                           distance(start.angular, end.angular) / size, 5e-3, 1e-3))
         << mass;
+  }
+}
+
+// Planks of 24 kg on two ropes bear bodies of up to 30 t; from 2 t on they gained energy, and at 30 t 5e13 J.
+TEST(SoftPoints, HeavyBodiesRestOnARopeBridge) {
+  for (const double mass : {200.0, 2000.0, 30000.0}) {
+    World world = make_world({.sleeping = false});
+    std::vector<BodyId> planks;
+    for (int k = 0; k < 19; ++k) {
+      BodyDef def{.pose = {{-4.5 + 0.5 * k, 2, 0}}};
+      def.mass = 24.0f;
+      planks.push_back(world.add_body(def, {.geometry = Box{{0.2f, 0.03f, 0.5f}}}));
+    }
+    for (const double z : {-0.5, 0.5}) {
+      const SoftId rope =
+          world.add_rope({.points = {{-5, 2, z}, {5, 2, z}}, .segments = 40, .linear_density = 0.5f});
+      world.pin(rope, 0), world.pin(rope, 40);
+      for (int k = 0; k < 19; ++k) world.attach(rope, 2 + 2 * k, planks[std::size_t(k)]);
+    }
+    for (int i = 0; i < 60; ++i) world.step(kStep);
+    BodyDef def{.pose = {{0, 2.6, 0}}};
+    def.mass = float(mass);
+    world.add_body(def, {.geometry = Box{{0.6f, 0.2f, 0.4f}}});
+    const auto total = [&] {
+      const Energy now = world.energy();
+      return now.kinetic + now.potential + now.elastic + now.soft_elastic;
+    };
+    const double start = total();
+    double most = 0.0;
+    for (int i = 0; i < 240; ++i) {
+      world.step(kStep);
+      most = std::max(most, total() - start);
+    }
+    EXPECT_TRUE(limit_row("S-68 heavy body on a rope bridge: energy gained, share of m g l",
+                          most / (mass * kG), 0.01, 1e-3))
+        << mass;
+  }
+}
+
+// A body of 1 kg that a joint holds bears soft matter of up to 1,000 times its mass, on a vertex or on a point; it exploded from ten times on.
+TEST(SoftPoints, ALightBodyOnAJointBearsAHeavySolid) {
+  for (const double mass : {1.0, 10.0, 100.0, 1000.0}) {
+    for (const bool by_point : {false, true}) {
+      for (const bool by_ball : {false, true}) {
+        World world = make_world({.sleeping = false});
+        BodyDef def = point_body(1.0, {1, 1, 1});
+        def.gravity_scale = 0.0f;
+        const BodyId body = world.add_body(def);
+        if (by_ball) world.add_joint(BallDef{.b = body});
+        if (!by_ball) world.add_joint(FixedDef{.b = body});
+        const SoftId solid = world.add_solid({.box = SolidBox{{0.2f, 0.2f, 0.2f}, {3, 3, 3}},
+                                              .density = float(mass / 0.064),
+                                              .young_modulus = float(1e5 * mass)});
+        if (by_point)
+          world.attach_point(solid, world.nearest_soft_point(solid, {0.04, 0.11, -0.07}), body);
+        else
+          world.attach(solid, 42, body);
+        const Energy start = world.energy();
+        double most = 0.0;
+        for (int i = 0; i < 180; ++i) {
+          world.step(kStep);
+          const Energy now = world.energy();
+          most = std::max(most, now.kinetic + now.potential + now.soft_elastic - start.potential);
+        }
+        EXPECT_TRUE(limit_row("S-68 heavy solid on a light body: energy gained, share of m g l",
+                              most / (mass * kG * 0.2), 0.05, 0.01))
+            << mass << (by_point ? " point" : " vertex") << (by_ball ? " ball" : " fixed");
+      }
+    }
   }
 }
 

@@ -116,6 +116,11 @@ void RangeFinder::add(std::vector<float> readings) {
   range_.high = std::max(range_.high, double(readings[readings.size() - 1 - beyond]));
 }
 
+ReadingRange RangeFinder::range() const {
+  const double least = 1e-3 * (range_.high - range_.low);
+  return {range_.low > -least ? 0.0 : range_.low, range_.high < least ? 0.0 : range_.high};
+}
+
 SceneColor reading_color(float value, const ReadingRange& range) {
   using Color3 = std::array<double, 3>;
   constexpr Color3 kStops[] = {{38, 70, 196}, {46, 166, 208}, {128, 200, 104}, {244, 200, 64}, {214, 48, 36}};

@@ -27,7 +27,8 @@ struct ReadingRange {
 class RangeFinder {
  public:
   void add(std::vector<float> readings);
-  ReadingRange range() const { return range_; }
+  // An end that is below a thousandth of the other is rounding, and zero.
+  ReadingRange range() const;
 
  private:
   ReadingRange range_;

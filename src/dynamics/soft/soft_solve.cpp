@@ -1,6 +1,7 @@
 #include "dynamics/soft/soft_solve.h"
 
 #include "dynamics/soft/soft_forces.h"
+#include "dynamics/soft/soft_loads.h"
 #include "dynamics/soft/soft_rounds.h"
 #include "math/rotation.h"
 #include "rigid/batch/solve_batch.h"
@@ -22,6 +23,9 @@ constexpr int kGripPasses = 3;
 // The rate (1/s) at which errors of position are removed, and the largest share of them in a sub-step. A rate, since sub-steps up to an impact
 // may be as short as one likes.
 constexpr float kErrorRate = 48.0f, kErrorShare = 0.2f;
+// But no larger share of them than this one of the mass of the body over that of its load: all that hangs together with it. Contacts and joints of bodies are solved
+// apart: they answer a correction a sub-step later, and are answered, so that errors grow if the share is more than the ratio of masses (docs/decisions/soft-coupling.md).
+constexpr float kLoopShare = 0.5f;
 // Faces come out of shapes at this share of the rate: a sheet of coarse cells that falls on a ball is deep in it between its vertices, and must not be thrown
 // back.
 constexpr float kFaceRate = 0.2f;
@@ -132,6 +136,15 @@ void move_held(const SoftSolve& s, SoftEntry& entry) {
 
 float error_rate(const SoftSolve& s) { return min(kErrorRate, kErrorShare / s.h); }
 
+// The rate at which errors of place of what a body holds are removed, 1/s.
+float correction_of(const SoftSolve& s, std::int32_t body) {
+  if (!yields(*s.w, body)) return error_rate(s);
+  const double load = s.scratch->loads[std::size_t(find_touched(*s.scratch, body))];
+  const double ratio = double(s.w->bodies.inertia[std::size_t(body)].inverse_mass) * load;
+  if (!(ratio > 0.0)) return error_rate(s);
+  return float(min(double(error_rate(s)), double(kLoopShare) / (ratio * double(s.h))));
+}
+
 // Where the row acts now, and what it wants. Particles have not moved yet.
 void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
   const RigidWorld& w = *s.w;
@@ -140,11 +153,11 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     row.arm = arm_now(w, entry.attachments[row.source]);
     const DVec3 point = anchor_now(w, entry.attachments[row.source]);
     // Each of several vertices moves a part of the body; together they would remove more than there is.
-    const float rate = error_rate(s) / float(s.scratch->grips[row.touched]);
+    const float rate = row.correction / float(s.scratch->grips[row.touched]);
     row.bias = rate * difference(place, point);
   } else if (row.kind == SoftRowKind::point) {
     row.arm = arm_now(w, entry.points[row.source]);
-    row.bias = error_rate(s) * difference(place, anchor_now(w, entry.points[row.source]));
+    row.bias = row.correction * difference(place, anchor_now(w, entry.points[row.source]));
   } else {
     const SoftContact& contact = contact_of(entry, row);
     row.normal = turned_now(w, contact.body, contact.normal);
@@ -267,7 +280,7 @@ void hold_attached(const RigidWorld& w, SoftEntry& entry) {
   }
 }
 
-void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
+void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch, Arena& arena) {
   scratch.slots.clear(), scratch.touched.clear();
   store.ids.for_each_live([&](std::uint32_t slot) {
     if (store.entries[slot].is_awake()) scratch.slots.push_back(slot);
@@ -285,6 +298,8 @@ void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch) {
   for (const std::uint32_t body : w.bodies.awake) {
     if (w.bodies.flags[body].constraint_use == kPoseRead) scratch.touched.push_back(body);
   }
+  scratch.loads.resize(scratch.touched.size());
+  find_loads(w, store, scratch.touched, arena, {scratch.loads.data(), scratch.loads.size()});
 }
 
 void make_soft_rows(SoftSolve& s) {
@@ -316,6 +331,7 @@ void make_soft_rows(SoftSolve& s) {
       if (!yields(w, one.body) || is_visual(entry)) continue;
       if (entry.body.particles.loose[one.particle] == 0.0f) let_go(entry.body, int(one.particle));
       SoftRow& row = add(one.particle, one.body, k);
+      row.correction = correction_of(s, one.body);
       row.grip = SoftGrip::sticks;
       row.arm = rotate(orientation_now(w, row.body), one.local);
       row.impulse = s.warm_scale * one.impulse;
@@ -325,6 +341,7 @@ void make_soft_rows(SoftSolve& s) {
       const ElementCorners corners = corners_of(entry, one.element);
       SoftRow& row = add(corners.corner[0], one.body, k);
       row.kind = SoftRowKind::point;
+      row.correction = correction_of(s, one.body);
       row.coupled = true;
       row.corners = corners.count;
       for (int n = 1; n < corners.count; ++n) row.others[n - 1] = corners.corner[n];

@@ -61,6 +61,7 @@ struct SoftRow {
   Sym3 particle_inverse{};  // 1/kg, of the vertex alone
   Sym3 compliance{};        // 1/kg, of both
   Vec3 impulse{};           // N s on the vertex
+  float correction = 0.0f;  // 1/s: the rate at which an error of place is removed, of an attachment
   Vec3 error{};             // m/s: relative velocity and bias when the round began
   Vec3 step{};              // N s: the change of impulse that is tried
   Vec3 carried_step{};      // N s: on the vertex, by what it carries
@@ -94,6 +95,7 @@ struct SoftScratch {
   Array<SoftRow> rows;
   Array<CarriedInertia> carried;  // room for one of each row, member by member
   Array<std::uint32_t> grips;     // rows that grip each touched body
+  Array<double> loads;            // kg, of each touched body: the other bodies that bear on it
   // Of touched bodies: the change by the impulses that are tried; what the other half-steps of the sub-step are to bring.
   Array<VelocityChange> changes, pending;
   SoftSurfaces surfaces;
@@ -119,7 +121,7 @@ struct SoftSolve {
 // must not depend on whether the state was loaded.
 void hold_attached(const RigidWorld& w, SoftEntry& entry);
 // Before batches are found: lists slots and touched bodies, and marks these as constrained.
-void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch);
+void gather_soft(RigidWorld& w, SoftStore& store, SoftScratch& scratch, Arena& arena);
 // Makes the rows of a step; holds vertices that are attached to what does not yield.
 void make_soft_rows(SoftSolve& s);
 

@@ -462,7 +462,9 @@ void bound_soft_surfaces(SoftSolve& s, int, int) {
   all.report = move_surfaces(all.placed, vertices_of(all), all.targets, settings_of(s), all.arena, *s.tasks,
                              all.contacts);
   for_each_surface(all, [&](std::uint32_t member, std::uint32_t first) { place_vertices(s, member, first); });
-  all.may_cross = !all.contacts.tangle.empty() || all.report.forced > 0 || all.report.crossed > 0;
+  // Far away, rounding may carry features through each other.
+  all.may_cross = !all.contacts.tangle.empty() || all.report.forced > 0 || all.report.crossed > 0 ||
+                  all.contacts.search.candidates.is_far;
   if (all.unmet) all.contacts.clear(all.velocities.size());
   all.unmet = false;
 }

@@ -41,7 +41,7 @@ struct SoftSurfaces {
   BoundReport report;
   // True if pairs close however often they are solved, as between vertices that are held: their impulses are not remembered, which would grow without bound.
   bool unmet = false;
-  // True if surfaces may cross now: they are not where the last sub-step left them, or crossed then, or were held where they cross.
+  // True if surfaces may cross now: they are not where the last sub-step left them, or crossed then, or were held where they cross, or are so far that rounding may do it.
   bool may_cross = true;
   Array<DVec3> left;  // by vertex: where the last step left them
   Arena arena;        // used within a stage

@@ -23,8 +23,12 @@ export class Reading implements Overlay {
     const beyond = Math.floor(BEYOND * sorted.length);
     this.low = Math.min(this.low, sorted[beyond] ?? 0);
     this.high = Math.max(this.high, sorted[sorted.length - 1 - beyond] ?? 0);
-    softs.read(readings, this.low, this.high);
-    const { what, low, high } = this;
+    // An end that is below a thousandth of the other is rounding.
+    const { what } = this;
+    const least = 1e-3 * (this.high - this.low);
+    const low = this.low > -least ? 0 : this.low;
+    const high = this.high < least ? 0 : this.high;
+    softs.read(readings, low, high);
     const known = store.readingKey.peek();
     if (known?.what !== what || known.low !== low || known.high !== high) store.readingKey.value = { what, low, high };
   }
