@@ -148,6 +148,8 @@ TEST(SceneSoft, RefusesBadSoftBodies) {
       {tets_with("[[0, 1, 2, 5]]"), at + "/tetrahedra/0/3", "found 5", "from 0 to 4"},
       {tets_with("[[0, 1, 2, 3], [0, 1, 2, 4]]"), at + "/tetrahedra/1", "no volume",
        "do not lie in one plane"},
+      {box_with(R"("pinned_region": {"box": [[5, 5, 5], [6, 6, 6]]})"), at + "/pinned_region", "found no vertex",
+       "expected some"},
       {tets_with("[[0, 2, 1, 3], [0, 1, 4, 3]]"), at + "/tetrahedra/0", "is inverted", "clockwise"},
       {tets_with("[[0, 1, 2, 3], [0, 1, 4, 3]]"), at + "/tetrahedra/0", "overlap", "same side"},
       {tets_with("[[0, 1, 2, 2]]"), at + "/tetrahedra/0", "no volume", "four corners"},

@@ -132,12 +132,16 @@ bool WorldBuilder::pin_region(const SceneSoftBody& solid, SoftId id, const std::
   const SoftVertices vertices = world_.vertices(id);
   std::vector<bool> held(vertices.size(), false);
   for (const SceneHold& one : solid.holds) held[std::size_t(one.vertex)] = true;
+  bool any = false;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const DVec3 p = vertices.position(i);
     const bool is_in =
         p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
+    any = any || is_in;
     if (is_in && !held[i]) pins.push_back(int(i));
   }
+  if (!any)
+    return fail(pointer + "/pinned_region", "found no vertex of \"" + solid.name + "\" in this box of the world, expected some");
   for (const int vertex : pins) {
     if (!world_.pin(id, vertex)) return fail(pointer + "/pinned_region", last_refusal());
   }

@@ -1,5 +1,5 @@
 // Colours: of materials and bodies, and of the two themes. Picked to be told apart on light and dark ground alike.
-import { Color } from 'three';
+import { Color, SRGBColorSpace } from 'three';
 import type { Theme } from '../state/preferences';
 
 const HUES = ['#e76f51', '#3d8bd4', '#e9b949', '#2fa58e', '#9277d8', '#d9628f', '#7fae42', '#5b7186', '#c98a5b', '#44b4c8'];
@@ -93,6 +93,12 @@ export function numberColor(number: number, out: Color): Color {
 export function heatColor(part: number, out: Color): Color {
   const clamped = Math.min(Math.max(part, 0), 1);
   return out.setHSL(0.62 * (1 - clamped), 0.7, 0.5);
+}
+
+// The same as the page's own colours have them, so that a picture looks as its key does.
+export function readingColor(part: number, out: Color): Color {
+  const clamped = Math.min(Math.max(part, 0), 1);
+  return out.setHSL(0.62 * (1 - clamped), 0.7, 0.5, SRGBColorSpace);
 }
 
 export const awakeColor = new Color('#e9a13b');

@@ -2,7 +2,7 @@
 import { Color, DoubleSide, Group, type Material, Mesh, MeshLambertMaterial, MeshStandardMaterial } from 'three';
 import type { Frame, SoftDescription, SoftKind, Structure } from '../protocol';
 import type { Quality } from '../state/preferences';
-import { bodyColor, heatColor } from './palette';
+import { bodyColor, readingColor } from './palette';
 import { type SoftMesh, softMesh } from './soft_geometry';
 
 export interface DrawnSoft {
@@ -116,7 +116,7 @@ export class Softs {
       }
       if (!colored) continue;
       const colors = new Float32Array(3 * count);
-      for (let i = 0; i < count; i++) heatColor(high > low ? (values[i]! - low) / (high - low) : 0, color).toArray(colors, 3 * i);
+      for (let i = 0; i < count; i++) readingColor(high > low ? (values[i]! - low) / (high - low) : 0, color).toArray(colors, 3 * i);
       item.shape.paint(colors);
     }
   }
