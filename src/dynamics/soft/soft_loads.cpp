@@ -27,10 +27,12 @@ void find_loads(const RigidWorld& w, const SoftStore& soft, std::span<const std:
     if (mass_of(a) > 0.0 && mass_of(b) > 0.0) islands.unite(a, b);
   });
   for (std::size_t slot = 0; slot < soft.entries.size(); ++slot) {
-    for_each_attachment(soft.entries[slot], [&](const auto& one) {
-      if (one.body != kWorldAnchor && mass_of(std::uint32_t(one.body)) > 0.0)
-        islands.unite(std::uint32_t(one.body), std::uint32_t(first + slot));
-    });
+    const auto unite = [&](std::int32_t body) {
+      if (body != kWorldAnchor && mass_of(std::uint32_t(body)) > 0.0)
+        islands.unite(std::uint32_t(body), std::uint32_t(first + slot));
+    };
+    for_each_attachment(soft.entries[slot], [&](const auto& one) { unite(one.body); });
+    for_each_contact(soft.entries[slot], [&](const SoftContact& one) { unite(one.body); });
   }
   islands.flatten();
   const std::span<double> masses = arena.make<double>(count);

@@ -136,7 +136,7 @@ void move_held(const SoftSolve& s, SoftEntry& entry) {
 
 float error_rate(const SoftSolve& s) { return min(kErrorRate, kErrorShare / s.h); }
 
-// The rate at which errors of place of what a body holds are removed, 1/s.
+// The rate at which errors of place at a body are removed, 1/s.
 float correction_of(const SoftSolve& s, std::int32_t body) {
   if (!yields(*s.w, body)) return error_rate(s);
   const double load = s.scratch->loads[std::size_t(find_touched(*s.scratch, body))];
@@ -170,7 +170,7 @@ void place_row(const SoftSolve& s, const SoftEntry& entry, SoftRow& row) {
     const float wanted =
         is_free
             ? gap / s.h
-            : clamp((row.kind == SoftRowKind::face ? kFaceRate : 1.0f) * error_rate(s) * gap, -most, most);
+            : clamp((row.kind == SoftRowKind::face ? kFaceRate : 1.0f) * row.correction * gap, -most, most);
     row.bias = wanted * row.normal - contact.surface_velocity;
   }
   row.body_compliance = body_compliance(w, row);
@@ -353,6 +353,7 @@ void make_soft_rows(SoftSolve& s) {
     const auto add_contact = [&](const SoftContact& one, std::uint32_t source) -> SoftRow& {
       SoftRow& row = add(one.particle, one.body, source);
       row.kind = SoftRowKind::contact;
+      row.correction = correction_of(s, row.body);
       row.coupled = !is_exact_rope(entry);
       row.static_friction = one.static_friction, row.dynamic_friction = one.dynamic_friction;
       row.normal = one.normal, row.arm = one.from_body;

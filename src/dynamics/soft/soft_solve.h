@@ -61,7 +61,7 @@ struct SoftRow {
   Sym3 particle_inverse{};  // 1/kg, of the vertex alone
   Sym3 compliance{};        // 1/kg, of both
   Vec3 impulse{};           // N s on the vertex
-  float correction = 0.0f;  // 1/s: the rate at which an error of place is removed, of an attachment
+  float correction = 0.0f;  // 1/s: the rate at which an error of place is removed
   Vec3 error{};             // m/s: relative velocity and bias when the round began
   Vec3 step{};              // N s: the change of impulse that is tried
   Vec3 carried_step{};      // N s: on the vertex, by what it carries
