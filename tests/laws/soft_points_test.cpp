@@ -256,7 +256,7 @@ TEST(SoftPoints, ALightBodyOnAJointBearsAHeavySolid) {
   }
 }
 
-// What moves by itself takes the point along.
+// A kinematic body takes the point along.
 TEST(SoftPoints, APointFollowsAKinematicBody) {
   World world = make_world({.sleeping = false});
   const SoftId solid =

@@ -19,7 +19,7 @@ class Player {
   virtual ~Player() = default;
 
   virtual void look(Sight& out) const = 0;
-  // Whether stress and strain can be read: a recording of poses alone does not know them.
+  // True if stress and strain can be read: a recording of poses alone does not know them.
   virtual bool has_readings() const { return true; }
   void read(SoftReading reading) { reading_ = reading; }
   // Where a good picture is taken from, if that is known.

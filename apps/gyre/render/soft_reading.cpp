@@ -50,7 +50,7 @@ struct Glyph {
   char letter;
   std::array<std::uint8_t, kGlyphHeight> rows;  // from the top; the highest of five bits is at the left
 };
-// What numbers and units need.
+// The letters of numbers and units.
 constexpr Glyph kGlyphs[] = {
     {'0', {14, 17, 19, 21, 25, 17, 14}}, {'1', {4, 12, 4, 4, 4, 4, 14}},
     {'2', {14, 17, 1, 2, 4, 8, 31}},     {'3', {31, 2, 4, 2, 1, 17, 14}},

@@ -39,7 +39,7 @@ SceneColor reading_color(float value, const ReadingRange& range);
 
 // Draws the key at the right side of a picture: the colours, and what stands for both ends with its unit.
 void draw_key(const ReadingRange& range, SoftReading reading, Picture& picture);
-// What stands at an end: "1.2 MPa", "-3.5 %".
+// The words at an end: "1.2 MPa", "-3.5 %".
 std::string key_label(double value, SoftReading reading);
 
 }  // namespace gyre

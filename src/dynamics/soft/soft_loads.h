@@ -1,4 +1,4 @@
-// What bears on the bodies that soft matter holds or touches: all that contacts, joints, couplings and soft matter connect with each of them.
+// The loads on bodies that soft matter holds or touches: all that contacts, joints, couplings and soft matter connect with each of them.
 #pragma once
 
 #include "base/arena/arena.h"
