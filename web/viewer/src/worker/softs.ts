@@ -22,6 +22,18 @@ export function describeSoft(world: World, id: SoftId, look: Pick<SoftDescriptio
   return { ...look, kind: softKindName(kind), vertices: carried || vertices, radius, triangles };
 }
 
+// One array after the other.
+function joined(parts: Float32Array[]): Float32Array<ArrayBuffer> {
+  if (parts.length === 1) return parts[0] as Float32Array<ArrayBuffer>;
+  const all = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let at = 0;
+  for (const part of parts) {
+    all.set(part, at);
+    at += part.length;
+  }
+  return all;
+}
+
 // 3 a vertex, of all of them in this order.
 export function readSoftVertices(world: World, ids: ArrayLike<SoftId>, origin: Vec3): Float32Array<ArrayBuffer> {
   const parts = Array.from(ids, (id): Float32Array => {
@@ -36,14 +48,7 @@ export function readSoftVertices(world: World, ids: ArrayLike<SoftId>, origin: V
     }
     return out;
   });
-  if (parts.length === 1) return parts[0] as Float32Array<ArrayBuffer>;
-  const all = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
-  let at = 0;
-  for (const part of parts) {
-    all.set(part, at);
-    at += part.length;
-  }
-  return all;
+  return joined(parts);
 }
 
 // Stress or strain at the vertices of one, the mean of the elements around; empty where there is none to read.
@@ -94,13 +99,7 @@ export function readSoftReadings(world: World, what: 'stress' | 'strain', carrie
     if (values.length === 0) return new Float32Array(surface || world.softInfo(id).vertices).fill(NaN);
     return surface > 0 ? Float32Array.from(nearestVertices(world, id), (vertex) => values[vertex]!) : values;
   });
-  const all = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
-  let at = 0;
-  for (const part of parts) {
-    all.set(part, at);
-    at += part.length;
-  }
-  return all;
+  return joined(parts);
 }
 
 export function reportOnSoft(world: World, id: SoftId, key: number, name: string): SoftReport {
